@@ -1,8 +1,11 @@
-# Digilent Arty S7: Verilog to bitstream with Vivado: vivado -mode batch -source build.tcl. Generated: change the generator,
-# not this file. This script was never run: Vivado was not at hand.
+# Makes the bitstream with Vivado for this board: Digilent Arty S7.
+# Run it with: vivado -mode batch -source build.tcl
+# This file is generated: change the generator instead.
+#
+# This script has not been tested, because Vivado was not available.
 cd [file dirname [file normalize [info script]]]
 create_project -in_memory -part xc7s50csga324-1
-read_verilog [list carrystep_arty_s7_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v]
+read_verilog [list carrystep_arty_s7_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v]
 read_xdc carrystep_arty_s7_top.xdc
 synth_design -top carrystep_arty_s7_top
 opt_design

@@ -1,4 +1,5 @@
-# Digilent Arty S7. Generated: change the generator, not this file.
+# Pins and clock of this board: Digilent Arty S7.
+# This file is generated: change the generator instead.
 set_property CFGBVS VCCO [current_design]
 set_property CONFIG_VOLTAGE 3.3 [current_design]
 set_property -dict { PACKAGE_PIN F14 IOSTANDARD LVCMOS33 } [get_ports {oscillator}]

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// Digilent Cmod S7: 80 MHz of the oscillator's 12 MHz. Generated: change the generator, not this file.
+// Makes the clock of the gateware, 80 MHz, from the oscillator of 12 MHz.
+// Board: Digilent Cmod S7. This file is generated: change the generator instead.
 //
-// The clock starts late: engine and link have no reset, but come up as the bitstream says. So no edge may reach them that
-// is too fast (while a PLL locks, its clock is anything), and none while block RAMs are not ready (an iCE40's are not for some
-// microseconds after configuration). 1024 clocks after the lock the gate opens, for ever: a clock that stops could leave a STEP high.
+// The clock starts late. The engine and the host link have no reset: the bitstream gives the
+// initial values of their registers. So they must not receive a clock edge while the clock may be
+// too fast (the output of a PLL has no defined frequency until it locks), nor while the block RAMs
+// are not ready (those of an iCE40 are not ready for some microseconds after configuration). The
+// gate opens 1024 clocks after the lock. It then stays open, because a clock that stops could
+// leave a STEP pin high.
 
 `default_nettype none
 
@@ -34,7 +38,8 @@ module carrystep_clock (
     );
     BUFG bufg (.I(synthesised), .O(made));
 
-    // Held at 0 until the lock is seen, whatever `made` does until then.
+    // `seen` synchronizes `locked`. `waited` is 0 until the lock, whatever the frequency of `made`
+    // is until then; after the lock it counts clocks of `made` until its highest bit is set.
     reg [1:0] seen = 2'd0;
     reg [10:0] waited = 11'd0;
     always @(posedge made) begin

@@ -1,25 +1,36 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_engine: step and direction for six axes. Generated: change the generator, not this file.
+// carrystep_engine: step and direction for six axes.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
+//
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
+//
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 8, S 8, D 2, H 2
-//   axis 1     W 80, S 80, D 16, H 16
-//   axis 2     W 152, S 152, D 52, H 52
-//   axis 3     W 200, S 200, D 400, H 400
-//   axis 4     W 8, S 8, D 2, H 2
-//   axis 5     W 240, S 240, D 120, H 120
+//   axis 0     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 1     STEP_HIGH 80, STEP_LOW 80, DIR_SETUP 16, DIR_HOLD 16
+//   axis 2     STEP_HIGH 152, STEP_LOW 152, DIR_SETUP 52, DIR_HOLD 52
+//   axis 3     STEP_HIGH 200, STEP_LOW 200, DIR_SETUP 400, DIR_HOLD 400
+//   axis 4     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 5     STEP_HIGH 240, STEP_LOW 240, DIR_SETUP 120, DIR_HOLD 120
 // Guard        counts in rounds of 32 ticks, 32 us
-//   watchdog   100 to 100.033 ms without a sign of the host: ramp
+//   watchdog   100 to 100.033 ms without a valid frame of the host: ramp
 //   enable     1.024 to 1.057 ms from ENABLE to the first start
 //   e-stop     active high: freeze
-//   limits     two an axis, active high, believed after 512 to 545 us: ramp
+//   limits     two per axis, active high, debounced for 512 to 545 us: ramp
 //   axis 0     ramps by 800000 steps/s^2
 //   axis 1     ramps by 640000 steps/s^2
 //   axis 2     ramps by 600000 steps/s^2
@@ -29,35 +40,41 @@
 
 `default_nettype none
 
-// Whose turn it is: one axis after the other, thirteen beats each.
-module carrystep_turn (
+// The schedule: in each tick every axis has a time slot of thirteen clocks (beats).
+module carrystep_time_slot (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // Bit i is asserted in beat i. Bits 13 to 16 belong to the axis of the slot before.
     output wire  [16:0] beat,
+    // The axis of the slot, as a number.
     output wire   [2:0] axis,
+    // The axis of the next clock, as a number.
     output wire   [2:0] axis_next,
-    output wire   [5:0] lane
+    // The axis of the slot, one-hot. After the last slot it is the first axis.
+    output wire   [5:0] axis_one_hot
 );
     localparam BY_ONE = 1'b1;
     localparam [16:0] FIRST_BEAT = 17'd1;
     localparam [2:0] FIRST_AXIS = 3'd0;
     localparam [2:0] ONE_AXIS = 3'd1;
-    localparam [5:0] LAST_LANE = 6'd32;
+    localparam [5:0] LAST_ONE_HOT = 6'd32;
     localparam [2:0] TO_TOP = 3'd5;
 
     reg [16:0] beats = 17'd0;
     reg [2:0] number = 3'd0;
-    reg [5:0] lanes = 6'd1;
+    reg [5:0] one_hot = 6'd1;
     reg [2:0] axis_to_come;
 
-    wire ends = (lanes & LAST_LANE) != 6'd0;
+    wire ends = (one_hot & LAST_ONE_HOT) != 6'd0;
     wire begins = strobe | (beats[12] & !ends);
     wire [16:0] shifted = beats << BY_ONE;
 
     assign beat = beats;
     assign axis = number;
     assign axis_next = axis_to_come;
-    assign lane = lanes;
+    assign axis_one_hot = one_hot;
 
     always @(*) begin
         axis_to_come = number;
@@ -75,31 +92,52 @@ module carrystep_turn (
             beats <= shifted | FIRST_BEAT;
         end
         if (beats[12]) begin
-            lanes <= (lanes << BY_ONE) | (lanes >> TO_TOP);
+            one_hot <= (one_hot << BY_ONE) | (one_hot >> TO_TOP);
         end
         number <= axis_to_come;
     end
 endmodule
 
-// The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection.
+// The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.
 module carrystep_adder (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The word that the memory returns.
     input  wire  [31:0] word,
+    // The word that the host offers.
     input  wire  [31:0] put,
+    // The axis runs: beat 6 subtracts one from its remaining ticks.
     input  wire         counts,
+    // The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
+    // `counts`.
     input  wire         lost,
+    // Beat 7 adds one to the position.
     input  wire         up,
+    // Beat 7 subtracts one from the position.
     input  wire         down,
+    // The sums that replace P are zero.
     input  wire         wipe,
+    // A reset: the sum that replaces the discarded steps is zero.
+    input  wire         forgets,
+    // The sum of the beat before.
     output wire  [31:0] sum,
+    // From beat 8: the running segment ends with this tick.
     output wire         ended,
+    // From beat 12: V + A does not fit in 64 bits.
     output wire         overflow,
+    // From beat 12: V + A and V have different signs.
     output wire         turned,
+    // In beat 12: the tick contains a step.
     output wire         crosses,
+    // From beat 12: V < 0.
     output wire         back,
+    // From beat 12: V = 0.
     output wire         still,
+    // From beat 12: V = -2^63.
     output wire         least,
+    // After beat 16: the phase of the step, in 1/16 tick.
     output wire   [3:0] q
 );
     localparam [31:0] NOTHING = 32'd0;
@@ -148,7 +186,7 @@ module carrystep_adder (
     wire odd = halves_on & b[0];
     wire odd_beyond = odd & bisects & crosses_now;
     wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({1'b0, extended} << BY_ONE) | low);
-    wire wiping = wipe & (beat[5] | beat[11]);
+    wire wiping = (wipe & (beat[5] | beat[11])) | (forgets & beat[6]);
     wire empty = (b & ~SIGN) == 32'd0;
 
     assign sum = r;
@@ -256,17 +294,24 @@ module carrystep_adder (
     end
 endmodule
 
-// The control words of the axes.
+// Memory of the control words: the queue state and flags of each axis.
 module carrystep_control (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [2:0] read_address,
-    output wire  [15:0] read_data,
+    // The word at the address of the cycle before.
+    output wire  [18:0] read_data,
+    // The address of the word to write.
     input  wire   [2:0] write_address,
-    input  wire  [15:0] write_bits,
-    input  wire  [15:0] write_data
+    // The write enable of each bit.
+    input  wire  [18:0] write_bits,
+    // The new values of the bits that are written.
+    input  wire  [18:0] write_data
 );
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
-    reg [15:0] value; // a block RAM gives no value before its first clock
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = "block" *) reg [18:0] words [0:7];
+    reg [18:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -281,15 +326,22 @@ module carrystep_control (
     end
 endmodule
 
-// Which segments are the last of their move.
+// Memory of one bit per segment: the segment is the last of its move.
 module carrystep_lasts (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [5:0] read_address,
+    // The word at the address of the cycle before.
     output wire         read_data,
+    // The address of the word to write.
     input  wire   [5:0] write_address,
+    // The write enable of each bit.
     input  wire         write_bits,
+    // The new values of the bits that are written.
     input  wire         write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg words [0:63];
     reg value; // a block RAM gives no value before its first clock
     integer i;
@@ -306,60 +358,101 @@ module carrystep_lasts (
     end
 endmodule
 
-// Which segment an axis runs, and which ones wait.
+// The segment queue of each axis: which segment runs, and which segments wait.
 module carrystep_queue (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The axis of the time slot.
     input  wire   [2:0] axis,
+    // The axis of the next clock.
     input  wire   [2:0] axis_next,
+    // The axis starts in this tick.
     input  wire         starts,
+    // A stop is complete: no axis runs.
     input  wire         halted,
+    // The axis ramps down.
     input  wire         ramp,
+    // Removes all segments.
     input  wire         clear,
+    // In beat 12: removes the waiting segments.
     input  wire         empties,
+    // The engine accepts the host's word in this clock.
     input  wire         take,
-    input  wire         commit,
+    // The number of that word.
+    input  wire   [2:0] put_word,
+    // The committed segment is the last of its move.
     input  wire         last,
+    // The running segment ends with this tick.
     input  wire         ended,
+    // V + A does not fit in 64 bits.
     input  wire         overflow,
+    // V = -2^63.
     input  wire         least,
+    // V + A and V have different signs.
     input  wire         turned,
+    // V < 0.
     input  wire         back,
+    // The low bits of the position, from the pulser.
     input  wire   [2:0] pulses,
+    // The low bits of the discarded steps, from the pulser.
     input  wire   [2:0] losses,
+    // The slot of the running segment.
     output wire   [2:0] live,
+    // The slot that the host writes.
     output wire   [2:0] fresh,
+    // Fault: the accepted word is not the one that is due.
+    output wire         misplaced,
+    // No slot is free for the host.
     output wire         full,
+    // The number of segments for which the queue has space, 0 to 7.
     output wire   [2:0] room,
+    // No segment waits.
     output wire         empty,
+    // The axis runs in this tick.
     output wire         running,
+    // The axis runs, and V is in range as far as is known before beat 12.
     output wire         sound,
+    // V changes by the stop acceleration in this tick.
     output wire         slows,
+    // The ramp began with V < 0, so that V increases.
     output wire         upward,
+    // V stays unchanged in this tick, the first of a ramp.
     output wire         steady,
+    // In beat 12: the axis runs and its V is in range.
     output wire         moves,
+    // In beat 12: the axis runs in the next tick too.
     output wire         goes_on,
+    // In beat 12, fault: V is out of range.
     output wire         too_fast,
+    // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     output wire         dry,
+    // From beat 5: a step forward is added to the position.
     output wire         up,
+    // From beat 5: a step backward is subtracted from the position.
     output wire         down,
+    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     output wire         lost
 );
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] MINUS_ONE = 3'd7;
     localparam [2:0] ZERO = 3'd0;
-    localparam [15:0] NO = 16'd0;
-    localparam [15:0] RUNNING_BIT = 16'd64;
-    localparam [15:0] UNFIT_BIT = 16'd128;
-    localparam [15:0] BACK_BIT = 16'd16384;
-    localparam [15:0] KNOWN_BIT = 16'd32768;
-    localparam [15:0] ALL = 16'd65535;
+    localparam [18:0] NO = 19'd0;
+    localparam [18:0] RUNNING_BIT = 19'd64;
+    localparam [18:0] UNFIT_BIT = 19'd128;
+    localparam [18:0] BACK_BIT = 19'd16384;
+    localparam [18:0] KNOWN_BIT = 19'd32768;
+    localparam [18:0] ALL = 19'h7ffff;
+    localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_8 = 4'd8;
     localparam [3:0] AT_11 = 4'd11;
+    localparam [4:0] AT_16 = 5'd16;
 
+    reg took = 1'b0;
     reg committed = 1'b0;
     reg forward = 1'b0;
     reg backward = 1'b0;
@@ -370,18 +463,19 @@ module carrystep_queue (
     reg lasts_write_bits;
     reg [2:0] next_live;
     reg [2:0] next_newest;
-    reg [15:0] next_running;
-    reg [15:0] next_unfit;
-    reg [15:0] next_known;
-    reg [15:0] next_back;
+    reg [2:0] next_due;
+    reg [18:0] next_running;
+    reg [18:0] next_unfit;
+    reg [18:0] next_known;
+    reg [18:0] next_back;
     reg [2:0] next_seen;
     reg [2:0] next_lost;
-    reg [15:0] control_write_bits;
+    reg [18:0] control_write_bits;
 
-    wire [15:0] control_read_data;
+    wire [18:0] control_read_data;
     wire lasts_read_data;
 
-    wire [15:0] word = control_read_data;
+    wire [18:0] word = control_read_data;
     wire [2:0] old_live = word[2:0];
     wire [2:0] newest = word[5:3];
     wire [2:0] fresh_now = newest + ONE;
@@ -394,9 +488,13 @@ module carrystep_queue (
     wire stays = moves & !over;
     wire [2:0] missing = pulses - word[10:8];
     wire [2:0] unseen = losses ^ word[13:11];
+    wire [2:0] due = word[18:16];
+    wire fits_in = put_word == due;
+    wire commits = take & fits_in & (due == COMMIT);
 
     assign live = live_now;
     assign fresh = fresh_now;
+    assign misplaced = take & !fits_in;
     assign full = fresh_now == live_now;
     assign room = live_now + ~newest;
     assign empty = none;
@@ -436,7 +534,7 @@ module carrystep_queue (
 
     always @(*) begin
         lasts_write_bits = UNSET;
-        if (take & commit) begin
+        if (commits) begin
             lasts_write_bits = SET;
         end
     end
@@ -453,9 +551,14 @@ module carrystep_queue (
         if (committed) begin
             next_newest = fresh_now;
         end
+        next_due = due;
+        if (took) begin
+            next_due = due + ONE;
+        end
         if (clear) begin
             next_live = ZERO;
             next_newest = ZERO;
+            next_due = ZERO;
         end
     end
 
@@ -516,7 +619,7 @@ module carrystep_queue (
         .read_data(control_read_data),
         .write_address(axis),
         .write_bits(control_write_bits),
-        .write_data({13'b0, next_live} | ({13'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({13'b0, next_seen} << AT_8) | ({13'b0, next_lost} << AT_11))
+        .write_data({16'b0, next_live} | ({16'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({16'b0, next_seen} << AT_8) | ({16'b0, next_lost} << AT_11) | ({16'b0, next_due} << AT_16))
     );
 
     carrystep_lasts lasts (
@@ -535,23 +638,44 @@ module carrystep_queue (
             gone <= (unseen != 3'd0) & !runs;
         end
         if (beat[0]) begin
+            took <= 1'b0;
             committed <= 1'b0;
         end
-        if (take & commit) begin
+        if (take) begin
+            took <= 1'b1;
+        end
+        if (commits) begin
             committed <= 1'b1;
         end
     end
 endmodule
 
-// Segments, which are also registers, and what an axis keeps between moves.
-module carrystep_segments (
+// Memory of the segments, also used as registers, and of an axis' state between moves.
+module carrystep_segments #(
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
+) (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [8:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [31:0] read_data,
+    // The address of the word to write.
     input  wire   [8:0] write_address,
+    // The write enable of each bit.
     input  wire  [31:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
     reg [31:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -560,36 +684,36 @@ module carrystep_segments (
 
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
-        words[15] = 32'h80000000;
-        words[39] = 32'h6b2a1a9;
-        words[47] = 32'hfffff294;
-        words[55] = 32'hf94d5e57;
-        words[63] = 32'hd6b;
-        words[79] = 32'h80000000;
-        words[103] = 32'h388ee7ba;
-        words[111] = 32'hfffff543;
-        words[119] = 32'hc7711846;
-        words[127] = 32'habc;
-        words[143] = 32'h80000000;
-        words[167] = 32'h505f93f;
-        words[175] = 32'hfffff5ef;
-        words[183] = 32'hfafa06c1;
-        words[191] = 32'ha10;
-        words[207] = 32'h80000000;
-        words[231] = 32'he68847da;
-        words[239] = 32'hfffffa08;
-        words[247] = 32'h1977b826;
-        words[255] = 32'h5f7;
-        words[271] = 32'h80000000;
-        words[295] = 32'h4054b39f;
-        words[303] = 32'hfffff116;
-        words[311] = 32'hbfab4c61;
-        words[319] = 32'hee9;
-        words[335] = 32'h80000000;
-        words[359] = 32'hc1417e50;
-        words[367] = 32'hfffffd7b;
-        words[375] = 32'h3ebe81b0;
-        words[383] = 32'h284;
+        words[15] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[39] = 32'd0 - STOP_ACCEL_0[31:0];
+        words[47] = ~STOP_ACCEL_0[63:32] + ((STOP_ACCEL_0[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[55] = STOP_ACCEL_0[31:0];
+        words[63] = STOP_ACCEL_0[63:32];
+        words[79] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[103] = 32'd0 - STOP_ACCEL_1[31:0];
+        words[111] = ~STOP_ACCEL_1[63:32] + ((STOP_ACCEL_1[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[119] = STOP_ACCEL_1[31:0];
+        words[127] = STOP_ACCEL_1[63:32];
+        words[143] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[167] = 32'd0 - STOP_ACCEL_2[31:0];
+        words[175] = ~STOP_ACCEL_2[63:32] + ((STOP_ACCEL_2[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[183] = STOP_ACCEL_2[31:0];
+        words[191] = STOP_ACCEL_2[63:32];
+        words[207] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[231] = 32'd0 - STOP_ACCEL_3[31:0];
+        words[239] = ~STOP_ACCEL_3[63:32] + ((STOP_ACCEL_3[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[247] = STOP_ACCEL_3[31:0];
+        words[255] = STOP_ACCEL_3[63:32];
+        words[271] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[295] = 32'd0 - STOP_ACCEL_4[31:0];
+        words[303] = ~STOP_ACCEL_4[63:32] + ((STOP_ACCEL_4[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[311] = STOP_ACCEL_4[31:0];
+        words[319] = STOP_ACCEL_4[63:32];
+        words[335] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[359] = 32'd0 - STOP_ACCEL_5[31:0];
+        words[367] = ~STOP_ACCEL_5[63:32] + ((STOP_ACCEL_5[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[375] = STOP_ACCEL_5[31:0];
+        words[383] = STOP_ACCEL_5[63:32];
     end
 
     always @(posedge clock) begin
@@ -598,25 +722,54 @@ module carrystep_segments (
     end
 endmodule
 
-// Where everything is in the memory of the axes.
-module carrystep_store (
+// The segment memory with its address selection: reads and writes the words of a time slot.
+module carrystep_store #(
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
+) (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The axis of the time slot.
     input  wire   [2:0] axis,
+    // The slot of the running segment of the axis.
     input  wire   [2:0] live,
+    // The slot that the host writes.
     input  wire   [2:0] fresh,
+    // The axis runs in this tick.
     input  wire         running,
+    // The axis runs, and V is in range as far as is known.
     input  wire         sound,
+    // In beat 12: the axis runs and its V is in range.
     input  wire         moves,
+    // The axis ramps down: the stop acceleration replaces A.
     input  wire         slows,
+    // The stop acceleration is added (s), because the ramp began with V < 0. Otherwise it is
+    // subtracted (-s).
     input  wire         upward,
+    // V stays unchanged in this tick.
     input  wire         steady,
+    // P is set to its start value.
     input  wire         wipe,
+    // In beat 9: the word of the host is written.
     input  wire         put,
+    // The number of that word in its segment.
     input  wire   [2:0] put_word,
+    // The axis that the host reads.
     input  wire   [2:0] get_axis,
+    // The item that the host reads; it is the slot of word 7.
     input  wire   [1:0] get_item,
+    // The sum to write.
     input  wire  [31:0] sum,
+    // The word that was read.
     output wire  [31:0] word
 );
     localparam [2:0] TICKS = 3'd0;
@@ -637,9 +790,33 @@ module carrystep_store (
     localparam [2:0] UP_HIGH = 3'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
-    localparam [31:0] START_HIGH = 32'h80000000;
+    localparam [31:0] START_HIGH = START_HALF[0] ? 32'h80000000 : 32'd0;
     localparam [31:0] NO = 32'd0;
     localparam [31:0] ALL = 32'hffffffff;
+
+    generate
+        if (START_HALF > 32'd1) begin : start_half_out_of_range
+            carrystep_error_start_half_out_of_range error ();
+        end
+        if ((STOP_ACCEL_0 < 64'h1) | (STOP_ACCEL_0 > 64'h4000000000000000)) begin : stop_accel_out_of_range_0
+            carrystep_error_stop_accel_out_of_range_0 error ();
+        end
+        if ((STOP_ACCEL_1 < 64'h1) | (STOP_ACCEL_1 > 64'h4000000000000000)) begin : stop_accel_out_of_range_1
+            carrystep_error_stop_accel_out_of_range_1 error ();
+        end
+        if ((STOP_ACCEL_2 < 64'h1) | (STOP_ACCEL_2 > 64'h4000000000000000)) begin : stop_accel_out_of_range_2
+            carrystep_error_stop_accel_out_of_range_2 error ();
+        end
+        if ((STOP_ACCEL_3 < 64'h1) | (STOP_ACCEL_3 > 64'h4000000000000000)) begin : stop_accel_out_of_range_3
+            carrystep_error_stop_accel_out_of_range_3 error ();
+        end
+        if ((STOP_ACCEL_4 < 64'h1) | (STOP_ACCEL_4 > 64'h4000000000000000)) begin : stop_accel_out_of_range_4
+            carrystep_error_stop_accel_out_of_range_4 error ();
+        end
+        if ((STOP_ACCEL_5 < 64'h1) | (STOP_ACCEL_5 > 64'h4000000000000000)) begin : stop_accel_out_of_range_5
+            carrystep_error_stop_accel_out_of_range_5 error ();
+        end
+    endgenerate
 
     reg [2:0] read_axis;
     reg [2:0] read_slot;
@@ -773,7 +950,15 @@ module carrystep_store (
         end
     end
 
-    carrystep_segments segments (
+    carrystep_segments #(
+        .START_HALF(START_HALF),
+        .STOP_ACCEL_0(STOP_ACCEL_0),
+        .STOP_ACCEL_1(STOP_ACCEL_1),
+        .STOP_ACCEL_2(STOP_ACCEL_2),
+        .STOP_ACCEL_3(STOP_ACCEL_3),
+        .STOP_ACCEL_4(STOP_ACCEL_4),
+        .STOP_ACCEL_5(STOP_ACCEL_5)
+    ) segments (
         .clock(clock),
         .read_address(({6'b0, read_axis} << AT_6) | ({6'b0, read_slot} << AT_3) | {6'b0, read_word}),
         .read_data(segments_read_data),
@@ -783,20 +968,43 @@ module carrystep_store (
     );
 endmodule
 
-// The beat: a strobe in the last cycle of each tick, and the phases in between.
-module carrystep_tick (
+// The tick counter: a strobe in the last clock of each tick, and the phases of a tick.
+module carrystep_tick #(
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of each tick.
     output wire         strobe,
+    // Asserted in the first clock of each phase.
     output wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     output wire   [3:0] phase
 );
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd4;
-    localparam [15:0] SUB_BITS = 16'd7;
+    localparam [15:0] LAST_SUB = CLOCKS_PER_TICK[19:4] - 16'd1;
+    localparam [15:0] SUB_BITS = used_bits_16(CLOCKS_PER_TICK[19:4] - 16'd1);
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
     localparam [3:0] LAST_PHASE = 4'd15;
+
+    generate
+        if (((CLOCKS_PER_TICK < 32'd16) | (CLOCKS_PER_TICK > 32'h10000)) | ((CLOCKS_PER_TICK & 32'd15) != 32'd0)) begin : clocks_per_tick_out_of_range
+            carrystep_error_clocks_per_tick_out_of_range error ();
+        end
+    endgenerate
 
     reg [15:0] sub = 16'd1;
     reg [3:0] phases = 4'd0;
@@ -820,16 +1028,35 @@ module carrystep_tick (
     end
 endmodule
 
-// What the pins do in each phase of four ticks.
-module carrystep_rim (
+// Memory of the event wheel: the steps of all axes in each phase of four ticks.
+module carrystep_event_memory #(
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [6:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [15:0] read_data,
+    // The address of the word to write.
     input  wire   [6:0] write_address,
+    // The write enable of each bit.
     input  wire  [15:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [15:0] write_data
 );
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:127];
+    // Words of different lengths are compared.
+    // verilator lint_off WIDTH
+    generate
+        if ((EVENT_MEMORY != "block") && (EVENT_MEMORY != "distributed")) begin : refused
+            carrystep_error_event_memory_out_of_range error ();
+        end
+    endgenerate
+    // verilator lint_on WIDTH
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = EVENT_MEMORY *) reg [15:0] words [0:127];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
 
@@ -847,19 +1074,37 @@ module carrystep_rim (
     end
 endmodule
 
-// Events on their way to the pins.
-module carrystep_wheel (
+// The event wheel: holds the pending steps of all axes, ordered by tick and phase.
+module carrystep_event_wheel #(
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
+    // The clock.
     input  wire         clock,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    // Asserted in the last beat of a time slot. The inputs of the following beats belong to its
+    // axis.
+    input  wire         time_slot_ends,
+    // The axis of the present time slot, one-hot.
+    input  wire   [5:0] axis_one_hot,
+    // The tick of the axis contains a step.
     input  wire         crosses,
+    // The V of the axis is not zero.
     input  wire         has_sign,
+    // From the following beat on: V < 0.
     input  wire         back,
+    // Asserted four beats after `time_slot_ends`: `q` is valid from the next clock on.
     input  wire         phase_known,
+    // The phase of the step, in 1/16 tick.
     input  wire   [3:0] q,
+    // Asserted in the last clock of a tick.
     output wire         strobe,
+    // Asserted in the first clock of a phase, in which `events` are step events.
     output wire         phase_start,
+    // Bit i: axis i has an event.
     output wire   [5:0] events,
+    // Bit i: the event of axis i is backward.
     output wire   [5:0] backward
 );
     localparam [1:0] ONE_TICK = 2'd1;
@@ -884,25 +1129,25 @@ module carrystep_wheel (
     reg [1:0] when = 2'd0;
     reg [6:0] place;
     reg [6:0] later;
-    reg [6:0] rim_write_address;
+    reg [6:0] event_memory_write_address;
     reg [15:0] data;
     reg [15:0] bits;
 
     wire tick_strobe;
     wire tick_phase_start;
     wire [3:0] tick_phase;
-    wire [15:0] rim_read_data;
+    wire [15:0] event_memory_read_data;
 
     wire wipes = turned | started;
     wire writes_sign = !wipes & sign_due;
     wire writes_step = !wipes & !sign_due & step_due & step_known;
     wire [1:0] now = when + ONE_TICK;
-    wire [5:0] whose = (lane >> BY_ONE) | (lane << TO_TOP);
+    wire [5:0] whose = (axis_one_hot >> BY_ONE) | (axis_one_hot << TO_TOP);
 
     assign strobe = turned;
     assign phase_start = started;
-    assign events = rim_read_data[5:0];
-    assign backward = rim_read_data[13:8];
+    assign events = event_memory_read_data[5:0];
+    assign backward = event_memory_read_data[13:8];
 
     always @(*) begin
         place = ({5'b0, ahead} << AT_5) | {3'b0, tick_phase};
@@ -919,9 +1164,9 @@ module carrystep_wheel (
     end
 
     always @(*) begin
-        rim_write_address = later;
+        event_memory_write_address = later;
         if (wipes) begin
-            rim_write_address = read;
+            event_memory_write_address = read;
         end
     end
 
@@ -945,18 +1190,22 @@ module carrystep_wheel (
         end
     end
 
-    carrystep_tick tick (
+    carrystep_tick #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK)
+    ) tick (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
         .phase(tick_phase)
     );
 
-    carrystep_rim rim (
+    carrystep_event_memory #(
+        .EVENT_MEMORY(EVENT_MEMORY)
+    ) event_memory (
         .clock(clock),
         .read_address(place),
-        .read_data(rim_read_data),
-        .write_address(rim_write_address),
+        .read_data(event_memory_read_data),
+        .write_address(event_memory_write_address),
         .write_bits(bits),
         .write_data(data)
     );
@@ -977,7 +1226,7 @@ module carrystep_wheel (
         if (phase_known) begin
             step_known <= 1'b1;
         end
-        if (turn_ends) begin
+        if (time_slot_ends) begin
             sign_due <= has_sign;
             step_due <= crosses;
             step_known <= 1'b0;
@@ -986,15 +1235,22 @@ module carrystep_wheel (
     end
 endmodule
 
-// What is believed of each limit switch.
+// Memory of the debounced state of each limit switch, and its count of deviating samples.
 module carrystep_switches (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [3:0] read_address,
+    // The word at the address of the cycle before.
     output wire   [7:0] read_data,
+    // The address of the word to write.
     input  wire   [3:0] write_address,
+    // The write enable of each bit.
     input  wire   [7:0] write_bits,
+    // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:15];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -1011,27 +1267,49 @@ module carrystep_switches (
     end
 endmodule
 
-// The limit switches, one look in a turn.
-module carrystep_limits (
+// Samples and debounces the limit switches, each in the time slot of its axis.
+module carrystep_limits #(
+    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
+    parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
+    // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
+    parameter [31:0] LIMITS = 32'd1,
+    // Active level of the limit switches: 0 high, 1 low; 0 or 1
+    parameter [31:0] LIMITS_LOW = 32'd0
+) (
+    // The clock.
     input  wire         clock,
-    input  wire         turn_ends,
+    // Asserted in the last beat of a time slot.
+    input  wire         time_slot_ends,
+    // The axis of the slot, as a number.
     input  wire   [2:0] axis,
+    // The axis of the next clock, as a number.
     input  wire   [2:0] axis_next,
-    input  wire   [5:0] lane,
+    // The axis of the slot, one-hot.
+    input  wire   [5:0] axis_one_hot,
+    // The first tick of a round: `limit_min` is sampled.
     input  wire         tick_0,
+    // The second tick of a round: `limit_max` is sampled.
     input  wire         tick_1,
+    // The pins at the low ends. With one switch per axis, the pin of that switch; with one for all
+    // axes, bit 0. Asynchronous.
     input  wire   [5:0] limit_min,
+    // The pins at the high ends; asynchronous.
     input  wire   [5:0] limit_max,
+    // The axis moves in this tick, with V != 0.
     input  wire         goes,
+    // V < 0 in this tick.
     input  wire         back,
+    // A reset: the switch of this tick becomes inactive, as at configuration.
+    input  wire         resetting,
+    // The axis has reached a limit.
     output wire         hit
 );
-    localparam EXIST = 1'b1;
-    localparam PAIR = 1'b1;
-    localparam ONE_FOR_ALL = 1'b0;
-    localparam LOW = 1'b0;
-    localparam [6:0] LAST_LOOK = 7'd16;
-    localparam [5:0] FIRST_LANE = 6'd1;
+    localparam EXIST = LIMITS != 32'd0;
+    localparam PAIR = LIMITS == 32'd1;
+    localparam ONE_FOR_ALL = LIMITS == 32'd3;
+    localparam LOW = LIMITS_LOW[0];
+    localparam [6:0] LAST_SAMPLE = DEBOUNCE_SAMPLES[6:0] - 7'd1;
+    localparam [5:0] FIRST_ONE_HOT = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
     localparam [7:0] ACTIVE = 8'd128;
@@ -1040,6 +1318,18 @@ module carrystep_limits (
     localparam [3:0] SIDE = 4'd1;
     localparam [3:0] NO_SIDE = 4'd0;
     localparam BY_ONE = 1'b1;
+
+    generate
+        if (LIMITS > 32'd3) begin : limits_out_of_range
+            carrystep_error_limits_out_of_range error ();
+        end
+        if (LIMITS_LOW > 32'd1) begin : limits_low_out_of_range
+            carrystep_error_limits_low_out_of_range error ();
+        end
+        if ((DEBOUNCE_SAMPLES < 32'd1) | (DEBOUNCE_SAMPLES > 32'd127)) begin : debounce_samples_out_of_range
+            carrystep_error_debounce_samples_out_of_range error ();
+        end
+    endgenerate
 
     reg sync = 1'b0;
     reg now = 1'b0;
@@ -1053,13 +1343,13 @@ module carrystep_limits (
     wire [7:0] switches_read_data;
 
     wire max = tick_1 & (PAIR != 1'b0);
-    wire looks = turn_ends & (tick_0 | max);
+    wire samples = time_slot_ends & (tick_0 | max);
     wire [7:0] word = switches_read_data;
     wire differs = now ^ word[7];
-    wire flips = differs & (word[6:0] == LAST_LOOK);
-    wire state = word[7] ^ flips;
+    wire flips = differs & (word[6:0] == LAST_SAMPLE);
+    wire state = (word[7] ^ flips) & !resetting;
 
-    assign hit = looks & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
+    assign hit = samples & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
 
     always @(*) begin
         pins = limit_min;
@@ -1069,9 +1359,9 @@ module carrystep_limits (
     end
 
     always @(*) begin
-        chosen = pins & lane;
+        chosen = pins & axis_one_hot;
         if (ONE_FOR_ALL != 1'b0) begin
-            chosen = pins & FIRST_LANE;
+            chosen = pins & FIRST_ONE_HOT;
         end
     end
 
@@ -1084,7 +1374,7 @@ module carrystep_limits (
 
     always @(*) begin
         count = NONE;
-        if (differs & !flips) begin
+        if (differs & !flips & !resetting) begin
             count = word[6:0] + ONE;
         end
     end
@@ -1098,7 +1388,7 @@ module carrystep_limits (
 
     always @(*) begin
         switches_write_bits = NO;
-        if (looks & (EXIST != 1'b0)) begin
+        if (samples & (EXIST != 1'b0)) begin
             switches_write_bits = ALL;
         end
     end
@@ -1118,17 +1408,29 @@ module carrystep_limits (
     end
 endmodule
 
-// 
-module carrystep_homes (
+// Homing: which axes wait for their limit, and which ones have reached it and ramp down.
+module carrystep_homing_control (
+    // The clock.
     input  wire         clock,
+    // The host replaces the mask of the axes that wait for their limit.
     input  wire         set,
+    // The new mask, valid with `set`; bit i is axis i.
     input  wire   [5:0] mask,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    // Asserted in the last beat of a time slot.
+    input  wire         time_slot_ends,
+    // The axis of the time slot, one-hot.
+    input  wire   [5:0] axis_one_hot,
+    // The axis of the slot has reached a limit.
     input  wire         hit,
+    // The axis of the slot runs in the next tick too.
     input  wire         goes_on,
+    // A reset: no axis waits for its limit any more.
+    input  wire         resetting,
+    // The axes that wait for their limit; bit i is axis i.
     output wire   [5:0] axes,
+    // The axis of the slot waits for its limit.
     output wire         waits,
+    // The axis of the slot has reached its limit in an earlier tick and ramps down.
     output wire         slows
 );
     localparam [5:0] NONE = 6'd0;
@@ -1138,10 +1440,10 @@ module carrystep_homes (
     reg [5:0] waiting = 6'd0;
     reg [5:0] slowing = 6'd0;
     reg mine_slows = 1'b0;
-    reg [5:0] lane_next;
+    reg [5:0] axis_one_hot_next;
     reg [5:0] slower;
 
-    wire mine = (waiting & lane) != 6'd0;
+    wire mine = (waiting & axis_one_hot) != 6'd0;
     wire caught = hit & mine;
 
     assign axes = waiting;
@@ -1149,63 +1451,101 @@ module carrystep_homes (
     assign slows = mine_slows;
 
     always @(*) begin
-        lane_next = lane;
-        if (turn_ends) begin
-            lane_next = (lane << BY_ONE) | (lane >> TO_TOP);
+        axis_one_hot_next = axis_one_hot;
+        if (time_slot_ends) begin
+            axis_one_hot_next = (axis_one_hot << BY_ONE) | (axis_one_hot >> TO_TOP);
         end
     end
 
     always @(*) begin
         slower = NONE;
         if (caught) begin
-            slower = lane;
+            slower = axis_one_hot;
         end
     end
 
     always @(posedge clock) begin
-        mine_slows <= (slowing & lane_next) != 6'd0;
+        mine_slows <= (slowing & axis_one_hot_next) != 6'd0;
         if (caught) begin
-            waiting <= waiting & ~lane;
+            waiting <= waiting & ~axis_one_hot;
         end
         if (set) begin
             waiting <= mask;
         end
-        if (turn_ends) begin
+        if (resetting) begin
+            waiting <= NONE;
+        end
+        if (time_slot_ends) begin
             slowing <= slowing | slower;
             if (!goes_on) begin
-                slowing <= (slowing & ~lane) | slower;
+                slowing <= (slowing & ~axis_one_hot) | slower;
             end
         end
     end
 endmodule
 
-// Who stops the axes, and how far the stop has come.
-module carrystep_stops (
+// Latches the first cause of a stop, and controls the stop until the host clears it.
+module carrystep_stops #(
+    // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    parameter [31:0] LIMIT_FREEZES = 32'd0
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    // Asserted in the last beat of a time slot. The inputs about the slot's axis are valid in this
+    // clock.
+    input  wire         time_slot_ends,
+    // The axis of the slot, one-hot.
+    input  wire   [5:0] axis_one_hot,
+    // The axis of the slot runs in this tick.
     input  wire         runs,
+    // The V of the axis is out of range.
     input  wire         too_fast,
+    // The axis has reached a limit.
     input  wire         limit,
+    // The axis needs a segment, and its queue is empty.
     input  wire         dry,
+    // The axes at which a second step arrives while one is held back.
     input  wire   [5:0] late,
+    // The e-stop is active.
     input  wire         pressed,
+    // The host breaks the segment protocol.
     input  wire         breaks,
+    // The watchdog has timed out.
     input  wire         missed,
+    // The host requests a controlled stop.
     input  wire         asked,
+    // The host requests that the stop is cleared.
     input  wire         clear,
+    // A step is held back, or a STEP pin is high.
     input  wire         pins_busy,
+    // A reset is under way: all axes freeze, and `clear` has no effect.
+    input  wire         ending,
+    // The second tick of a reset, which clears the state of all axes.
+    input  wire         stage_2,
+    // Asserted in the last clock of a reset: the stop ends.
+    input  wire         completes,
+    // A stop has been called and has not been cleared.
     output wire         fault,
+    // A time slot of this tick has found a cause.
     output wire         finds,
+    // The stop is a freeze: no new pulse starts.
     output wire         frozen,
+    // All axes ramp down.
     output wire         ramp,
+    // No axis moves any more.
     output wire         halted,
+    // A stop has been complete for a whole tick, and `clear` is not clearing it.
+    output wire         settles,
+    // This tick clears the state of all axes.
     output wire         clearing,
+    // The first cause.
     output wire   [2:0] cause,
+    // The axes that caused the stop; bit i is axis i.
     output wire   [5:0] culprits
 );
-    localparam LIMIT_FREEZES = 1'b0;
+    localparam LIMITS_FREEZE = LIMIT_FREEZES[0];
     localparam [2:0] E_STOP = 3'd0;
     localparam [2:0] OVERRUN = 3'd1;
     localparam [2:0] PROTOCOL = 3'd2;
@@ -1214,6 +1554,12 @@ module carrystep_stops (
     localparam [2:0] LIMITED = 3'd5;
     localparam [2:0] UNDERRUN = 3'd6;
     localparam [2:0] HOST = 3'd7;
+
+    generate
+        if (LIMIT_FREEZES > 32'd1) begin : limit_freezes_out_of_range
+            carrystep_error_limit_freezes_out_of_range error ();
+        end
+    endgenerate
 
     reg called = 1'b0;
     reg freeze = 1'b0;
@@ -1228,10 +1574,10 @@ module carrystep_stops (
     reg found_freezing = 1'b0;
     reg ran = 1'b0;
 
-    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire finds_now = time_slot_ends & (too_fast | limit | dry);
     wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
     wire ripe = strobe & found;
-    wire by_host = (strobe & missed) | asked;
+    wire by_host = (strobe & missed) | asked | ending;
     wire calls = urgent | ripe | by_host;
 
     assign fault = called;
@@ -1239,7 +1585,8 @@ module carrystep_stops (
     assign frozen = freeze;
     assign ramp = slow;
     assign halted = still;
-    assign clearing = wiping;
+    assign settles = settled & !wiping;
+    assign clearing = wiping | stage_2;
     assign cause = first;
     assign culprits = axes;
 
@@ -1256,17 +1603,17 @@ module carrystep_stops (
                 kind <= OVERSPEED;
             end
         end
-        if (turn_ends & (too_fast | (limit & (LIMIT_FREEZES != 1'b0)))) begin
+        if (time_slot_ends & (too_fast | (limit & (LIMITS_FREEZE != 1'b0)))) begin
             found_freezing <= 1'b1;
         end
-        if (turn_ends & runs) begin
+        if (time_slot_ends & runs) begin
             ran <= 1'b1;
         end
         if (!called) begin
             if (urgent | (by_host & !ripe)) begin
                 axes <= late;
             end else if (finds_now & !found) begin
-                axes <= lane;
+                axes <= axis_one_hot;
             end
         end
         if (calls & !called) begin
@@ -1290,7 +1637,7 @@ module carrystep_stops (
         if (calls) begin
             called <= 1'b1;
         end
-        if (urgent | (strobe & found_freezing)) begin
+        if (urgent | (strobe & found_freezing) | ending) begin
             freeze <= 1'b1;
         end
         if (strobe) begin
@@ -1300,8 +1647,8 @@ module carrystep_stops (
             slow <= called | found;
             still <= freeze | found_freezing | (slow & !ran);
             settled <= still;
-            wiping <= clear & settled & !wiping & !pins_busy & !pressed;
-            if (wiping) begin
+            wiping <= clear & settled & !wiping & !pins_busy & !pressed & !ending;
+            if (wiping | completes) begin
                 called <= 1'b0;
                 freeze <= 1'b0;
                 slow <= 1'b0;
@@ -1312,31 +1659,136 @@ module carrystep_stops (
     end
 endmodule
 
-// The e-stop, the host's signs of life, the drivers' power.
-module carrystep_watch (
+// The reset: freezes the engine, waits for rest, and restores the state at configuration.
+module carrystep_resets (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // The host requests a reset.
+    input  wire         reset,
+    // A stop has been complete for a whole tick, and no clear of it is under way.
+    input  wire         settled,
+    // A step is held back, or a STEP pin is high.
+    input  wire         pins_busy,
+    // A reset is under way: all axes freeze.
+    output wire         ending,
+    // The first of the two ticks in which the state is reset.
+    output wire         stage_1,
+    // The second of them. It is repeated while `reset` is asserted.
+    output wire         stage_2,
+    // One of the two ticks.
+    output wire         resetting,
+    // Asserted in the last clock of a reset.
+    output wire         completes,
+    // The counter of ticks in a round restarts.
+    output wire         restarts_round
+);
+
+    reg asked = 1'b0;
+    reg first = 1'b0;
+    reg second = 1'b0;
+
+    wire over = strobe & second & !reset;
+
+    assign ending = asked;
+    assign stage_1 = first;
+    assign stage_2 = second;
+    assign resetting = first | second;
+    assign completes = over;
+    assign restarts_round = asked & !first & (!second | strobe);
+
+    always @(posedge clock) begin
+        if (over) begin
+            asked <= 1'b0;
+        end
+        if (reset) begin
+            asked <= 1'b1;
+        end
+        if (strobe) begin
+            first <= asked & settled & !pins_busy & !first & !second;
+            second <= first | (second & reset);
+        end
+    end
+endmodule
+
+// Monitors the e-stop and the host (watchdog), and times the power of the drivers.
+module carrystep_supervisor #(
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
+    // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
+    parameter [31:0] ENABLE_ROUNDS = 32'd33,
+    // Active level of the e-stop: 0 high, 1 low; 0 or 1
+    parameter [31:0] ESTOP_LOW = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The e-stop pin; asynchronous.
     input  wire         estop,
+    // A sign of life of the host: the watchdog restarts.
     input  wire         kick,
+    // The host requests power for the motor drivers.
     input  wire         enable,
+    // All axes are at rest and no start is armed.
     input  wire         idle,
+    // A reset is under way: the watchdog and the warm-up restart.
+    input  wire         ending,
+    // The last two ticks of a reset: the drivers get no power.
+    input  wire         resetting,
+    // A reset: the round restarts.
+    input  wire         restarts_round,
+    // At a strobe: the e-stop was active in the whole tick.
     output wire         pressed,
+    // The watchdog has timed out: no `kick` for the specified number of rounds.
     output wire         missed,
+    // The drivers are to be powered.
     output wire         enabled,
+    // The drivers have been powered for the specified number of rounds.
     output wire         warm,
+    // The first tick of a round.
     output wire         tick_0,
+    // The second tick of a round.
     output wire         tick_1
 );
-    localparam ESTOP_LOW = 1'b0;
-    localparam [9:0] ROUND_BITS = 10'd31;
-    localparam [11:0] WATCHDOG = 12'd3126;
-    localparam [11:0] SILENCE_BITS = 12'd4095;
-    localparam [11:0] WARM_AT = 12'd33;
-    localparam [11:0] WARM_BITS = 12'd63;
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [11:0] used_bits_12(input [11:0] greatest);
+        begin
+            used_bits_12 = greatest;
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 1);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 2);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 4);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 8);
+        end
+    endfunction
+    localparam PRESSED_LOW = ESTOP_LOW[0];
+    localparam [9:0] ROUND_BITS = ROUND_TICKS[9:0] - 10'd1;
+    localparam [11:0] WATCHDOG = WATCHDOG_ROUNDS[11:0];
+    localparam [11:0] SILENCE_BITS = used_bits_12(WATCHDOG_ROUNDS[11:0]);
+    localparam [11:0] WARM_AT = ENABLE_ROUNDS[11:0];
+    localparam [11:0] WARM_BITS = used_bits_12(ENABLE_ROUNDS[11:0]);
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
     localparam [11:0] NO_ROUND = 12'd0;
     localparam [11:0] ONE_ROUND = 12'd1;
+
+    generate
+        if (((ROUND_TICKS < 32'd2) | (ROUND_TICKS > 32'd1024)) | ((ROUND_TICKS & (ROUND_TICKS - 32'd1)) != 32'd0)) begin : round_ticks_out_of_range
+            carrystep_error_round_ticks_out_of_range error ();
+        end
+        if (WATCHDOG_ROUNDS > 32'd4095) begin : watchdog_rounds_out_of_range
+            carrystep_error_watchdog_rounds_out_of_range error ();
+        end
+        if (ENABLE_ROUNDS > 32'd4095) begin : enable_rounds_out_of_range
+            carrystep_error_enable_rounds_out_of_range error ();
+        end
+        if (ESTOP_LOW > 32'd1) begin : estop_low_out_of_range
+            carrystep_error_estop_low_out_of_range error ();
+        end
+    endgenerate
 
     reg sync = 1'b0;
     reg now = 1'b0;
@@ -1358,57 +1810,120 @@ module carrystep_watch (
     assign tick_1 = round == ONE_TICK;
 
     always @(posedge clock) begin
-        sync <= estop ^ (ESTOP_LOW != 1'b0);
+        sync <= estop ^ (PRESSED_LOW != 1'b0);
         now <= sync;
         held <= now & (held | strobe);
         if (strobe) begin
             round <= (round + ONE_TICK) & ROUND_BITS;
         end
+        if (restarts_round) begin
+            round <= FIRST_TICK;
+        end
         if (round_over & !silent) begin
             silence <= (silence + ONE_ROUND) & SILENCE_BITS;
         end
-        if (kick) begin
+        if (kick | ending) begin
             silence <= NO_ROUND;
         end
-        power <= enable | (power & !idle);
+        power <= (enable | (power & !idle)) & !resetting;
         if (round_over & !is_warm) begin
             warmth <= (warmth + ONE_ROUND) & WARM_BITS;
         end
-        if (!power) begin
+        if (!power | ending) begin
             warmth <= NO_ROUND;
         end
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w8_s8_d2_h2 (
+// Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
+module carrystep_pulser #(
+    // The minimum time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH = 32'd8,
+    // The minimum time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW = 32'd8,
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP = 32'd2,
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD = 32'd2
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted in a freezing stop. No new pulse starts and DIR does not change.
     input  wire         frozen,
+    // A step is due in this clock.
     input  wire         request,
+    // The requested step is backward.
     input  wire         request_back,
+    // Asserted only at a strobe, if V != 0 in the tick before the one that ends: with the strobe
+    // that ends tick n + 1 the V of tick n, whose step is made in tick n + 2. The register `want`
+    // keeps the direction.
     input  wire         has_sign,
+    // V < 0 in that tick; valid with `has_sign`.
     input  wire         sign_back,
+    // The STEP pin.
     output wire         step,
+    // The DIR pin; 1 is backward.
     output wire         dir,
-    output wire         owed,
+    // A step is held back.
+    output wire         held_back,
+    // Bits 2 to 0: steps forward less steps backward, modulo 8. Bits 5 to 3: discarded steps,
+    // modulo 8.
     output wire   [5:0] counts,
+    // A second step arrives while one is held back that does not rise in this clock. The stop takes
+    // effect in the next clock.
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd7;
-    localparam [16:0] GAP_OVER = 17'd14;
-    localparam [16:0] HOLD_OVER = 17'd0;
-    localparam [16:0] SINCE_BITS = 17'd15;
-    localparam [15:0] SETUP_OVER = 16'd0;
-    localparam [15:0] AFTER_BITS = 16'd0;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [16:0] used_bits_17(input [16:0] greatest);
+        begin
+            used_bits_17 = greatest;
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 1);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 2);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 4);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 8);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
+        end
+    endfunction
+    localparam [16:0] STEP_HIGH_OVER = STEP_HIGH[16:0] - 17'd1;
+    localparam [16:0] STEP_LOW_OVER = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2;
+    localparam [16:0] HOLD_OVER = (DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0;
+    localparam [16:0] SINCE_BITS = used_bits_17((((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) > (STEP_HIGH[16:0] - 17'd1)) ? ((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) : (STEP_HIGH[16:0] - 17'd1));
+    localparam [15:0] SETUP_OVER = (DIR_SETUP == 32'd1) ? 16'd0 : (DIR_SETUP[15:0] - 16'd2);
+    localparam [15:0] AFTER_BITS = used_bits_16((DIR_SETUP == 32'd1) ? 16'd0 : (DIR_SETUP[15:0] - 16'd2));
+    localparam HOLDS = DIR_HOLD > 32'd1;
+    localparam INSTANT = DIR_SETUP == 32'd1;
     localparam [16:0] SINCE_RISE = 17'd0;
     localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_DIR_CHANGE = 16'd0;
     localparam [15:0] AFTER_ONE = 16'd1;
     localparam [3:0] AT_3 = 4'd3;
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] MINUS_ONE = 3'd7;
+
+    generate
+        if ((STEP_HIGH < 32'd1) | (STEP_HIGH > 32'h10000)) begin : step_high_out_of_range
+            carrystep_error_step_high_out_of_range error ();
+        end
+        if ((STEP_LOW < 32'd1) | (STEP_LOW > 32'h10000)) begin : step_low_out_of_range
+            carrystep_error_step_low_out_of_range error ();
+        end
+        if ((DIR_SETUP < 32'd1) | (DIR_SETUP > 32'h10000)) begin : dir_setup_out_of_range
+            carrystep_error_dir_setup_out_of_range error ();
+        end
+        if ((DIR_HOLD < 32'd1) | (DIR_HOLD > 32'h10000)) begin : dir_hold_out_of_range
+            carrystep_error_dir_hold_out_of_range error ();
+        end
+    endgenerate
 
     reg step_pin = 1'b0;
     reg dir_pin = 1'b0;
@@ -1428,13 +1943,13 @@ module carrystep_pulser_w8_s8_d2_h2 (
 
     wire pending = due | request;
     wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
+    wire dir_changes = !frozen & !held & (dir_pin != aim);
     wire second = due & request;
     wire late_now = second & !rise & !frozen;
 
     assign step = step_pin;
     assign dir = dir_pin;
-    assign owed = due;
+    assign held_back = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
 
@@ -1463,10 +1978,10 @@ module carrystep_pulser_w8_s8_d2_h2 (
         if (has_sign) begin
             want <= sign_back;
         end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
+        step_pin <= rise | (step_pin & (since != STEP_HIGH_OVER));
+        dir_pin <= dir_pin ^ dir_changes;
         since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
+        busy <= busy & (since != STEP_LOW_OVER);
         held <= held & (since != HOLD_OVER);
         if (rise) begin
             since <= SINCE_RISE;
@@ -1475,8 +1990,8 @@ module carrystep_pulser_w8_s8_d2_h2 (
         end
         after <= (after + AFTER_ONE) & AFTER_BITS;
         settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
+        if (dir_changes) begin
+            after <= AFTER_DIR_CHANGE;
             settled <= 1'b0;
         end
         if (rise) begin
@@ -1492,494 +2007,164 @@ module carrystep_pulser_w8_s8_d2_h2 (
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w80_s80_d16_h16 (
+// The engine: all axes on one adder, with their queues, starts, stops and pins.
+module carrystep_engine #(
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // The minimum time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH_0 = 32'd8,
+    parameter [31:0] STEP_HIGH_1 = 32'd80,
+    parameter [31:0] STEP_HIGH_2 = 32'd152,
+    parameter [31:0] STEP_HIGH_3 = 32'd200,
+    parameter [31:0] STEP_HIGH_4 = 32'd8,
+    parameter [31:0] STEP_HIGH_5 = 32'd240,
+    // The minimum time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW_0 = 32'd8,
+    parameter [31:0] STEP_LOW_1 = 32'd80,
+    parameter [31:0] STEP_LOW_2 = 32'd152,
+    parameter [31:0] STEP_LOW_3 = 32'd200,
+    parameter [31:0] STEP_LOW_4 = 32'd8,
+    parameter [31:0] STEP_LOW_5 = 32'd240,
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP_0 = 32'd2,
+    parameter [31:0] DIR_SETUP_1 = 32'd16,
+    parameter [31:0] DIR_SETUP_2 = 32'd52,
+    parameter [31:0] DIR_SETUP_3 = 32'd400,
+    parameter [31:0] DIR_SETUP_4 = 32'd2,
+    parameter [31:0] DIR_SETUP_5 = 32'd120,
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD_0 = 32'd2,
+    parameter [31:0] DIR_HOLD_1 = 32'd16,
+    parameter [31:0] DIR_HOLD_2 = 32'd52,
+    parameter [31:0] DIR_HOLD_3 = 32'd400,
+    parameter [31:0] DIR_HOLD_4 = 32'd2,
+    parameter [31:0] DIR_HOLD_5 = 32'd120,
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0,
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
+    // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
+    parameter [31:0] ENABLE_ROUNDS = 32'd33,
+    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
+    parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
+    // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
+    parameter [31:0] LIMITS = 32'd1,
+    // Active level of the limit switches: 0 high, 1 low; 0 or 1
+    parameter [31:0] LIMITS_LOW = 32'd0,
+    // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    parameter [31:0] LIMIT_FREEZES = 32'd0,
+    // Active level of the e-stop: 0 high, 1 low; 0 or 1
+    parameter [31:0] ESTOP_LOW = 32'd0,
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
+    // The clock.
     input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd79;
-    localparam [16:0] GAP_OVER = 17'd158;
-    localparam [16:0] HOLD_OVER = 17'd14;
-    localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd14;
-    localparam [15:0] AFTER_BITS = 16'd15;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w152_s152_d52_h52 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd151;
-    localparam [16:0] GAP_OVER = 17'd302;
-    localparam [16:0] HOLD_OVER = 17'd50;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd50;
-    localparam [15:0] AFTER_BITS = 16'd63;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w200_s200_d400_h400 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd199;
-    localparam [16:0] GAP_OVER = 17'd398;
-    localparam [16:0] HOLD_OVER = 17'd398;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd398;
-    localparam [15:0] AFTER_BITS = 16'd511;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w240_s240_d120_h120 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd239;
-    localparam [16:0] GAP_OVER = 17'd478;
-    localparam [16:0] HOLD_OVER = 17'd118;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd118;
-    localparam [15:0] AFTER_BITS = 16'd127;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// Axes on one adder, their queues, starts, and the guard.
-module carrystep_engine (
-    input  wire         clock,
+    // The host offers a word of a segment and holds it until the engine accepts it, which takes up
+    // to a tick while the queue has space.
     input  wire         put_valid,
+    // The axis of the offered word, as a number from 0. Also the axis whose free queue space `room`
+    // reports.
     input  wire   [2:0] put_axis,
+    // The number of the word. The words of a segment come in order: 0 is its duration in ticks less
+    // 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
+    // segment.
     input  wire   [2:0] put_word,
+    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     input  wire  [31:0] put_data,
+    // The engine accepts an offered word in this clock.
     output wire         put_ready,
+    // The host offers a start and holds it until the engine accepts it, which it does in the last
+    // clock of a tick.
     input  wire         start_valid,
+    // The axes to start; bit i is axis i.
     input  wire   [5:0] start_mask,
+    // The engine accepts an offered start in this clock.
     output wire         start_ready,
+    // Clears a stop. The host holds it until `fault` falls.
     input  wire         clear,
+    // Stops the engine and returns it to its state at configuration; the positions stay. It is
+    // synchronous, unlike the pins, and begins in any clock. A host that does not need it ties it
+    // to 0.
+    input  wire         reset,
+    // The host requests a controlled stop by a ramp; asserted for one clock or longer.
     input  wire         stop,
+    // The host has broken the segment protocol; asserted for one clock or longer. The engine
+    // freezes all axes.
     input  wire         broken,
+    // The host replaces the mask of the axes that wait for their limit.
     input  wire         home_valid,
+    // The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
+    // axis i.
     input  wire   [5:0] home_mask,
+    // A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     input  wire         kick,
+    // The host requests power for the motor drivers, as long as it is asserted.
     input  wire         enable,
+    // The e-stop pin; asynchronous. The parameter `ESTOP_LOW` gives its active level. It stops the
+    // axes if it is active for a whole tick.
     input  wire         estop,
+    // The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS` tells
+    // how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
     input  wire   [5:0] limit_min,
+    // The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
+    // only if `LIMITS` is 1.
     input  wire   [5:0] limit_max,
+    // The axis that the host reads.
     input  wire   [2:0] get_axis,
+    // The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
+    // complement; 3 the number of discarded steps.
     input  wire   [1:0] get_item,
+    // The item that the engine returns.
     output wire  [31:0] get_data,
+    // `get_data` is the item requested in the clock before.
     output wire         get_valid,
+    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     output wire         latch,
+    // The axis of the present time slot.
     output wire   [2:0] latch_axis,
+    // The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
     output wire   [2:0] room,
+    // `room` is valid in this clock, once in the time slot of that axis.
     output wire         room_valid,
+    // The STEP pins; bit i is axis i. A rising edge is a step.
     output wire   [5:0] step,
+    // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The motor drivers are to be powered.
     output wire         enabled,
+    // All axes are at rest and no start is armed.
     output wire         idle,
+    // A stop has been called and has not been cleared.
     output wire         fault,
+    // The stop is complete: no axis moves any more.
     output wire         halted,
+    // The engine is returning to its state at configuration, after `reset`.
+    output wire         resetting,
+    // The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog, 4
+    // overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
+    // asserted.
     output wire   [2:0] cause,
+    // The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
+    // asserted.
     output wire   [5:0] culprits,
+    // A start is armed.
     output wire         armed,
+    // The host requests power for the drivers and they have been powered for long enough, so that a
+    // start can be accepted.
     output wire         ready,
+    // The axes that wait for their limit; bit i is axis i.
     output wire   [5:0] homing,
+    // Axes start at the end of this clock; asserted for one clock per start.
     output wire         started
 );
     localparam [5:0] NONE = 6'd0;
@@ -1994,6 +2179,12 @@ module carrystep_engine (
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
+
+    generate
+        if (CLOCKS_PER_TICK < 32'd79) begin : clocks_per_tick_too_few_for_the_axes
+            carrystep_error_clocks_per_tick_too_few_for_the_axes error ();
+        end
+    endgenerate
 
     reg waits = 1'b0;
     reg [5:0] mask = 6'd0;
@@ -2021,10 +2212,10 @@ module carrystep_engine (
     reg [5:0] counted_5;
     reg [5:0] late_bit_5;
 
-    wire [16:0] turn_beat;
-    wire [2:0] turn_axis;
-    wire [2:0] turn_axis_next;
-    wire [5:0] turn_lane;
+    wire [16:0] time_slot_beat;
+    wire [2:0] time_slot_axis;
+    wire [2:0] time_slot_axis_next;
+    wire [5:0] time_slot_axis_one_hot;
     wire [31:0] adder_sum;
     wire adder_ended;
     wire adder_overflow;
@@ -2036,6 +2227,7 @@ module carrystep_engine (
     wire [3:0] adder_q;
     wire [2:0] queue_live;
     wire [2:0] queue_fresh;
+    wire queue_misplaced;
     wire queue_full;
     wire [2:0] queue_room;
     wire queue_empty;
@@ -2052,65 +2244,71 @@ module carrystep_engine (
     wire queue_down;
     wire queue_lost;
     wire [31:0] store_word;
-    wire wheel_strobe;
-    wire wheel_phase_start;
-    wire [5:0] wheel_events;
-    wire [5:0] wheel_backward;
+    wire event_wheel_strobe;
+    wire event_wheel_phase_start;
+    wire [5:0] event_wheel_events;
+    wire [5:0] event_wheel_backward;
     wire limits_hit;
-    wire [5:0] homes_axes;
-    wire homes_waits;
-    wire homes_slows;
+    wire [5:0] homing_control_axes;
+    wire homing_control_waits;
+    wire homing_control_slows;
     wire stops_fault;
     wire stops_finds;
     wire stops_frozen;
     wire stops_ramp;
     wire stops_halted;
+    wire stops_settles;
     wire stops_clearing;
     wire [2:0] stops_cause;
     wire [5:0] stops_culprits;
-    wire watch_pressed;
-    wire watch_missed;
-    wire watch_enabled;
-    wire watch_warm;
-    wire watch_tick_0;
-    wire watch_tick_1;
+    wire resets_ending;
+    wire resets_stage_2;
+    wire resets_resetting;
+    wire resets_completes;
+    wire resets_restarts_round;
+    wire supervisor_pressed;
+    wire supervisor_missed;
+    wire supervisor_enabled;
+    wire supervisor_warm;
+    wire supervisor_tick_0;
+    wire supervisor_tick_1;
     wire pulser_0_step;
     wire pulser_0_dir;
-    wire pulser_0_owed;
+    wire pulser_0_held_back;
     wire [5:0] pulser_0_counts;
     wire pulser_0_overruns;
     wire pulser_1_step;
     wire pulser_1_dir;
-    wire pulser_1_owed;
+    wire pulser_1_held_back;
     wire [5:0] pulser_1_counts;
     wire pulser_1_overruns;
     wire pulser_2_step;
     wire pulser_2_dir;
-    wire pulser_2_owed;
+    wire pulser_2_held_back;
     wire [5:0] pulser_2_counts;
     wire pulser_2_overruns;
     wire pulser_3_step;
     wire pulser_3_dir;
-    wire pulser_3_owed;
+    wire pulser_3_held_back;
     wire [5:0] pulser_3_counts;
     wire pulser_3_overruns;
     wire pulser_4_step;
     wire pulser_4_dir;
-    wire pulser_4_owed;
+    wire pulser_4_held_back;
     wire [5:0] pulser_4_counts;
     wire pulser_4_overruns;
     wire pulser_5_step;
     wire pulser_5_dir;
-    wire pulser_5_owed;
+    wire pulser_5_held_back;
     wire [5:0] pulser_5_counts;
     wire pulser_5_overruns;
 
-    wire strobe = wheel_strobe;
+    wire strobe = event_wheel_strobe;
     wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
-    wire listens = turn_beat[7] & (turn_axis == put_axis);
+    wire listens = time_slot_beat[7] & (time_slot_axis == put_axis);
     wire take = put_valid & put_ready & !nobody;
-    wire may_start = enable & watch_warm;
+    wire may_start = enable & supervisor_warm;
     wire free = !stops_fault & !stops_finds;
     wire decides = strobe & waits & free;
     wire go = decides & !unfed & !held;
@@ -2119,9 +2317,9 @@ module carrystep_engine (
     assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
     assign get_data = store_word;
-    assign get_valid = turn_beat[11];
-    assign latch = turn_beat[6] & homes_waits;
-    assign latch_axis = turn_axis;
+    assign get_valid = time_slot_beat[11];
+    assign latch = time_slot_beat[6] & homing_control_waits;
+    assign latch_axis = time_slot_axis;
     assign room = queue_room;
     assign room_valid = listens;
     assign step[0] = pulser_0_step;
@@ -2136,15 +2334,16 @@ module carrystep_engine (
     assign dir[3] = pulser_3_dir;
     assign dir[4] = pulser_4_dir;
     assign dir[5] = pulser_5_dir;
-    assign enabled = watch_enabled;
+    assign enabled = supervisor_enabled;
     assign idle = rests;
     assign fault = stops_fault;
     assign halted = stops_halted;
+    assign resetting = resets_resetting;
     assign cause = stops_cause;
     assign culprits = stops_culprits;
     assign armed = waits;
     assign ready = may_start;
-    assign homing = homes_axes;
+    assign homing = homing_control_axes;
     assign started = go;
 
     always @(*) begin
@@ -2159,12 +2358,12 @@ module carrystep_engine (
 
     always @(*) begin
         pins_busy = 1'b0;
-        pins_busy = pins_busy | pulser_0_owed | pulser_0_step;
-        pins_busy = pins_busy | pulser_1_owed | pulser_1_step;
-        pins_busy = pins_busy | pulser_2_owed | pulser_2_step;
-        pins_busy = pins_busy | pulser_3_owed | pulser_3_step;
-        pins_busy = pins_busy | pulser_4_owed | pulser_4_step;
-        pins_busy = pins_busy | pulser_5_owed | pulser_5_step;
+        pins_busy = pins_busy | pulser_0_held_back | pulser_0_step;
+        pins_busy = pins_busy | pulser_1_held_back | pulser_1_step;
+        pins_busy = pins_busy | pulser_2_held_back | pulser_2_step;
+        pins_busy = pins_busy | pulser_3_held_back | pulser_3_step;
+        pins_busy = pins_busy | pulser_4_held_back | pulser_4_step;
+        pins_busy = pins_busy | pulser_5_held_back | pulser_5_step;
     end
 
     always @(*) begin
@@ -2179,7 +2378,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_0 = NONE;
-        if (turn_lane[0]) begin
+        if (time_slot_axis_one_hot[0]) begin
             counted_0 = pulser_0_counts;
         end
     end
@@ -2193,7 +2392,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_1 = NONE;
-        if (turn_lane[1]) begin
+        if (time_slot_axis_one_hot[1]) begin
             counted_1 = pulser_1_counts;
         end
     end
@@ -2207,7 +2406,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_2 = NONE;
-        if (turn_lane[2]) begin
+        if (time_slot_axis_one_hot[2]) begin
             counted_2 = pulser_2_counts;
         end
     end
@@ -2221,7 +2420,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_3 = NONE;
-        if (turn_lane[3]) begin
+        if (time_slot_axis_one_hot[3]) begin
             counted_3 = pulser_3_counts;
         end
     end
@@ -2235,7 +2434,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_4 = NONE;
-        if (turn_lane[4]) begin
+        if (time_slot_axis_one_hot[4]) begin
             counted_4 = pulser_4_counts;
         end
     end
@@ -2249,7 +2448,7 @@ module carrystep_engine (
 
     always @(*) begin
         counted_5 = NONE;
-        if (turn_lane[5]) begin
+        if (time_slot_axis_one_hot[5]) begin
             counted_5 = pulser_5_counts;
         end
     end
@@ -2261,18 +2460,18 @@ module carrystep_engine (
         end
     end
 
-    carrystep_turn turn (
+    carrystep_time_slot time_slot (
         .clock(clock),
         .strobe(strobe),
-        .beat(turn_beat),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
-        .lane(turn_lane)
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
+        .axis_one_hot(time_slot_axis_one_hot)
     );
 
     carrystep_adder adder (
         .clock(clock),
-        .beat(turn_beat),
+        .beat(time_slot_beat),
         .word(store_word),
         .put(put_data),
         .counts(queue_running),
@@ -2280,6 +2479,7 @@ module carrystep_engine (
         .up(queue_up),
         .down(queue_down),
         .wipe(stops_clearing),
+        .forgets(resets_stage_2),
         .sum(adder_sum),
         .ended(adder_ended),
         .overflow(adder_overflow),
@@ -2293,16 +2493,16 @@ module carrystep_engine (
 
     carrystep_queue queue (
         .clock(clock),
-        .beat(turn_beat),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
         .starts(going & masked),
         .halted(stops_halted),
-        .ramp(stops_ramp | homes_slows),
+        .ramp(stops_ramp | homing_control_slows),
         .clear(stops_clearing),
-        .empties(homes_slows & !queue_goes_on),
+        .empties(homing_control_slows & !queue_goes_on),
         .take(take),
-        .commit(put_word == COMMIT),
+        .put_word(put_word),
         .last(put_data[0]),
         .ended(adder_ended),
         .overflow(adder_overflow),
@@ -2313,6 +2513,7 @@ module carrystep_engine (
         .losses(counts[5:3]),
         .live(queue_live),
         .fresh(queue_fresh),
+        .misplaced(queue_misplaced),
         .full(queue_full),
         .room(queue_room),
         .empty(queue_empty),
@@ -2330,10 +2531,18 @@ module carrystep_engine (
         .lost(queue_lost)
     );
 
-    carrystep_store store (
+    carrystep_store #(
+        .START_HALF(START_HALF),
+        .STOP_ACCEL_0(STOP_ACCEL_0),
+        .STOP_ACCEL_1(STOP_ACCEL_1),
+        .STOP_ACCEL_2(STOP_ACCEL_2),
+        .STOP_ACCEL_3(STOP_ACCEL_3),
+        .STOP_ACCEL_4(STOP_ACCEL_4),
+        .STOP_ACCEL_5(STOP_ACCEL_5)
+    ) store (
         .clock(clock),
-        .beat(turn_beat),
-        .axis(turn_axis),
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
         .live(queue_live),
         .fresh(queue_fresh),
         .running(queue_running),
@@ -2351,186 +2560,253 @@ module carrystep_engine (
         .word(store_word)
     );
 
-    carrystep_wheel wheel (
+    carrystep_event_wheel #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK),
+        .EVENT_MEMORY(EVENT_MEMORY)
+    ) event_wheel (
         .clock(clock),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .crosses(queue_moves & adder_crosses),
         .has_sign(queue_moves & !adder_still),
         .back(adder_back),
-        .phase_known(turn_beat[16]),
+        .phase_known(time_slot_beat[16]),
         .q(adder_q),
-        .strobe(wheel_strobe),
-        .phase_start(wheel_phase_start),
-        .events(wheel_events),
-        .backward(wheel_backward)
+        .strobe(event_wheel_strobe),
+        .phase_start(event_wheel_phase_start),
+        .events(event_wheel_events),
+        .backward(event_wheel_backward)
     );
 
-    carrystep_limits limits (
+    carrystep_limits #(
+        .DEBOUNCE_SAMPLES(DEBOUNCE_SAMPLES),
+        .LIMITS(LIMITS),
+        .LIMITS_LOW(LIMITS_LOW)
+    ) limits (
         .clock(clock),
-        .turn_ends(turn_beat[12]),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
-        .lane(turn_lane),
-        .tick_0(watch_tick_0),
-        .tick_1(watch_tick_1),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
+        .axis_one_hot(time_slot_axis_one_hot),
+        .tick_0(supervisor_tick_0),
+        .tick_1(supervisor_tick_1),
         .limit_min(limit_min),
         .limit_max(limit_max),
         .goes(queue_moves & !adder_still),
         .back(adder_back),
+        .resetting(resets_resetting),
         .hit(limits_hit)
     );
 
-    carrystep_homes homes (
+    carrystep_homing_control homing_control (
         .clock(clock),
         .set(home_valid),
         .mask(home_mask),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .hit(limits_hit),
         .goes_on(queue_goes_on),
-        .axes(homes_axes),
-        .waits(homes_waits),
-        .slows(homes_slows)
+        .resetting(resets_resetting),
+        .axes(homing_control_axes),
+        .waits(homing_control_waits),
+        .slows(homing_control_slows)
     );
 
-    carrystep_stops stops (
+    carrystep_stops #(
+        .LIMIT_FREEZES(LIMIT_FREEZES)
+    ) stops (
         .clock(clock),
         .strobe(strobe),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .runs(queue_running),
         .too_fast(queue_too_fast),
-        .limit(limits_hit & !homes_waits & !homes_slows),
+        .limit(limits_hit & !homing_control_waits & !homing_control_slows),
         .dry(queue_dry),
         .late(late),
-        .pressed(watch_pressed),
-        .breaks((((put_valid & nobody) | broken) & !stops_fault) | (decides & unfed)),
-        .missed(watch_missed & !rest_2),
+        .pressed(supervisor_pressed),
+        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed)),
+        .missed(supervisor_missed & !rest_2),
         .asked(stop),
         .clear(clear),
         .pins_busy(pins_busy),
+        .ending(resets_ending),
+        .stage_2(resets_stage_2),
+        .completes(resets_completes),
         .fault(stops_fault),
         .finds(stops_finds),
         .frozen(stops_frozen),
         .ramp(stops_ramp),
         .halted(stops_halted),
+        .settles(stops_settles),
         .clearing(stops_clearing),
         .cause(stops_cause),
         .culprits(stops_culprits)
     );
 
-    carrystep_watch watch (
+    carrystep_resets resets (
+        .clock(clock),
+        .strobe(strobe),
+        .reset(reset),
+        .settled(stops_settles),
+        .pins_busy(pins_busy),
+        .ending(resets_ending),
+        .stage_1(),
+        .stage_2(resets_stage_2),
+        .resetting(resets_resetting),
+        .completes(resets_completes),
+        .restarts_round(resets_restarts_round)
+    );
+
+    carrystep_supervisor #(
+        .ROUND_TICKS(ROUND_TICKS),
+        .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS),
+        .ENABLE_ROUNDS(ENABLE_ROUNDS),
+        .ESTOP_LOW(ESTOP_LOW)
+    ) supervisor (
         .clock(clock),
         .strobe(strobe),
         .estop(estop),
         .kick(kick),
         .enable(enable),
         .idle(rests),
-        .pressed(watch_pressed),
-        .missed(watch_missed),
-        .enabled(watch_enabled),
-        .warm(watch_warm),
-        .tick_0(watch_tick_0),
-        .tick_1(watch_tick_1)
+        .ending(resets_ending),
+        .resetting(resets_resetting),
+        .restarts_round(resets_restarts_round),
+        .pressed(supervisor_pressed),
+        .missed(supervisor_missed),
+        .enabled(supervisor_enabled),
+        .warm(supervisor_warm),
+        .tick_0(supervisor_tick_0),
+        .tick_1(supervisor_tick_1)
     );
 
-    carrystep_pulser_w8_s8_d2_h2 pulser_0 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_0),
+        .STEP_LOW(STEP_LOW_0),
+        .DIR_SETUP(DIR_SETUP_0),
+        .DIR_HOLD(DIR_HOLD_0)
+    ) pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[0] & wheel_phase_start),
-        .request_back(wheel_backward[0]),
-        .has_sign(wheel_events[0] & strobe),
-        .sign_back(wheel_backward[0]),
+        .request(event_wheel_events[0] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[0]),
+        .has_sign(event_wheel_events[0] & strobe),
+        .sign_back(event_wheel_backward[0]),
         .step(pulser_0_step),
         .dir(pulser_0_dir),
-        .owed(pulser_0_owed),
+        .held_back(pulser_0_held_back),
         .counts(pulser_0_counts),
         .overruns(pulser_0_overruns)
     );
 
-    carrystep_pulser_w80_s80_d16_h16 pulser_1 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_1),
+        .STEP_LOW(STEP_LOW_1),
+        .DIR_SETUP(DIR_SETUP_1),
+        .DIR_HOLD(DIR_HOLD_1)
+    ) pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[1] & wheel_phase_start),
-        .request_back(wheel_backward[1]),
-        .has_sign(wheel_events[1] & strobe),
-        .sign_back(wheel_backward[1]),
+        .request(event_wheel_events[1] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[1]),
+        .has_sign(event_wheel_events[1] & strobe),
+        .sign_back(event_wheel_backward[1]),
         .step(pulser_1_step),
         .dir(pulser_1_dir),
-        .owed(pulser_1_owed),
+        .held_back(pulser_1_held_back),
         .counts(pulser_1_counts),
         .overruns(pulser_1_overruns)
     );
 
-    carrystep_pulser_w152_s152_d52_h52 pulser_2 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_2),
+        .STEP_LOW(STEP_LOW_2),
+        .DIR_SETUP(DIR_SETUP_2),
+        .DIR_HOLD(DIR_HOLD_2)
+    ) pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[2] & wheel_phase_start),
-        .request_back(wheel_backward[2]),
-        .has_sign(wheel_events[2] & strobe),
-        .sign_back(wheel_backward[2]),
+        .request(event_wheel_events[2] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[2]),
+        .has_sign(event_wheel_events[2] & strobe),
+        .sign_back(event_wheel_backward[2]),
         .step(pulser_2_step),
         .dir(pulser_2_dir),
-        .owed(pulser_2_owed),
+        .held_back(pulser_2_held_back),
         .counts(pulser_2_counts),
         .overruns(pulser_2_overruns)
     );
 
-    carrystep_pulser_w200_s200_d400_h400 pulser_3 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_3),
+        .STEP_LOW(STEP_LOW_3),
+        .DIR_SETUP(DIR_SETUP_3),
+        .DIR_HOLD(DIR_HOLD_3)
+    ) pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[3] & wheel_phase_start),
-        .request_back(wheel_backward[3]),
-        .has_sign(wheel_events[3] & strobe),
-        .sign_back(wheel_backward[3]),
+        .request(event_wheel_events[3] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[3]),
+        .has_sign(event_wheel_events[3] & strobe),
+        .sign_back(event_wheel_backward[3]),
         .step(pulser_3_step),
         .dir(pulser_3_dir),
-        .owed(pulser_3_owed),
+        .held_back(pulser_3_held_back),
         .counts(pulser_3_counts),
         .overruns(pulser_3_overruns)
     );
 
-    carrystep_pulser_w8_s8_d2_h2 pulser_4 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_4),
+        .STEP_LOW(STEP_LOW_4),
+        .DIR_SETUP(DIR_SETUP_4),
+        .DIR_HOLD(DIR_HOLD_4)
+    ) pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[4] & wheel_phase_start),
-        .request_back(wheel_backward[4]),
-        .has_sign(wheel_events[4] & strobe),
-        .sign_back(wheel_backward[4]),
+        .request(event_wheel_events[4] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[4]),
+        .has_sign(event_wheel_events[4] & strobe),
+        .sign_back(event_wheel_backward[4]),
         .step(pulser_4_step),
         .dir(pulser_4_dir),
-        .owed(pulser_4_owed),
+        .held_back(pulser_4_held_back),
         .counts(pulser_4_counts),
         .overruns(pulser_4_overruns)
     );
 
-    carrystep_pulser_w240_s240_d120_h120 pulser_5 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_5),
+        .STEP_LOW(STEP_LOW_5),
+        .DIR_SETUP(DIR_SETUP_5),
+        .DIR_HOLD(DIR_HOLD_5)
+    ) pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[5] & wheel_phase_start),
-        .request_back(wheel_backward[5]),
-        .has_sign(wheel_events[5] & strobe),
-        .sign_back(wheel_backward[5]),
+        .request(event_wheel_events[5] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[5]),
+        .has_sign(event_wheel_events[5] & strobe),
+        .sign_back(event_wheel_backward[5]),
         .step(pulser_5_step),
         .dir(pulser_5_dir),
-        .owed(pulser_5_owed),
+        .held_back(pulser_5_held_back),
         .counts(pulser_5_counts),
         .overruns(pulser_5_overruns)
     );
 
     always @(posedge clock) begin
-        taken <= taken & !turn_beat[9];
+        taken <= taken & !time_slot_beat[9];
         if (take) begin
             taken <= put_word != COMMIT;
         end
-        if (turn_beat[7]) begin
+        if (time_slot_beat[7]) begin
             taken_word <= put_word;
         end
         if (strobe) begin
             going <= go;
         end
-        if (turn_beat[12]) begin
+        if (time_slot_beat[12]) begin
             mask <= (mask >> BY_ONE) | (mask << TO_TOP);
         end
         if (start_ready & start_valid) begin
@@ -2540,9 +2816,9 @@ module carrystep_engine (
         if (go | stops_fault) begin
             waits <= 1'b0;
         end
-        if (turn_beat[12]) begin
+        if (time_slot_beat[12]) begin
             unfed <= unfed | (masked & queue_empty);
-            held <= held | (masked & (queue_goes_on | homes_slows));
+            held <= held | (masked & (queue_goes_on | homing_control_slows));
             active <= active | queue_running | !queue_empty;
         end
         if (strobe) begin
@@ -2555,6 +2831,10 @@ module carrystep_engine (
         if (take) begin
             rest_1 <= 1'b0;
             rest_2 <= 1'b0;
+        end
+        if (resets_completes) begin
+            rest_1 <= 1'b1;
+            rest_2 <= 1'b1;
         end
     end
 endmodule

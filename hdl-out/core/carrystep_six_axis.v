@@ -1,37 +1,71 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_six_axis: step and direction for six axes. Generated: change the generator, not this file.
+// carrystep_six_axis: step and direction for six axes.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
+//
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
+//
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 8, S 8, D 2, H 2
-//   axis 1     W 80, S 80, D 16, H 16
-//   axis 2     W 152, S 152, D 52, H 52
-//   axis 3     W 200, S 200, D 400, H 400
-//   axis 4     W 8, S 8, D 2, H 2
-//   axis 5     W 240, S 240, D 120, H 120
+//   axis 0     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 1     STEP_HIGH 80, STEP_LOW 80, DIR_SETUP 16, DIR_HOLD 16
+//   axis 2     STEP_HIGH 152, STEP_LOW 152, DIR_SETUP 52, DIR_HOLD 52
+//   axis 3     STEP_HIGH 200, STEP_LOW 200, DIR_SETUP 400, DIR_HOLD 400
+//   axis 4     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 5     STEP_HIGH 240, STEP_LOW 240, DIR_SETUP 120, DIR_HOLD 120
 
 `default_nettype none
 
-// The beat: a strobe in the last cycle of each tick, and the phases in between.
-module carrystep_tick (
+// The tick counter: a strobe in the last clock of each tick, and the phases of a tick.
+module carrystep_tick #(
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of each tick.
     output wire         strobe,
+    // Asserted in the first clock of each phase.
     output wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     output wire   [3:0] phase
 );
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd4;
-    localparam [15:0] SUB_BITS = 16'd7;
+    localparam [15:0] LAST_SUB = CLOCKS_PER_TICK[19:4] - 16'd1;
+    localparam [15:0] SUB_BITS = used_bits_16(CLOCKS_PER_TICK[19:4] - 16'd1);
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
     localparam [3:0] LAST_PHASE = 4'd15;
+
+    generate
+        if (((CLOCKS_PER_TICK < 32'd16) | (CLOCKS_PER_TICK > 32'h10000)) | ((CLOCKS_PER_TICK & 32'd15) != 32'd0)) begin : clocks_per_tick_out_of_range
+            carrystep_error_clocks_per_tick_out_of_range error ();
+        end
+    endgenerate
 
     reg [15:0] sub = 16'd0;
     reg [3:0] phases = 4'd0;
@@ -55,28 +89,49 @@ module carrystep_tick (
     end
 endmodule
 
-// The running and the waiting segment of an axis.
+// Holds the running segment of an axis and one waiting segment.
 module carrystep_sequencer (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick, unless the core is frozen.
     input  wire         strobe,
+    // Asserted while a fault is latched. The axis stops running.
     input  wire         frozen,
+    // The next V is out of range. The axis stops running.
     input  wire         stop,
+    // Clears the waiting segment and the fault.
     input  wire         clear,
+    // The waiting segment may start an axis at rest in this clock.
     input  wire         go,
+    // The sequencer stores the offered segment in this clock.
     input  wire         push,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // A segment is stored and not yet loaded.
     output wire         waiting,
+    // The waiting segment could start at a strobe in this clock.
     output wire         startable,
+    // A segment runs.
     output wire         running,
+    // The axis loads V, A and J from the waiting segment.
     output wire         load,
+    // The running segment continues: the axis advances V and A.
     output wire         advance,
+    // The V of the waiting segment.
     output wire  [63:0] v,
+    // The A of the waiting segment.
     output wire  [63:0] a,
+    // The J of the waiting segment.
     output wire  [63:0] j,
+    // Latched fault: a segment that was not the last of its move ended, and no segment was waiting.
     output wire         underrun
 );
     localparam [31:0] ONE = 32'd1;
@@ -134,26 +189,46 @@ module carrystep_sequencer (
     end
 endmodule
 
-// When in its tick a step is due: bisection, then the request to the shaper.
+// Finds the phase of a step in its tick by bisection; requests the step in that phase.
 module carrystep_step_edge (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick, even while the core is frozen.
     input  wire         strobe,
+    // Asserted in the first clock of a phase.
     input  wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     input  wire   [3:0] phase,
+    // Asserted while a fault is latched. No new tick enters; steps that have already been found
+    // continue.
     input  wire         frozen,
+    // Clears the stored signs of V.
     input  wire         clear,
+    // The tick that ends at this strobe contains a step.
     input  wire         crosses,
+    // V > 0 in the tick that ends at this strobe.
     input  wire         forward,
+    // V < 0 in the tick that ends at this strobe.
     input  wire         backward,
+    // The upper 32 bits of P before the addition.
     input  wire  [31:0] p,
+    // The upper 32 bits of V before the addition.
     input  wire  [31:0] v,
+    // Asserted for one clock when a step is due.
     output wire         request,
+    // The requested step is backward.
     output wire         request_back,
+    // V > 0 in the tick that is being emitted.
     output wire         want_fwd,
+    // V < 0 in the tick that is being emitted.
     output wire         want_back,
+    // A step has been found and may not have been requested yet.
     output wire         in_flight,
+    // The tick accumulated last contained a step.
     output wire         crossed,
+    // V < 0 in the tick accumulated last.
     output wire         back,
+    // The phase of that step, valid when the bisection has finished.
     output wire   [3:0] q
 );
     localparam [31:0] SIGN = 32'h80000000;
@@ -224,42 +299,79 @@ module carrystep_step_edge (
     end
 endmodule
 
-// One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.
-module carrystep_axis (
+// One axis: P, V, A, J. Each carry of P is a step. The last five ports are for observation.
+module carrystep_axis #(
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // Asserted in the first clock of a phase.
     input  wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     input  wire   [3:0] phase,
+    // Asserted while a fault of any axis is latched. The axis does not move.
     input  wire         frozen,
+    // Sets P to its start value and clears the segments and the faults.
     input  wire         clear,
+    // The waiting segment may start this axis at the strobe in this clock.
     input  wire         go,
+    // The axis stores the offered segment in this clock.
     input  wire         push,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // A segment is stored and not yet loaded.
     output wire         waiting,
+    // The waiting segment could start at a strobe in this clock.
     output wire         startable,
+    // Asserted for one clock when a step is due.
     output wire         request,
+    // The requested step is backward.
     output wire         request_back,
+    // V > 0 in the tick that is being emitted.
     output wire         want_fwd,
+    // V < 0 in the tick that is being emitted.
     output wire         want_back,
+    // A step has been found and may not have reached the shaper.
     output wire         in_flight,
+    // The axis is at rest, no segment waits, and every step has reached the shaper.
     output wire         drained,
+    // Latched fault: the next V would have been outside -2^63 < V < 2^63.
     output wire         overspeed,
+    // Latched fault: a segment that was not the last of its move ended, and no segment was waiting.
     output wire         underrun,
+    // For observation: the last tick contained a step.
     output wire         crossed,
+    // For observation: V < 0 in the last tick.
     output wire         back,
+    // For observation: the phase of that step, valid when the bisection has finished.
     output wire   [3:0] q,
+    // For observation: P.
     output wire  [63:0] p,
+    // For observation: V.
     output wire  [63:0] v
 );
-    localparam [63:0] START_VALUE = 64'h8000000000000000;
+    localparam [63:0] START_VALUE = START_HALF[0] ? 64'h8000000000000000 : 64'h0;
     localparam [63:0] ZERO = 64'h0;
     localparam [63:0] LEAST = 64'h8000000000000000;
 
-    reg [63:0] position = 64'h8000000000000000;
+    generate
+        if (START_HALF > 32'd1) begin : start_half_out_of_range
+            carrystep_error_start_half_out_of_range error ();
+        end
+    endgenerate
+
+    reg [63:0] position = START_HALF[0] ? 64'h8000000000000000 : 64'h0;
     reg [63:0] speed = 64'h0;
     reg [63:0] accel = 64'h0;
     reg [63:0] jerk = 64'h0;
@@ -391,33 +503,92 @@ module carrystep_axis (
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w8_s8_d2_h2 (
+// Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
+module carrystep_shaper #(
+    // The minimum time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH = 32'd8,
+    // The minimum time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW = 32'd8,
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP = 32'd2,
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD = 32'd2
+) (
+    // The clock.
     input  wire         clock,
+    // Asserted while a fault is latched. No new pulse starts and DIR does not change.
     input  wire         frozen,
+    // Clears the fault.
     input  wire         clear,
+    // A step is due in this clock.
     input  wire         request,
+    // The requested step is backward.
     input  wire         request_back,
+    // V > 0: DIR should be forward.
     input  wire         want_fwd,
+    // V < 0: DIR should be backward.
     input  wire         want_back,
+    // The STEP pin.
     output wire         step,
+    // The DIR pin; 1 is backward.
     output wire         dir,
-    output wire         owed,
+    // A step is held back.
+    output wire         held_back,
+    // The steps forward less the steps backward, 32 bits two's complement.
     output wire  [31:0] position,
+    // The number of steps that were requested but not made, modulo 2^32: the step of an overrun and
+    // those discarded while frozen.
     output wire  [31:0] discarded,
+    // Latched fault: a second step arrived while one was held back.
     output wire         overrun
 );
-    localparam [16:0] GAP = 17'd8;
-    localparam [16:0] BUSY_LOAD = 17'd15;
-    localparam [16:0] BUSY_BITS = 17'd15;
-    localparam [15:0] HOLD_LOAD = 16'd1;
-    localparam [15:0] HOLD_BITS = 16'd1;
-    localparam [15:0] SETUP_LOAD = 16'd1;
-    localparam [15:0] SETUP_BITS = 16'd1;
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [16:0] used_bits_17(input [16:0] greatest);
+        begin
+            used_bits_17 = greatest;
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 1);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 2);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 4);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 8);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
+        end
+    endfunction
+    localparam [16:0] STEP_FALLS_AT = STEP_LOW[16:0];
+    localparam [16:0] BUSY_LOAD = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1;
+    localparam [16:0] BUSY_BITS = used_bits_17((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1);
+    localparam [15:0] HOLD_LOAD = DIR_HOLD[15:0] - 16'd1;
+    localparam [15:0] HOLD_BITS = used_bits_16(DIR_HOLD[15:0] - 16'd1);
+    localparam [15:0] SETUP_LOAD = DIR_SETUP[15:0] - 16'd1;
+    localparam [15:0] SETUP_BITS = used_bits_16(DIR_SETUP[15:0] - 16'd1);
     localparam [16:0] BUSY_ONE = 17'd1;
     localparam [15:0] TIMER_ONE = 16'd1;
     localparam [31:0] ONE = 32'd1;
     localparam [31:0] TWO = 32'd2;
+
+    generate
+        if ((STEP_HIGH < 32'd1) | (STEP_HIGH > 32'h10000)) begin : step_high_out_of_range
+            carrystep_error_step_high_out_of_range error ();
+        end
+        if ((STEP_LOW < 32'd1) | (STEP_LOW > 32'h10000)) begin : step_low_out_of_range
+            carrystep_error_step_low_out_of_range error ();
+        end
+        if ((DIR_SETUP < 32'd1) | (DIR_SETUP > 32'h10000)) begin : dir_setup_out_of_range
+            carrystep_error_dir_setup_out_of_range error ();
+        end
+        if ((DIR_HOLD < 32'd1) | (DIR_HOLD > 32'h10000)) begin : dir_hold_out_of_range
+            carrystep_error_dir_hold_out_of_range error ();
+        end
+    endgenerate
 
     reg step_pin = 1'b0;
     reg dir_pin = 1'b0;
@@ -426,7 +597,7 @@ module carrystep_shaper_w8_s8_d2_h2 (
     reg due_back = 1'b0;
     reg [16:0] busy = 17'd0;
     reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd1;
+    reg [15:0] setup = DIR_SETUP[15:0] - 16'd1;
     reg [31:0] steps = 32'd0;
     reg [31:0] lost = 32'd0;
     reg late = 1'b0;
@@ -436,12 +607,12 @@ module carrystep_shaper_w8_s8_d2_h2 (
     wire want_now = want_back | (want & !want_fwd);
     wire pending = due | request;
     wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire dir_changes = !frozen & (hold == 16'd0) & (dir_pin != aim);
     wire second = due & request;
 
     assign step = step_pin;
     assign dir = dir_pin;
-    assign owed = due;
+    assign held_back = due;
     assign position = steps;
     assign discarded = lost;
     assign overrun = late;
@@ -462,8 +633,8 @@ module carrystep_shaper_w8_s8_d2_h2 (
 
     always @(posedge clock) begin
         want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
+        step_pin <= rise | (step_pin & (busy != STEP_FALLS_AT));
+        dir_pin <= dir_pin ^ dir_changes;
         if (rise) begin
             busy <= BUSY_LOAD;
         end else if (busy != 17'd0) begin
@@ -474,7 +645,7 @@ module carrystep_shaper_w8_s8_d2_h2 (
         end else if (hold != 16'd0) begin
             hold <= (hold - TIMER_ONE) & HOLD_BITS;
         end
-        if (turn) begin
+        if (dir_changes) begin
             setup <= SETUP_LOAD;
         end else if (setup != 16'd0) begin
             setup <= (setup - TIMER_ONE) & SETUP_BITS;
@@ -511,511 +682,91 @@ module carrystep_shaper_w8_s8_d2_h2 (
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w80_s80_d16_h16 (
+// Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.
+module carrystep_six_axis #(
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // The minimum time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH_0 = 32'd8,
+    parameter [31:0] STEP_HIGH_1 = 32'd80,
+    parameter [31:0] STEP_HIGH_2 = 32'd152,
+    parameter [31:0] STEP_HIGH_3 = 32'd200,
+    parameter [31:0] STEP_HIGH_4 = 32'd8,
+    parameter [31:0] STEP_HIGH_5 = 32'd240,
+    // The minimum time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW_0 = 32'd8,
+    parameter [31:0] STEP_LOW_1 = 32'd80,
+    parameter [31:0] STEP_LOW_2 = 32'd152,
+    parameter [31:0] STEP_LOW_3 = 32'd200,
+    parameter [31:0] STEP_LOW_4 = 32'd8,
+    parameter [31:0] STEP_LOW_5 = 32'd240,
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP_0 = 32'd2,
+    parameter [31:0] DIR_SETUP_1 = 32'd16,
+    parameter [31:0] DIR_SETUP_2 = 32'd52,
+    parameter [31:0] DIR_SETUP_3 = 32'd400,
+    parameter [31:0] DIR_SETUP_4 = 32'd2,
+    parameter [31:0] DIR_SETUP_5 = 32'd120,
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD_0 = 32'd2,
+    parameter [31:0] DIR_HOLD_1 = 32'd16,
+    parameter [31:0] DIR_HOLD_2 = 32'd52,
+    parameter [31:0] DIR_HOLD_3 = 32'd400,
+    parameter [31:0] DIR_HOLD_4 = 32'd2,
+    parameter [31:0] DIR_HOLD_5 = 32'd120
+) (
+    // The clock.
     input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd80;
-    localparam [16:0] BUSY_LOAD = 17'd159;
-    localparam [16:0] BUSY_BITS = 17'd255;
-    localparam [15:0] HOLD_LOAD = 16'd15;
-    localparam [15:0] HOLD_BITS = 16'd15;
-    localparam [15:0] SETUP_LOAD = 16'd15;
-    localparam [15:0] SETUP_BITS = 16'd15;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd15;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w152_s152_d52_h52 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd152;
-    localparam [16:0] BUSY_LOAD = 17'd303;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd51;
-    localparam [15:0] HOLD_BITS = 16'd63;
-    localparam [15:0] SETUP_LOAD = 16'd51;
-    localparam [15:0] SETUP_BITS = 16'd63;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd51;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w200_s200_d400_h400 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd200;
-    localparam [16:0] BUSY_LOAD = 17'd399;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd399;
-    localparam [15:0] HOLD_BITS = 16'd511;
-    localparam [15:0] SETUP_LOAD = 16'd399;
-    localparam [15:0] SETUP_BITS = 16'd511;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd399;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w240_s240_d120_h120 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd240;
-    localparam [16:0] BUSY_LOAD = 17'd479;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd119;
-    localparam [15:0] HOLD_BITS = 16'd127;
-    localparam [15:0] SETUP_LOAD = 16'd119;
-    localparam [15:0] SETUP_BITS = 16'd127;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd119;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// Six axes on one tick, the door for segments and starts, and the freeze.
-module carrystep_six_axis (
-    input  wire         clock,
+    // The host offers a segment and holds it until the core accepts it.
     input  wire         seg_valid,
+    // The number of the axis that the segment is for, 0 to 5.
     input  wire   [2:0] seg_axis,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // The core accepts an offered segment in this clock.
     output wire         seg_ready,
+    // The host offers a start and holds it until the core accepts it.
     input  wire         start_valid,
+    // The axes to start; bit i is axis i.
     input  wire   [5:0] start_mask,
+    // The core accepts an offered start in this clock.
     output wire         start_ready,
+    // Clears a fault. The host holds it until `fault` falls.
     input  wire         clear,
+    // The STEP pins; bit i is axis i. A rising edge is a step.
     output wire   [5:0] step,
+    // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The steps forward less the steps backward of each axis, 32 bits two's complement; axis 0 is
+    // in the lowest bits.
     output wire [191:0] position,
+    // The number of steps of each axis that were requested but not made, modulo 2^32; axis 0 is in
+    // the lowest bits.
     output wire [191:0] discarded,
+    // All axes are at rest, no segment waits and no start is armed.
     output wire         idle,
+    // A fault is latched, and all axes are frozen.
     output wire         fault,
+    // Latched fault of an axis: a second step arrived while one was held back.
     output wire   [5:0] overrun,
+    // Latched fault of an axis: the next V would have been outside -2^63 < V < 2^63.
     output wire   [5:0] overspeed,
+    // Latched fault of an axis: a segment that was not the last of its move ended, and no segment
+    // was waiting.
     output wire   [5:0] underrun,
+    // Latched fault: the host broke the segment protocol.
     output wire         protocol,
+    // Axes start at the end of this clock; asserted for one clock per start.
     output wire         started
 );
     localparam [5:0] FIRST = 6'd1;
@@ -1097,37 +848,37 @@ module carrystep_six_axis (
     wire axis_5_underrun;
     wire shaper_0_step;
     wire shaper_0_dir;
-    wire shaper_0_owed;
+    wire shaper_0_held_back;
     wire [31:0] shaper_0_position;
     wire [31:0] shaper_0_discarded;
     wire shaper_0_overrun;
     wire shaper_1_step;
     wire shaper_1_dir;
-    wire shaper_1_owed;
+    wire shaper_1_held_back;
     wire [31:0] shaper_1_position;
     wire [31:0] shaper_1_discarded;
     wire shaper_1_overrun;
     wire shaper_2_step;
     wire shaper_2_dir;
-    wire shaper_2_owed;
+    wire shaper_2_held_back;
     wire [31:0] shaper_2_position;
     wire [31:0] shaper_2_discarded;
     wire shaper_2_overrun;
     wire shaper_3_step;
     wire shaper_3_dir;
-    wire shaper_3_owed;
+    wire shaper_3_held_back;
     wire [31:0] shaper_3_position;
     wire [31:0] shaper_3_discarded;
     wire shaper_3_overrun;
     wire shaper_4_step;
     wire shaper_4_dir;
-    wire shaper_4_owed;
+    wire shaper_4_held_back;
     wire [31:0] shaper_4_position;
     wire [31:0] shaper_4_discarded;
     wire shaper_4_overrun;
     wire shaper_5_step;
     wire shaper_5_dir;
-    wire shaper_5_owed;
+    wire shaper_5_held_back;
     wire [31:0] shaper_5_position;
     wire [31:0] shaper_5_discarded;
     wire shaper_5_overrun;
@@ -1211,12 +962,12 @@ module carrystep_six_axis (
 
     always @(*) begin
         at_rest = !armed;
-        at_rest = at_rest & axis_0_drained & !(shaper_0_owed | shaper_0_step);
-        at_rest = at_rest & axis_1_drained & !(shaper_1_owed | shaper_1_step);
-        at_rest = at_rest & axis_2_drained & !(shaper_2_owed | shaper_2_step);
-        at_rest = at_rest & axis_3_drained & !(shaper_3_owed | shaper_3_step);
-        at_rest = at_rest & axis_4_drained & !(shaper_4_owed | shaper_4_step);
-        at_rest = at_rest & axis_5_drained & !(shaper_5_owed | shaper_5_step);
+        at_rest = at_rest & axis_0_drained & !(shaper_0_held_back | shaper_0_step);
+        at_rest = at_rest & axis_1_drained & !(shaper_1_held_back | shaper_1_step);
+        at_rest = at_rest & axis_2_drained & !(shaper_2_held_back | shaper_2_step);
+        at_rest = at_rest & axis_3_drained & !(shaper_3_held_back | shaper_3_step);
+        at_rest = at_rest & axis_4_drained & !(shaper_4_held_back | shaper_4_step);
+        at_rest = at_rest & axis_5_drained & !(shaper_5_held_back | shaper_5_step);
     end
 
     always @(*) begin
@@ -1249,14 +1000,18 @@ module carrystep_six_axis (
         all_startable = all_startable & (!mask[5] | axis_5_startable);
     end
 
-    carrystep_tick tick (
+    carrystep_tick #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK)
+    ) tick (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
         .phase(tick_phase)
     );
 
-    carrystep_axis axis_0 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_0 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1287,7 +1042,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_1 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_1 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1318,7 +1075,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_2 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_2 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1349,7 +1108,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_3 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_3 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1380,7 +1141,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_4 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_4 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1411,7 +1174,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_5 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_5 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1442,7 +1207,12 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_shaper_w8_s8_d2_h2 shaper_0 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_0),
+        .STEP_LOW(STEP_LOW_0),
+        .DIR_SETUP(DIR_SETUP_0),
+        .DIR_HOLD(DIR_HOLD_0)
+    ) shaper_0 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1452,13 +1222,18 @@ module carrystep_six_axis (
         .want_back(axis_0_want_back),
         .step(shaper_0_step),
         .dir(shaper_0_dir),
-        .owed(shaper_0_owed),
+        .held_back(shaper_0_held_back),
         .position(shaper_0_position),
         .discarded(shaper_0_discarded),
         .overrun(shaper_0_overrun)
     );
 
-    carrystep_shaper_w80_s80_d16_h16 shaper_1 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_1),
+        .STEP_LOW(STEP_LOW_1),
+        .DIR_SETUP(DIR_SETUP_1),
+        .DIR_HOLD(DIR_HOLD_1)
+    ) shaper_1 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1468,13 +1243,18 @@ module carrystep_six_axis (
         .want_back(axis_1_want_back),
         .step(shaper_1_step),
         .dir(shaper_1_dir),
-        .owed(shaper_1_owed),
+        .held_back(shaper_1_held_back),
         .position(shaper_1_position),
         .discarded(shaper_1_discarded),
         .overrun(shaper_1_overrun)
     );
 
-    carrystep_shaper_w152_s152_d52_h52 shaper_2 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_2),
+        .STEP_LOW(STEP_LOW_2),
+        .DIR_SETUP(DIR_SETUP_2),
+        .DIR_HOLD(DIR_HOLD_2)
+    ) shaper_2 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1484,13 +1264,18 @@ module carrystep_six_axis (
         .want_back(axis_2_want_back),
         .step(shaper_2_step),
         .dir(shaper_2_dir),
-        .owed(shaper_2_owed),
+        .held_back(shaper_2_held_back),
         .position(shaper_2_position),
         .discarded(shaper_2_discarded),
         .overrun(shaper_2_overrun)
     );
 
-    carrystep_shaper_w200_s200_d400_h400 shaper_3 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_3),
+        .STEP_LOW(STEP_LOW_3),
+        .DIR_SETUP(DIR_SETUP_3),
+        .DIR_HOLD(DIR_HOLD_3)
+    ) shaper_3 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1500,13 +1285,18 @@ module carrystep_six_axis (
         .want_back(axis_3_want_back),
         .step(shaper_3_step),
         .dir(shaper_3_dir),
-        .owed(shaper_3_owed),
+        .held_back(shaper_3_held_back),
         .position(shaper_3_position),
         .discarded(shaper_3_discarded),
         .overrun(shaper_3_overrun)
     );
 
-    carrystep_shaper_w8_s8_d2_h2 shaper_4 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_4),
+        .STEP_LOW(STEP_LOW_4),
+        .DIR_SETUP(DIR_SETUP_4),
+        .DIR_HOLD(DIR_HOLD_4)
+    ) shaper_4 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1516,13 +1306,18 @@ module carrystep_six_axis (
         .want_back(axis_4_want_back),
         .step(shaper_4_step),
         .dir(shaper_4_dir),
-        .owed(shaper_4_owed),
+        .held_back(shaper_4_held_back),
         .position(shaper_4_position),
         .discarded(shaper_4_discarded),
         .overrun(shaper_4_overrun)
     );
 
-    carrystep_shaper_w240_s240_d120_h120 shaper_5 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_5),
+        .STEP_LOW(STEP_LOW_5),
+        .DIR_SETUP(DIR_SETUP_5),
+        .DIR_HOLD(DIR_HOLD_5)
+    ) shaper_5 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1532,7 +1327,7 @@ module carrystep_six_axis (
         .want_back(axis_5_want_back),
         .step(shaper_5_step),
         .dir(shaper_5_dir),
-        .owed(shaper_5_owed),
+        .held_back(shaper_5_held_back),
         .position(shaper_5_position),
         .discarded(shaper_5_discarded),
         .overrun(shaper_5_overrun)

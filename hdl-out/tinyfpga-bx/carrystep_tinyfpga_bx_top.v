@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for TinyFPGA BX: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: TinyFPGA BX.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -16,7 +18,8 @@ module carrystep_tinyfpga_bx_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -57,7 +60,9 @@ module carrystep_tinyfpga_bx_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
-    carrystep_uart line (
+    carrystep_uart #(
+        .BIT_CLOCKS(32'd20)
+    ) line (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -68,7 +73,13 @@ module carrystep_tinyfpga_bx_top (
         .clock(clock)
     );
 
-    carrystep_link link (
+    carrystep_link #(
+        .BUILD_ID(64'h922beed8bb78e091),
+        .CLOCK_HZ(32'h2625a00),
+        .TICK_NS(32'd2000),
+        .ROUND_TICKS(32'd16),
+        .WATCHDOG_ROUNDS(32'd3126)
+    ) link (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -110,7 +121,49 @@ module carrystep_tinyfpga_bx_top (
 
     wire enabled;
     assign enable_n = !enabled;
-    carrystep_engine engine (
+    carrystep_engine #(
+        .CLOCKS_PER_TICK(32'd80),
+        .START_HALF(32'd1),
+        .STEP_HIGH_0(32'd4),
+        .STEP_HIGH_1(32'd40),
+        .STEP_HIGH_2(32'd76),
+        .STEP_HIGH_3(32'd100),
+        .STEP_HIGH_4(32'd4),
+        .STEP_HIGH_5(32'd120),
+        .STEP_LOW_0(32'd4),
+        .STEP_LOW_1(32'd40),
+        .STEP_LOW_2(32'd76),
+        .STEP_LOW_3(32'd100),
+        .STEP_LOW_4(32'd4),
+        .STEP_LOW_5(32'd120),
+        .DIR_SETUP_0(32'd1),
+        .DIR_SETUP_1(32'd8),
+        .DIR_SETUP_2(32'd26),
+        .DIR_SETUP_3(32'd200),
+        .DIR_SETUP_4(32'd1),
+        .DIR_SETUP_5(32'd60),
+        .DIR_HOLD_0(32'd1),
+        .DIR_HOLD_1(32'd8),
+        .DIR_HOLD_2(32'd26),
+        .DIR_HOLD_3(32'd200),
+        .DIR_HOLD_4(32'd1),
+        .DIR_HOLD_5(32'd60),
+        .STOP_ACCEL_0(64'h35afe535795e),
+        .STOP_ACCEL_1(64'h2af31dc46118),
+        .STOP_ACCEL_2(64'h2843ebe81b06),
+        .STOP_ACCEL_3(64'h17dc65dee09b),
+        .STOP_ACCEL_4(64'h3ba6fead3185),
+        .STOP_ACCEL_5(64'ha10fafa06c1),
+        .ROUND_TICKS(32'd16),
+        .WATCHDOG_ROUNDS(32'd3126),
+        .ENABLE_ROUNDS(32'd33),
+        .DEBOUNCE_SAMPLES(32'd17),
+        .LIMITS(32'd2),
+        .LIMITS_LOW(32'd0),
+        .LIMIT_FREEZES(32'd0),
+        .ESTOP_LOW(32'd0),
+        .EVENT_MEMORY("block")
+    ) engine (
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),
@@ -149,10 +202,12 @@ module carrystep_tinyfpga_bx_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = !fault;
 
     assign usb_pullup = 1'b0; // low: the board is no USB device while the gateware runs

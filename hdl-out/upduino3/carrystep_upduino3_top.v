@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for tinyVision UPduino v3.0 and v3.1: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: tinyVision UPduino v3.0 and v3.1.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -16,7 +18,8 @@ module carrystep_upduino3_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -57,7 +60,9 @@ module carrystep_upduino3_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
-    carrystep_uart line (
+    carrystep_uart #(
+        .BIT_CLOCKS(32'd19)
+    ) line (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -68,7 +73,13 @@ module carrystep_upduino3_top (
         .clock(clock)
     );
 
-    carrystep_link link (
+    carrystep_link #(
+        .BUILD_ID(64'ha378d1134a7d3f66),
+        .CLOCK_HZ(32'h23c3460),
+        .TICK_NS(32'd2560),
+        .ROUND_TICKS(32'd16),
+        .WATCHDOG_ROUNDS(32'd2443)
+    ) link (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -110,7 +121,49 @@ module carrystep_upduino3_top (
 
     wire enabled;
     assign enable_n = !enabled;
-    carrystep_engine engine (
+    carrystep_engine #(
+        .CLOCKS_PER_TICK(32'd96),
+        .START_HALF(32'd1),
+        .STEP_HIGH_0(32'd4),
+        .STEP_HIGH_1(32'd38),
+        .STEP_HIGH_2(32'd72),
+        .STEP_HIGH_3(32'd94),
+        .STEP_HIGH_4(32'd4),
+        .STEP_HIGH_5(32'd113),
+        .STEP_LOW_0(32'd4),
+        .STEP_LOW_1(32'd38),
+        .STEP_LOW_2(32'd72),
+        .STEP_LOW_3(32'd94),
+        .STEP_LOW_4(32'd4),
+        .STEP_LOW_5(32'd113),
+        .DIR_SETUP_0(32'd1),
+        .DIR_SETUP_1(32'd8),
+        .DIR_SETUP_2(32'd25),
+        .DIR_SETUP_3(32'd188),
+        .DIR_SETUP_4(32'd1),
+        .DIR_SETUP_5(32'd57),
+        .DIR_HOLD_0(32'd1),
+        .DIR_HOLD_1(32'd8),
+        .DIR_HOLD_2(32'd25),
+        .DIR_HOLD_3(32'd188),
+        .DIR_HOLD_4(32'd1),
+        .DIR_HOLD_5(32'd57),
+        .STOP_ACCEL_0(64'h57f5ff85e592),
+        .STOP_ACCEL_1(64'h465e6604b7a8),
+        .STOP_ACCEL_2(64'h41f87fa46c2d),
+        .STOP_ACCEL_3(64'h2717ffc9bb5d),
+        .STOP_ACCEL_4(64'h61bbff785469),
+        .STOP_ACCEL_5(64'h107e1fe91b0b),
+        .ROUND_TICKS(32'd16),
+        .WATCHDOG_ROUNDS(32'd2443),
+        .ENABLE_ROUNDS(32'd26),
+        .DEBOUNCE_SAMPLES(32'd14),
+        .LIMITS(32'd2),
+        .LIMITS_LOW(32'd0),
+        .LIMIT_FREEZES(32'd0),
+        .ESTOP_LOW(32'd0),
+        .EVENT_MEMORY("block")
+    ) engine (
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),
@@ -149,10 +202,12 @@ module carrystep_upduino3_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = fault;
 
     assign flash_cs_n = 1'b1; // high: the UART shares two pins with the flash, which must not listen

@@ -13,7 +13,7 @@ fn machine(start: &str, speed: &str, accel: &str, phase: &str) -> String {
 fn axis_table(name: &str, start: &str, speed: &str, accel: &str) -> String {
     format!(
         "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = 1.0\nstart_speed = {start}\nspeed_limit = {speed}\n\
-         accel_limit = {accel}\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 200\nhold_ns = 200\n"
+         accel_limit = {accel}\nstep_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 200\ndir_hold_ns = 200\n"
     )
 }
 
@@ -31,7 +31,8 @@ fn planned(text: &str) -> (MoveFile, Plan) {
 
 #[test]
 fn an_hour_long_triangle_stays_within_nanoseconds() {
-    let text = machine("0.0", "1000.0", "1000.0", "half") + &moving("ranade", Some("3600.0"), 1_000_000);
+    let text =
+        machine("0.0", "1000.0", "1000.0", "half") + &moving("ranade", Some("3600.0"), 1_000_000);
     let (_, plan) = planned(&text);
     let segments = plan.moves[0].axes[0].segments.len();
     println!("{segments} segments");
@@ -42,8 +43,9 @@ fn an_hour_long_triangle_stays_within_nanoseconds() {
 fn one_step_moves_land_in_both_directions() {
     for phase in ["half", "zero"] {
         for profile in ["ranade", "trapezoid"] {
-            let text =
-                machine("0.0", "5000.0", "25000.0", phase) + &moving(profile, None, 1) + &moving(profile, None, -1);
+            let text = machine("0.0", "5000.0", "25000.0", phase)
+                + &moving(profile, None, 1)
+                + &moving(profile, None, -1);
             planned(&text);
         }
     }
@@ -51,7 +53,8 @@ fn one_step_moves_land_in_both_directions() {
 
 #[test]
 fn move_that_fails_in_the_article_lands_exactly() {
-    let text = machine("100.0", "20000.0", "25000.0", "half") + &moving("ranade", Some("2.0"), 6000);
+    let text =
+        machine("100.0", "20000.0", "25000.0", "half") + &moving("ranade", Some("2.0"), 6000);
     let (file, plan) = planned(&text);
     assert_eq!(plan.moves[0].axes[0].shape, "triangle");
     assert_eq!(plan.moves[0].axes[0].segments.iter().map(|s| s.ticks).sum::<u32>(), 2_000_000);
@@ -64,10 +67,13 @@ fn move_that_fails_in_the_article_lands_exactly() {
 
 #[test]
 fn edges_of_a_constant_move_equal_table_1_of_the_article() {
-    let golden: serde_json::Value = serde_json::from_str(include_str!("../golden/ranade.json")).unwrap();
-    let expected: Vec<u64> = serde_json::from_value(golden["table1"]["pulses_article"].clone()).unwrap();
+    let golden: serde_json::Value =
+        serde_json::from_str(include_str!("../golden/ranade.json")).unwrap();
+    let expected: Vec<u64> =
+        serde_json::from_value(golden["table1"]["pulses_article"].clone()).unwrap();
     // 0.2 steps per tick of 1 us are 5 steps in 25 us.
-    let text = machine("200000.0", "200000.0", "1.0e9", "zero") + &moving("constant", Some("25.0e-6"), 5);
+    let text =
+        machine("200000.0", "200000.0", "1.0e9", "zero") + &moving("constant", Some("25.0e-6"), 5);
     let (_, plan) = planned(&text);
     let (edges, _) = edges_of(plan.axis_segments(0), 0, 4);
     let ticks: Vec<u64> = edges.iter().map(|edge| edge.tick + 1).collect();
@@ -76,7 +82,8 @@ fn edges_of_a_constant_move_equal_table_1_of_the_article() {
 
 #[test]
 fn phase_zero_refuses_a_time_of_fractional_ticks() {
-    let text = machine("0.0", "5000.0", "25000.0", "zero") + &moving("ranade", Some("0.5000005"), 100);
+    let text =
+        machine("0.0", "5000.0", "25000.0", "zero") + &moving("ranade", Some("0.5000005"), 100);
     let error = plan::<f64>(&file(&text)).unwrap_err();
     assert!(matches!(error, PlanError::NotWholeTicks { .. }));
     assert!(error.to_string().contains("0.500001 s"), "{error}");
@@ -95,7 +102,9 @@ fn refused_moves_can_be_planned_with_the_proposed_value() {
         ("constant", "1000.0", "0.999", "start_speed"),
     ] {
         let error = plan::<f64>(&file(&text(profile, start, Some(time)))).unwrap_err();
-        let PlanError::Refused { least_time: Some(least), refusal, .. } = &error else { panic!("{error}") };
+        let PlanError::Refused { least_time: Some(least), refusal, .. } = &error else {
+            panic!("{error}")
+        };
         assert_eq!(refusal.limit.to_string(), limit, "{error}");
         println!("{error}");
         planned(&text(profile, start, Some(&format!("{least:?}"))));
@@ -110,26 +119,35 @@ fn refused_moves_can_be_planned_with_the_proposed_value() {
 #[test]
 fn reversals_rest_only_if_the_pin_timing_needs_it() {
     let slow = machine("0.0", "5000.0", "25000.0", "half");
-    let back_and_forth = moving("ranade", None, 10) + &moving("ranade", None, -10) + &moving("ranade", None, 10);
+    let back_and_forth =
+        moving("ranade", None, 10) + &moving("ranade", None, -10) + &moving("ranade", None, 10);
     let (_, plan) = planned(&(slow + &back_and_forth));
-    assert!(plan.moves.iter().all(|m| m.rest_ticks == 0), "milliseconds from rest are set-up enough");
+    assert!(
+        plan.moves.iter().all(|m| m.rest_ticks == 0),
+        "milliseconds from rest are set-up enough"
+    );
 
     for phase in ["half", "zero"] {
-        let abrupt = machine("200000.0", "200000.0", "1.0e9", phase).replace("setup_ns = 200\n", "setup_ns = 20000\n");
+        let abrupt = machine("200000.0", "200000.0", "1.0e9", phase)
+            .replace("dir_setup_ns = 200\n", "dir_setup_ns = 20000\n");
         let moves = ["constant", "constant", "constant", "constant"].iter().zip([-5, 5, 5, -5]);
         let moves: String = moves.map(|(profile, steps)| moving(profile, None, steps)).collect();
         let (_, plan) = planned(&(abrupt + &moves));
         let rests: Vec<u64> = plan.moves.iter().map(|m| m.rest_ticks).collect();
-        assert!(rests[0] > 15 && rests[1] > 15 && rests[2] == 0 && rests[3] > 15, "{phase}: {rests:?}");
+        assert!(
+            rests[0] > 15 && rests[1] > 15 && rests[2] == 0 && rests[3] > 15,
+            "{phase}: {rests:?}"
+        );
     }
 }
 
 #[test]
 fn program_lists_commands_in_the_order_in_which_they_are_needed() {
     use carrystep_core::Command;
-    let moves =
-        "[[move]]\nprofile = \"ranade\"\nto = { x = 300, y = -7 }\n[[move]]\nprofile = \"ranade\"\nto = { y = 30 }\n";
-    let text = machine("0.0", "5000.0", "25000.0", "half") + &axis_table("y", "10.0", "700.0", "900.0") + moves;
+    let moves = "[[move]]\nprofile = \"ranade\"\nto = { x = 300, y = -7 }\n[[move]]\nprofile = \"ranade\"\nto = { y = 30 }\n";
+    let text = machine("0.0", "5000.0", "25000.0", "half")
+        + &axis_table("y", "10.0", "700.0", "900.0")
+        + moves;
     let file = file(&text);
     let plan = plan::<f64>(&file).unwrap();
     verify(&file, &plan, Some(2e-9));

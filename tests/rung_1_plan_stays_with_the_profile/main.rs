@@ -15,7 +15,8 @@ use proptest::prelude::*;
 use verify::verify;
 
 /// The profiles whose segments need no J. The others need one.
-const LINEAR: [ProfileKind; 3] = [ProfileKind::Ranade, ProfileKind::Trapezoid, ProfileKind::Constant];
+const LINEAR: [ProfileKind; 3] =
+    [ProfileKind::Ranade, ProfileKind::Trapezoid, ProfileKind::Constant];
 
 fn verified(case: &RandomMoves) {
     for file in case.files() {
@@ -30,7 +31,8 @@ fn verified(case: &RandomMoves) {
 /// would work. `slow.rs` plans such moves in that time.
 fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
     let PlanError::TooSlow { index, longest: Some(longest), .. } = error else { return false };
-    let given = file.moves[*index].time.as_ref().map(|time| time.to_string().parse::<f64>().unwrap());
+    let given =
+        file.moves[*index].time.as_ref().map(|time| time.to_string().parse::<f64>().unwrap());
     given.is_some_and(|given| given > 1e4 && *longest < given)
 }
 

@@ -24,7 +24,9 @@ struct SlowMove {
 impl SlowMove {
     fn file(&self, seconds: f64) -> MoveFile {
         let Self { machine, profile, steps, .. } = self;
-        file(&format!("{machine}[[move]]\nprofile = \"{profile}\"\ntime = {seconds}\nto = {{ x = {steps} }}\n"))
+        file(&format!(
+            "{machine}[[move]]\nprofile = \"{profile}\"\ntime = {seconds}\nto = {{ x = {steps} }}\n"
+        ))
     }
 }
 
@@ -47,7 +49,7 @@ fn slow_moves(profile: ProfileKind) -> impl Strategy<Value = SlowMove> {
             let machine = format!(
                 "[machine]\nclock_hz = 64_000_000\ntick_ns = {tick_ns}\nphases = {phases}\nphase = \"{phase}\"\n\
                  [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nstart_speed = {start:?}\nspeed_limit = {speed:?}\n\
-                 accel_limit = {accel:?}\njerk_limit = {:?}\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n",
+                 accel_limit = {accel:?}\njerk_limit = {:?}\nstep_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n",
                 10.0 * accel
             );
             let steps = if backward { -(steps as i64) } else { steps as i64 };
@@ -77,7 +79,8 @@ struct Counts {
 
 fn two_hundred(profile: ProfileKind) {
     let counts = Cell::new(Counts::default());
-    let mut runner = TestRunner::new(Config { cases: 200, failure_persistence: None, ..Config::default() });
+    let mut runner =
+        TestRunner::new(Config { cases: 200, failure_persistence: None, ..Config::default() });
     let held = runner.run(&slow_moves(profile), |slow| {
         let mut now = counts.get();
         let file = slow.file(slow.seconds);
@@ -90,10 +93,15 @@ fn two_hundred(profile: ProfileKind) {
                 now.shortened += 1;
                 prop_assert!(longest < slow.seconds);
                 let file = slow.file(longest);
-                holds(&file, &plan::<f64>(&file).map_err(|error| TestCaseError::fail(error.to_string()))?)?;
+                holds(
+                    &file,
+                    &plan::<f64>(&file).map_err(|error| TestCaseError::fail(error.to_string()))?,
+                )?;
             }
             Err(PlanError::TooSlow { .. } | PlanError::Refused { .. }) => now.impossible += 1,
-            Err(error) => return Err(TestCaseError::fail(format!("{error}\n{}", file.source.text))),
+            Err(error) => {
+                return Err(TestCaseError::fail(format!("{error}\n{}", file.source.text)));
+            }
         }
         counts.set(now);
         Ok(())
@@ -179,13 +187,18 @@ fn a_move_of_too_many_segments_is_refused_with_the_longest_time() {
     };
     let error = plan::<f64>(&file(&text("1_000_000"))).unwrap_err();
     let PlanError::TooSlow { longest: Some(longest), .. } = error else { panic!("{error}") };
-    let says = format!("move 1, axis x: so slow that it needs over 131072 segments; at most {longest} s would do");
+    let says = format!(
+        "move 1, axis x: so slow that it needs over 131072 segments; at most {longest} s would do"
+    );
     assert_eq!(error.to_string(), says);
     let file_of_longest = file(&text(&longest.to_string()));
     let plan_of_longest = plan::<f64>(&file_of_longest).unwrap_or_else(|error| panic!("{error}"));
     assert!(plan_of_longest.moves[0].axes[0].segments.len() <= 1 << 17);
     verify(&file_of_longest, &plan_of_longest, Some(2e-9));
-    assert!(plan::<f64>(&file(&text(&(longest * 1.05).to_string()))).is_err(), "{longest} s is not the longest");
+    assert!(
+        plan::<f64>(&file(&text(&(longest * 1.05).to_string()))).is_err(),
+        "{longest} s is not the longest"
+    );
 }
 
 /// Backward at less than a step per second and at the speed limit itself, the axis cannot make up

@@ -31,12 +31,18 @@ fn speed_in(s: &Segment, k: i128) -> i128 {
 fn extremes(s: &Segment) -> impl Iterator<Item = i128> {
     let last = i128::from(s.ticks) - 1;
     let turn = if s.j == 0 { 0 } else { -i128::from(s.a) / i128::from(s.j) };
-    [0, last, turn - 1, turn, turn + 1, turn + 2].into_iter().filter(move |k| (0..=last).contains(k))
+    [0, last, turn - 1, turn, turn + 1, turn + 2]
+        .into_iter()
+        .filter(move |k| (0..=last).contains(k))
 }
 
 /// Every edge of a sequence of segments that starts at `p`. The speed must have one sign within
 /// each segment.
-pub fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bits: u32) -> (Vec<Edge>, i128) {
+pub fn edges_of(
+    segments: impl Iterator<Item = (u64, Segment)>,
+    mut p: i128,
+    bits: u32,
+) -> (Vec<Edge>, i128) {
     let mut edges = Vec::new();
     for (first, s) in segments {
         let n = i128::from(s.ticks);
@@ -95,9 +101,11 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
         let h = timebase.tick_seconds();
         for (k, (edge, due)) in edges.iter().zip(&crossings).enumerate() {
             assert_eq!(edge.backward, due.backward);
-            let ticks = (edge.tick - due.start_tick) as f64 + f64::from(edge.phase) / f64::from(timebase.phases());
+            let ticks = (edge.tick - due.start_tick) as f64
+                + f64::from(edge.phase) / f64::from(timebase.phases());
             let error = ticks * h - due.seconds;
-            let leg = timelines[index].legs.iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
+            let leg =
+                timelines[index].legs.iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
             let a = steepest(&*leg.profile, due.seconds - h, due.seconds + h);
             // At phase zero the last pulse is due at rest; it cannot be later than its tick.
             let v = due.speed.max(h * a / 8.0);
@@ -160,11 +168,18 @@ fn lands(file: &MoveFile, plan: &Plan, axis: usize) {
 }
 
 /// Checks the limits in exact decimals, from V, A and J at the ends and extremes of each segment.
-fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns: u64, f64_used: bool) {
+fn limits_hold(
+    plan: &Plan,
+    index: usize,
+    axis: &carrystep_files::Axis,
+    tick_ns: u64,
+    f64_used: bool,
+) {
     let one = BigDecimal::from(STEP);
     let tick = BigDecimal::new(tick_ns.into(), 9);
     let speed = &axis.speed_limit * &one * &tick;
-    let relative = if f64_used { BigDecimal::new(1.into(), 9) } else { BigDecimal::new(1.into(), 5) };
+    let relative =
+        if f64_used { BigDecimal::new(1.into(), 9) } else { BigDecimal::new(1.into(), 5) };
     let tolerance = &speed * relative + BigDecimal::from(1);
     let acceleration = &axis.accel_limit * &one * &tick * &tick;
     for planned in &plan.moves {
@@ -177,7 +192,10 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns:
                 continue;
             }
             for v in extremes(s).map(|k| speed_in(s, k)) {
-                assert!(v * i128::from(moved.steps.signum()) >= 0, "the speed never changes sign: {s:?}");
+                assert!(
+                    v * i128::from(moved.steps.signum()) >= 0,
+                    "the speed never changes sign: {s:?}"
+                );
                 assert!(&speed + &tolerance >= v.abs(), "speed: {s:?}");
                 assert!(v.unsigned_abs() as u64 <= moved.peaks.speed, "peaks");
             }
@@ -191,14 +209,22 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns:
             if std::mem::take(&mut first) {
                 // 6 v = 6 V - 3 A + 2 J. A separate first tick may contain the ramp.
                 let sign = i128::from(moved.steps.signum());
-                let slope = if s.ticks == 1 { acceleration.clone() } else { BigDecimal::from(sign * i128::from(s.a)) };
-                let sixfold = BigDecimal::from(sign * (6 * i128::from(s.v) + 2 * j)) - slope * BigDecimal::from(3);
+                let slope = if s.ticks == 1 {
+                    acceleration.clone()
+                } else {
+                    BigDecimal::from(sign * i128::from(s.a))
+                };
+                let sixfold = BigDecimal::from(sign * (6 * i128::from(s.v) + 2 * j))
+                    - slope * BigDecimal::from(3);
                 // A logistic curve is never at rest: without a start speed, its own initial jump
                 // counts.
                 let own = BigDecimal::try_from(moved.profile.speed(0.0)).unwrap();
                 let logistic = moved.shape == "logistic" && axis.start_speed == 0;
                 let start = if logistic { &own } else { &axis.start_speed } * &one * &tick;
-                assert!(sixfold <= (start + &tolerance) * BigDecimal::from(6), "start speed: {s:?}");
+                assert!(
+                    sixfold <= (start + &tolerance) * BigDecimal::from(6),
+                    "start speed: {s:?}"
+                );
             }
         }
     }
@@ -208,8 +234,11 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns:
 fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
     let (timebase, pins) = (plan.build.timebase, plan.build.pins[axis]);
     let clocks = i128::from(timebase.clocks_per_tick());
-    let clock = |edge: &Edge| i128::from(edge.tick) * clocks + i128::from(edge.phase * timebase.clocks_per_phase());
-    let [width, gap, setup, hold] = [pins.width, pins.gap, pins.setup, pins.hold].map(i128::from);
+    let clock = |edge: &Edge| {
+        i128::from(edge.tick) * clocks + i128::from(edge.phase * timebase.clocks_per_phase())
+    };
+    let [step_high, step_low, dir_setup, dir_hold] =
+        [pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold].map(i128::from);
     let mut signs = plan.axis_segments(axis).filter_map(|(first, s)| {
         let begins = [s.v, s.a, s.j].iter().position(|&r| r != 0)? as u32;
         let sign = [s.v, s.a, s.j][begins as usize];
@@ -223,13 +252,16 @@ fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
         while let Some((at, backward)) = next.filter(|&(at, _)| at <= now) {
             if backward != dir {
                 dir = backward;
-                turned = last.map_or(at, |last| at.max(last + hold));
+                turned = last.map_or(at, |last| at.max(last + dir_hold));
             }
             next = signs.next();
         }
         assert_eq!(dir, edge.backward, "DIR at {edge:?}");
-        assert!(now >= turned + setup, "set-up before {edge:?}: {turned} {setup}");
-        assert!(last.is_none_or(|last| now >= last + width + gap), "width and gap before {edge:?}: {last:?}");
+        assert!(now >= turned + dir_setup, "set-up before {edge:?}: {turned} {dir_setup}");
+        assert!(
+            last.is_none_or(|last| now >= last + step_high + step_low),
+            "step_high and step_low before {edge:?}: {last:?}"
+        );
         last = Some(now);
     }
 }

@@ -2,7 +2,7 @@
 //! reproduces the golden vectors to the last edge and phase.
 
 use carrystep_core::Segment;
-use carrystep_model::parallel::axis::{State, tick};
+use carrystep_model::parallel::axis::{AxisRegisters, tick};
 use carrystep_tests::closed_form;
 use carrystep_tests::golden::{Edge, engine_vectors};
 use carrystep_tests::programs;
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 fn edges(p0: u64, segments: &[Segment]) -> (Vec<Edge>, u64) {
     let mut edges = Vec::new();
     let mut queue = segments.iter().copied();
-    let mut state = State { waiting: queue.next(), ..State::at_rest(p0) };
+    let mut state = AxisRegisters { waiting: queue.next(), ..AxisRegisters::at_rest(p0) };
     (state, _) = tick(state, true, 4);
     let mut n = 0;
     while state.running {
@@ -32,7 +32,10 @@ fn golden_vectors_to_the_last_edge_and_phase() {
         let (edges, p) = edges(case.p0(), &case.segments());
         case.assert_edges(&edges);
         assert_eq!(p, case.p_end(), "{}: P at the end", case.name);
-        assert_eq!(case.segments().iter().map(|s| u64::from(s.ticks)).sum::<u64>(), case.total_ticks);
+        assert_eq!(
+            case.segments().iter().map(|s| u64::from(s.ticks)).sum::<u64>(),
+            case.total_ticks
+        );
     }
 }
 
@@ -43,7 +46,7 @@ proptest! {
     /// changes.
     #[test]
     fn every_tick_equals_the_closed_form(p0 in any::<u64>(), segment in programs::segment()) {
-        let mut state = State { waiting: Some(Segment { last: true, ..segment }), ..State::at_rest(p0) };
+        let mut state = AxisRegisters { waiting: Some(Segment { last: true, ..segment }), ..AxisRegisters::at_rest(p0) };
         (state, _) = tick(state, true, 4);
         let unit = BigInt::from(1) << 64;
         for n in 0..segment.ticks {

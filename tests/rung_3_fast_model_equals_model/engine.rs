@@ -1,7 +1,7 @@
 //! The fast engine is the clock-by-clock one, whatever stops it.
 
 use crate::leaps;
-use carrystep_core::engine::{Cause, Guard, Limits};
+use carrystep_core::engine::{Cause, Guard, LimitWiring};
 use carrystep_core::{EngineBuild, PinTiming, Program, StartPhase};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
@@ -12,11 +12,16 @@ use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
 /// Compares the engines under programs with events; returns the counts.
-fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Program, Events)>) -> Came {
+fn engines(
+    build: &EngineBuild,
+    cases: u32,
+    programs: impl Strategy<Value = (Program, Events)>,
+) -> Came {
     let sum = Cell::new(Came::default());
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
     let held = runner.run(&(programs, leaps()), |((program, events), leaps)| {
-        let came = engine_twins::run(build, &program, &events, &leaps, 500_000).map_err(TestCaseError::fail)?;
+        let came = engine_twins::run(build, &program, &events, &leaps, 500_000)
+            .map_err(TestCaseError::fail)?;
         sum.set(sum.get().and(came));
         Ok(())
     });
@@ -26,7 +31,7 @@ fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Pro
 }
 
 /// E-stop, limits, stops and silence of the host occur in any clock, whatever the host does.
-fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, round: u32) {
+fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: LimitWiring, round: u32) {
     let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
     let guard = Guard { round, watchdog: 80 / round, ..build.guard.clone() };
     let came = engines(&EngineBuild { guard, ..build }, 100, engine_programs::program(axes));
@@ -38,31 +43,32 @@ fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, r
 
 #[test]
 fn an_engine_with_a_pair_of_limits_for_each_axis() {
-    stops_at_any_clock(6, 80_000_000, 16, Limits::Pair, 2);
+    stops_at_any_clock(6, 80_000_000, 16, LimitWiring::Pair, 2);
 }
 
 #[test]
 fn an_engine_with_many_ticks_between_samples_of_limits() {
-    stops_at_any_clock(6, 79_000_000, 1, Limits::Pair, 16);
+    stops_at_any_clock(6, 79_000_000, 1, LimitWiring::Pair, 16);
 }
 
 #[test]
 fn an_engine_whose_limits_freeze_the_axes() {
-    stops_at_any_clock(6, 80_000_000, 16, Limits::Each, 4);
+    stops_at_any_clock(6, 80_000_000, 16, LimitWiring::Each, 4);
 }
 
 #[test]
 fn an_engine_of_eight_axes() {
-    stops_at_any_clock(8, 112_000_000, 4, Limits::One, 2);
+    stops_at_any_clock(8, 112_000_000, 4, LimitWiring::One, 2);
 }
 
 /// Each program contains a situation that the search for edges could get wrong.
 #[test]
 fn an_engine_of_many_edges() {
-    let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, Limits::None);
+    let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, LimitWiring::None);
     let guard = Guard { watchdog: 0, ..build.guard.clone() };
     let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
-    let programs = dense::program(500).prop_map(|program| (engine_programs::queued_first(program), Events::new()));
+    let programs = dense::program(500)
+        .prop_map(|program| (engine_programs::queued_first(program), Events::new()));
     let came = engines(&build, 100, programs);
     let underruns = came.faults[Cause::Underrun as usize];
     assert!(came.edges > 30_000 && underruns > 0, "{came:?}");

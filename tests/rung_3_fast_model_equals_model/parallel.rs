@@ -38,7 +38,10 @@ fn random_programs_at_1_phase() {
 #[test]
 fn the_demo() {
     for plan in [moves::demo(), moves::demo_at_48_mhz()] {
-        lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+        lockstep::assert_equals_model(
+            Level::Fast,
+            &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
+        );
     }
 }
 
@@ -51,7 +54,8 @@ fn golden_vectors_to_the_last_edge_and_phase() {
         let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
         let build = lockstep::quick_build(16, phase);
         let (program, ticks) = moves::side_by_side(&cases);
-        let record = lockstep::record(Level::Fast, &Job::new(&build, &program, ticks)).expect("the fast model");
+        let record = lockstep::record(Level::Fast, &Job::new(&build, &program, ticks))
+            .expect("the fast model");
         for (axis, case) in cases.iter().enumerate() {
             case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
         }
@@ -88,7 +92,7 @@ fn ten_million_edges_from_zero_phase() {
 /// The pin timings delay steps and changes of DIR, and cause overruns.
 #[test]
 fn registers_are_equal_with_slow_pins() {
-    let slow = PinTiming { width: 12, gap: 20, setup: 30, hold: 70 };
+    let slow = PinTiming { step_high: 12, step_low: 20, dir_setup: 30, dir_hold: 70 };
     let build = Build { pins: [slow; AXES], ..lockstep::tight_build(16, StartPhase::Half) };
     let edges = dense_programs(&build, 500, 400);
     assert!(edges >= 10_000, "only {edges} edges");

@@ -1,16 +1,20 @@
 //! Rust-HDL's simulation of the engine is the engine's model, every output in every clock, and the
 //! engine's memory holds what the model holds.
 
-use carrystep_core::engine::{EngineInputs, Limits};
+use carrystep_core::engine::{EngineInputs, LimitWiring};
 use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::engine_programs::{build, run_programs};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
-fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
+fn assert_equal(
+    build: &EngineBuild,
+    program: &Program,
+    events: &Events,
+) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
     let mut host = EngineHost::new(&build.guard, program, events);
@@ -45,12 +49,21 @@ fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Resu
 }
 
 /// Compares P, positions and discarded steps while nothing moves.
-fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
+fn assert_kept(
+    build: &EngineBuild,
+    model: &Engine,
+    engine: &EngineSim,
+) -> Result<(), TestCaseError> {
     for axis in 0..build.axes() {
         let shaper = model.shaper(axis);
         let p = u64::from(engine.kept(axis, 1)) << 32 | u64::from(engine.kept(axis, 0));
         prop_assert_eq!(model.fraction(axis), p, "P of axis {}", axis);
-        prop_assert_eq!(shaper.position, engine.kept(axis, 2).cast_signed(), "position of axis {}", axis);
+        prop_assert_eq!(
+            shaper.position,
+            engine.kept(axis, 2).cast_signed(),
+            "position of axis {}",
+            axis
+        );
         prop_assert_eq!(shaper.discarded, engine.kept(axis, 3), "discarded steps of axis {}", axis);
     }
     Ok(())
@@ -62,41 +75,53 @@ fn in_rust_hdl(build: &EngineBuild, usual: u64) {
 
 #[test]
 fn random_programs_at_16_phases() {
-    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair), 400_000);
+    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair), 400_000);
 }
 
 #[test]
 fn random_programs_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, Limits::One), 200_000);
+    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, LimitWiring::One), 200_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_4_phases_with_clocks_to_spare() {
-    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, Limits::Each), 200_000);
+    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, LimitWiring::Each), 200_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, Limits::Pair), 200_000);
+    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, LimitWiring::Pair), 200_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_phases() {
-    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, Limits::Pair), 100_000);
+    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Pair), 100_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_tick() {
-    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, Limits::One), 100_000);
+    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 100_000);
+}
+
+/// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same programs.
+#[test]
+fn random_programs_with_each_set_of_parameters() {
+    parameter_sets().iter().for_each(|build| in_rust_hdl(build, 100_000));
 }
 
 #[test]
 fn engine_without_a_host_stays_idle() {
-    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::None);
+    let build = build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::None);
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {
         let outputs = engine.settle(&EngineInputs::default());
-        assert!(outputs.idle && outputs.fault.is_none() && outputs.step == 0 && outputs.dir == 0 && !outputs.enabled);
+        assert!(
+            outputs.idle
+                && outputs.fault.is_none()
+                && outputs.step == 0
+                && outputs.dir == 0
+                && !outputs.enabled
+        );
         engine.clock();
     }
 }

@@ -37,13 +37,19 @@ fn random_programs_at_1_phase() {
 #[test]
 fn the_demo() {
     let plan = moves::demo_at_48_mhz();
-    lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    lockstep::assert_equals_model(
+        Level::RustHdl,
+        &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
+    );
 }
 
 #[test]
 fn every_profile() {
     let plan = moves::curves_at_6_mhz();
-    lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    lockstep::assert_equals_model(
+        Level::RustHdl,
+        &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
+    );
 }
 
 #[test]

@@ -1,22 +1,28 @@
 //! The exported engine in Icarus and in Verilator is the engine's model, every output in every clock.
 
-use carrystep_core::engine::{CAUSES, Cause, Limits, QUEUE};
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tests::engine_programs::{build, run_programs};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
 use carrystep_tests::golden::{self, Case, Edge};
 use proptest::prelude::*;
 use std::cell::Cell;
 
 fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     let verilog = carrystep_verilog::engine_verilog(build, "a test").expect("a fine build");
+    in_this_verilog(level, &verilog, build, usual)
+}
+
+fn in_this_verilog(level: Level, verilog: &str, build: &EngineBuild, usual: u64) -> Seen {
     let seen = Cell::new(Seen::default());
     run_programs(build, usual, |program, events| {
         let recording = Recording::new(build, program, events, 200_000);
-        let difference = replay::difference(level, &verilog, &recording).expect("the tools");
+        let difference = replay::difference(level, verilog, &recording).expect("the tools");
         prop_assert!(difference.is_none(), "{}", difference.unwrap_or_default());
         seen.set(seen.get().with(&recording));
         Ok(recording.clocks)
@@ -72,31 +78,106 @@ impl Seen {
 
 #[test]
 fn random_programs_in_verilator() {
-    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair);
+    let build = build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
     in_verilog(Level::Verilator, &build, 7_000_000).assert_everything();
 }
 
 #[test]
 fn random_programs_of_eight_axes_in_verilator() {
-    let build = build(8, 112_000_000, 16, StartPhase::Half, Limits::Each);
+    let build = build(8, 112_000_000, 16, StartPhase::Half, LimitWiring::Each);
     let seen = in_verilog(Level::Verilator, &build, 2_000_000);
     assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
 }
 
 #[test]
 fn random_programs_of_one_axis_in_verilator() {
-    in_verilog(Level::Verilator, &build(1, 32_000_000, 16, StartPhase::Zero, Limits::Pair), 1_000_000);
+    in_verilog(
+        Level::Verilator,
+        &build(1, 32_000_000, 16, StartPhase::Zero, LimitWiring::Pair),
+        1_000_000,
+    );
 }
 
 #[test]
 fn random_programs_in_icarus() {
-    in_verilog(Level::Icarus, &build(6, 96_000_000, 4, StartPhase::Zero, Limits::One), 150_000);
+    in_verilog(
+        Level::Icarus,
+        &build(6, 96_000_000, 4, StartPhase::Zero, LimitWiring::One),
+        150_000,
+    );
 }
 
 #[test]
 fn random_programs_of_one_and_of_eight_axes_in_icarus() {
-    in_verilog(Level::Icarus, &build(1, 32_000_000, 16, StartPhase::Half, Limits::Each), 50_000);
-    in_verilog(Level::Icarus, &build(8, 112_000_000, 16, StartPhase::Zero, Limits::Pair), 100_000);
+    in_verilog(
+        Level::Icarus,
+        &build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Each),
+        50_000,
+    );
+    in_verilog(
+        Level::Icarus,
+        &build(8, 112_000_000, 16, StartPhase::Zero, LimitWiring::Pair),
+        100_000,
+    );
+}
+
+/// The Verilog of the one build, instantiated with the parameters of the other under the top's usual name.
+fn with_parameters(verilog: &str, of: &EngineBuild) -> String {
+    const TOP: &str = "module carrystep_engine #(\n";
+    let other = carrystep_verilog::engine_verilog(of, "a test").expect("a fine build");
+    let (_, head) = other.split_once(TOP).expect("parameters");
+    let (parameters, rest) = head.split_once("\n) (\n").expect("ports");
+    let (ports, _) = rest.split_once("\n);").expect("the end of the ports");
+    let overrides = parameters.lines().filter_map(|line| {
+        let (declared, value) =
+            line.trim().strip_prefix("parameter ")?.trim_end_matches(',').split_once(" = ")?;
+        Some(format!(".{}({value})", declared.rsplit(' ').next()?))
+    });
+    let overrides: Vec<String> = overrides.collect();
+    assert!(overrides.len() > 30, "too few parameters: {overrides:?}");
+    let connections: Vec<String> = ports
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .filter_map(|line| line.trim().trim_end_matches(',').rsplit(' ').next())
+        .map(|port| format!(".{port}({port})"))
+        .collect();
+    let ports = ports.replace("output reg ", "output wire");
+    format!(
+        "{}\nmodule carrystep_engine (\n{ports}\n);\n    instantiated #({}) core ({});\nendmodule\n",
+        verilog.replace(TOP, "module instantiated #(\n"),
+        overrides.join(", "),
+        connections.join(", "),
+    )
+}
+
+#[test]
+fn verilog_of_one_build_with_the_parameters_of_others_is_theirs() {
+    let sets = parameter_sets();
+    let verilog = carrystep_verilog::engine_verilog(&sets[0], "a test").expect("a fine build");
+    for (build, usual) in sets.iter().zip([500_000; 4]) {
+        let seen =
+            in_this_verilog(Level::Verilator, &with_parameters(&verilog, build), build, usual);
+        assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
+        in_this_verilog(Level::Icarus, &with_parameters(&verilog, build), build, 50_000);
+    }
+}
+
+/// A comparison that would not see a wrong parameter would prove nothing.
+#[test]
+fn verilog_with_one_wrong_parameter_is_another() {
+    let sets = parameter_sets();
+    let verilog = carrystep_verilog::engine_verilog(&sets[0], "a test").expect("a fine build");
+    let mut wrong = sets[1].clone();
+    wrong.pins[0].step_high += 1;
+    let text = with_parameters(&verilog, &wrong);
+    let differs = Cell::new(false);
+    run_programs(&sets[1], 50_000, |program, events| {
+        let recording = Recording::new(&sets[1], program, events, 200_000);
+        let difference = replay::difference(Level::Icarus, &text, &recording).expect("the tools");
+        differs.set(differs.get() || difference.is_some());
+        Ok(recording.clocks)
+    });
+    assert!(differs.get(), "a STEP that is one clock too long is not seen");
 }
 
 /// All golden cases of one start phase, one per axis, are started together and run to their last
@@ -107,15 +188,20 @@ fn golden_vectors_in_verilator() {
     for phase in [StartPhase::Zero, StartPhase::Half] {
         let cases: Vec<&Case> = vectors
             .iter()
-            .filter(|case| case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000))
+            .filter(|case| {
+                case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000)
+            })
             .collect();
         for cases in cases.chunks(AXES) {
             let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
             let build = Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] };
             let build = EngineBuild::minimal(&build, 1 << 40);
-            let recording = Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
-            let verilog = carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
-            let difference = replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
+            let recording =
+                Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
+            let verilog =
+                carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
+            let difference =
+                replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
             assert_eq!(difference, None);
             for (axis, case) in cases.iter().enumerate() {
                 case.assert_edges(&edges(&build, &recording, axis));
@@ -133,7 +219,9 @@ fn golden_program(cases: &[&Case]) -> Program {
     let part = |rows: std::ops::Range<usize>| {
         let mut part = Program::new();
         for row in rows {
-            let lanes = (0..).zip(&segments).filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
+            let lanes = (0..)
+                .zip(&segments)
+                .filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
             part.extend(lanes.map(|(axis, segment)| Command::Segment { axis, segment }));
         }
         part
@@ -156,7 +244,11 @@ fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
         if level(outputs.step) && !before {
             let since = cycle - zero;
             assert_eq!(since % phase, 0, "an edge off its phase");
-            edges.push((since / tick + 1, (since % tick / phase) as u32, if level(outputs.dir) { -1 } else { 1 }));
+            edges.push((
+                since / tick + 1,
+                (since % tick / phase) as u32,
+                if level(outputs.dir) { -1 } else { 1 },
+            ));
         }
         before = level(outputs.step);
     }

@@ -20,7 +20,10 @@ fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
 }
 
 fn planned(level: Level, plan: &Plan) {
-    lockstep::assert_equals_model(level, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    lockstep::assert_equals_model(
+        level,
+        &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
+    );
 }
 
 #[test]
@@ -84,7 +87,8 @@ fn golden_vectors_in_verilator() {
         let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
         let build = lockstep::quick_build(16, phase);
         let (program, ticks) = moves::side_by_side(&cases);
-        let record = lockstep::record(Level::Verilator, &Job::new(&build, &program, ticks)).expect("Verilator");
+        let record = lockstep::record(Level::Verilator, &Job::new(&build, &program, ticks))
+            .expect("Verilator");
         for (axis, case) in cases.iter().enumerate() {
             case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
         }

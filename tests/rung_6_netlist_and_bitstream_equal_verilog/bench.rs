@@ -23,12 +23,17 @@ fn assert_same(stages: &Stages, level: Level, most: u64, clocks: u64) -> (u32, u
     let mut runner = TestRunner::new(Config::default());
     let (mut run, mut edges, mut faults) = (0, 0, 0);
     while run < clocks {
-        let (program, events) =
-            engine_programs::program(stages.build.axes()).new_tree(&mut runner).expect("a program").current();
+        let (program, events) = engine_programs::program(stages.build.axes())
+            .new_tree(&mut runner)
+            .expect("a program")
+            .current();
         let recording = Recording::new(&stages.build, &program, &events, most);
         for (stage, text) in texts {
             let difference = replay::difference(level, text, &recording).expect("the tools");
-            assert_eq!(difference, None, "the {stage} in {level} is not the model: {program:?} {events:?}");
+            assert_eq!(
+                difference, None,
+                "the {stage} in {level} is not the model: {program:?} {events:?}"
+            );
         }
         run += recording.clocks;
         for pair in recording.outputs.windows(2) {

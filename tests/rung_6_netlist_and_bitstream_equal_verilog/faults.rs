@@ -5,7 +5,7 @@ use carrystep_core::{Command, Segment};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tools::equivalence::{self, Verdict};
+use carrystep_tools::equivalence::{self, EquivalenceVerdict};
 use carrystep_tools::{SynthesisError, ice40, kept};
 use std::ops::Range;
 
@@ -13,7 +13,9 @@ use std::ops::Range;
 fn cells(netlist: &str, cell: &str) -> Vec<Range<usize>> {
     let name = format!("\n  {cell} ");
     let begins = netlist.match_indices(&name).map(|(begin, _)| begin + 1);
-    begins.map(|begin| begin..begin + netlist[begin..].find(");\n").expect("the cell's end")).collect()
+    begins
+        .map(|begin| begin..begin + netlist[begin..].find(");\n").expect("the cell's end"))
+        .collect()
 }
 
 /// The text in the parentheses behind a name.
@@ -40,12 +42,22 @@ fn faults_in_the_netlist_are_caught() {
     });
     let [one, other] = [&flip_flops[3], &flip_flops[4]];
     let d_of_other = format!(".D({})", inside(&netlist[other.clone()], ".D"));
-    let crossed = changed(netlist, one, |cell| cell.replace(&format!(".D({})", inside(cell, ".D")), &d_of_other));
+    let crossed = changed(netlist, one, |cell| {
+        cell.replace(&format!(".D({})", inside(cell, ".D")), &d_of_other)
+    });
     let disabled = changed(netlist, &flip_flops[40], |cell| cell.replace(".E(", ".E(!"));
-    for (fault, text) in [("a LUT inverted", inverted), ("a wire crossed", crossed), ("an enable inverted", disabled)] {
-        let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &text).expect("a verdict");
+    for (fault, text) in [
+        ("a LUT inverted", inverted),
+        ("a wire crossed", crossed),
+        ("an enable inverted", disabled),
+    ] {
+        let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &text)
+            .expect("a verdict");
         effort::say(&format!("{fault}: {verdict:?}"));
-        assert!(matches!(verdict, Verdict::Open(..)), "nobody catches {fault}: {verdict:?}");
+        assert!(
+            matches!(verdict, EquivalenceVerdict::Open(..)),
+            "nobody catches {fault}: {verdict:?}"
+        );
     }
     kept::say();
 }
@@ -53,7 +65,10 @@ fn faults_in_the_netlist_are_caught() {
 /// The bitstream with one bit of a tile flipped.
 fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
     let mut lines: Vec<String> = asc.lines().map(str::to_owned).collect();
-    let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}"))
+    let at = lines
+        .iter()
+        .position(|line| line.strip_prefix('.') == Some(tile))
+        .unwrap_or_else(|| panic!("no {tile}"))
         + 1
         + row;
     let bit = if &lines[at][column..=column] == "0" { "1" } else { "0" };
@@ -65,13 +80,16 @@ fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
 fn is_caught(stages: &Stages, asc: &str) -> bool {
     let read_back = stages.placed.read_back(&stages.netlist, asc);
     let verdict = read_back.and_then(|text| {
-        let same_memories = equivalence::memories(&stages.netlist.verilog) == equivalence::memories(&text);
-        equivalence::netlist_and_bitstream(&stages.netlist, &text).map(|verdict| (verdict, same_memories))
+        let same_memories =
+            equivalence::memories(&stages.netlist.verilog) == equivalence::memories(&text);
+        equivalence::netlist_and_bitstream(&stages.netlist, &text)
+            .map(|verdict| (verdict, same_memories))
     });
     match verdict {
-        Ok((Verdict::Proved(_), same_memories)) => !same_memories,
+        Ok((EquivalenceVerdict::Proved(_), same_memories)) => !same_memories,
         // A bitstream that cannot be read back or contains a loop is detected as wrong.
-        Ok((Verdict::Open(..), _)) | Err(SynthesisError::Tool { .. } | SynthesisError::Unread { .. }) => true,
+        Ok((EquivalenceVerdict::Open(..), _))
+        | Err(SynthesisError::Tool { .. } | SynthesisError::Unread { .. }) => true,
         Err(error) => panic!("{error}"),
     }
 }
@@ -83,7 +101,10 @@ fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
         let mut lines = part.lines();
         let tile = lines.next().unwrap_or_default();
         let bits = lines.enumerate().flat_map(|(row, line)| {
-            line.bytes().enumerate().filter(|(_, bit)| *bit != b'0').map(move |(column, _)| (tile, row, column))
+            line.bytes()
+                .enumerate()
+                .filter(|(_, bit)| *bit != b'0')
+                .map(move |(column, _)| (tile, row, column))
         });
         tiles.push(bits.collect());
     }
@@ -98,13 +119,17 @@ const BUSY: usize = 100;
 fn flipped_bits_in_the_bitstream_are_caught() {
     let stages = stages::shipped();
     let asc = &stages.placed.asc;
-    let bits: Vec<_> = set(asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY).flatten().collect();
+    let bits: Vec<_> =
+        set(asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY).flatten().collect();
     let count = if effort::is_long() { 60 } else { 3 };
     let mut seen = 0;
     for i in 0..count {
         let (tile, row, column) = bits[(2 * i + 1) * bits.len() / (2 * count)];
         let caught = is_caught(stages, &flipped(asc, tile, row, column));
-        effort::say(&format!("{tile} row {row} column {column}: {}", if caught { "caught" } else { "no change" }));
+        effort::say(&format!(
+            "{tile} row {row} column {column}: {}",
+            if caught { "caught" } else { "no change" }
+        ));
         seen += usize::from(caught);
     }
     kept::say();
@@ -120,7 +145,10 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     // directions, and nothing else.
     let contents: Vec<_> = set(asc, "ram_data").concat();
     let (tile, row, column) = contents[contents.len() / 2];
-    let read_back = stages.placed.read_back(&stages.netlist, &flipped(asc, tile, row, column)).expect("a bitstream");
+    let read_back = stages
+        .placed
+        .read_back(&stages.netlist, &flipped(asc, tile, row, column))
+        .expect("a bitstream");
     assert_ne!(equivalence::memories(&read_back), equivalence::memories(&stages.netlist.verilog));
 
     // The queues run dry, so that every axis ramps down, once from forward and once from backward
@@ -134,11 +162,15 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     });
     let is_equal = |text: &str| {
         let text = ice40::simulated(text).expect("models of its memories");
-        let mut found = recordings.iter().map(|one| replay::difference(Level::Verilator, &text, one));
-        found.all(|difference| difference.expect("the tools").is_none())
+        let difference =
+            |recording| replay::difference(Level::Verilator, &text, recording).expect("the tools");
+        recordings.iter().all(|recording| difference(recording).is_none())
     };
-    let halts = |recording: &Recording| recording.outputs.last().is_some_and(|(_, last)| last.halted);
-    assert!(recordings.iter().all(halts), "the ramps end within the recordings");
+    assert!(
+        recordings
+            .iter()
+            .all(|recording| recording.outputs.last().is_some_and(|(_, last)| last.halted))
+    );
     assert!(is_equal(&stages.read_back));
     assert!(!is_equal(&read_back), "the bench does not see {tile} row {row} column {column}");
 }

@@ -3,25 +3,26 @@
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::Guard;
 use carrystep_files::Machine;
-use carrystep_tools::ice40::{self, Netlist, Part, Placed};
+use carrystep_tools::ice40::{self, Netlist, NextpnrPart, PlacedDesign};
 use std::path::Path;
 use std::sync::OnceLock;
 
 /// A part with pins for all ports of the engine.
-const PART: Part<'static> = Part { device: "hx8k", package: "ct256" };
+const PART: NextpnrPart<'static> = NextpnrPart { device: "hx8k", package: "ct256" };
 
 pub struct Stages {
     pub build: EngineBuild,
     pub verilog: String,
     pub netlist: Netlist,
-    pub placed: Placed,
+    pub placed: PlacedDesign,
     /// The bitstream, read back as Verilog.
     pub read_back: String,
 }
 
 impl Stages {
     fn new(build: EngineBuild, verilog: String) -> Self {
-        let netlist = ice40::synthesise(&verilog, carrystep_verilog::ENGINE_NAME).expect("a netlist");
+        let netlist =
+            ice40::synthesise(&verilog, carrystep_verilog::ENGINE_NAME).expect("a netlist");
         let clock_hz = build.timebase.clock_hz();
         let placed = netlist.place(PART, clock_hz, 1).expect("a placed design");
         let read_back = placed.read_back(&netlist, &placed.asc).expect("a bitstream");
@@ -41,7 +42,8 @@ fn shipped_build() -> EngineBuild {
 pub fn shipped() -> &'static Stages {
     static STAGES: OnceLock<Stages> = OnceLock::new();
     STAGES.get_or_init(|| {
-        let file = root().join("hdl-out/core").join(format!("{}.v", carrystep_verilog::ENGINE_NAME));
+        let file =
+            root().join("hdl-out/core").join(format!("{}.v", carrystep_verilog::ENGINE_NAME));
         Stages::new(shipped_build(), std::fs::read_to_string(file).expect("the exported Verilog"))
     })
 }

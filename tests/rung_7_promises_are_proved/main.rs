@@ -33,12 +33,21 @@ fn jobs(proof: &Proof) -> Vec<Job<'_>> {
         jobs.push(job(case, Question::Induction(proof.depth)));
         jobs.push(job(case, Question::Base(proof.depth + 1)));
     }
-    jobs.extend(proof.bugs.iter().map(|bug| job(&first.with(bug), Question::Fails(bug.breaks, proof.reach))));
+    jobs.extend(
+        proof
+            .bugs
+            .iter()
+            .map(|bug| job(&first.with(bug), Question::Fails(bug.breaks, proof.reach))),
+    );
     jobs
 }
 
 /// Executes all jobs on all processor cores; returns the answers that are not the expected ones.
-fn do_all<T: Sync>(jobs: &[T], name: impl Fn(&T) -> String + Sync, ask: impl Fn(&T) -> Answer + Sync) -> String {
+fn do_all<T: Sync>(
+    jobs: &[T],
+    name: impl Fn(&T) -> String + Sync,
+    ask: impl Fn(&T) -> Answer + Sync,
+) -> String {
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(String::new());
     let workers = thread::available_parallelism().map_or(2, usize::from);
@@ -62,7 +71,11 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
     let proofs = proofs::all();
     let jobs: Vec<Job<'_>> = proofs.iter().flat_map(jobs).collect();
-    let failures = do_all(&jobs, |job| job.name.clone(), |job| ask(&job.proof.promises, &job.case, job.question));
+    let failures = do_all(
+        &jobs,
+        |job| job.name.clone(),
+        |job| ask(&job.proof.promises, &job.case, job.question),
+    );
     kept::say();
     assert!(failures.is_empty(), "{failures}");
     println!("\n{}", proofs::table());
@@ -78,8 +91,11 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
 fn engine_is_proved_equal_to_the_parallel_axes() {
     proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
     let bugged = equivalence::move_with_bugs();
-    let mut jobs: Vec<(Move, Asked)> = equivalence::moves().into_iter().map(|pair| (pair, Asked::Equal)).collect();
-    jobs.extend(BUGS.iter().map(|(module, bug)| (bugged.with(module, bug), Asked::Differ(bug.breaks))));
+    let mut jobs: Vec<(Move, Asked)> =
+        equivalence::moves().into_iter().map(|pair| (pair, Asked::Equal)).collect();
+    jobs.extend(
+        BUGS.iter().map(|(module, bug)| (bugged.with(module, bug), Asked::Differ(bug.breaks))),
+    );
     jobs.extend(equivalence::moves().pop().map(|pair| (pair, Asked::Covers)));
     let name = |(pair, asked): &(Move, Asked)| format!("{}: {asked:?}", pair.engine.name);
     let failures = do_all(&jobs, name, |(pair, asked)| compare(pair, *asked));
@@ -96,9 +112,17 @@ fn promises_page_lists_exactly_what_is_proved() {
     let page = std::fs::read_to_string(moves::root().join("docs/promises.md")).expect("the page");
     let proofs = proofs::all();
     for promise in 1..=14 {
-        let row = page.lines().find(|line| line.starts_with(&format!("| {promise} |"))).expect("a row a promise");
-        let told: BTreeSet<&str> =
-            row.split('|').nth(3).into_iter().flat_map(|cell| cell.split('`')).map(str::trim).collect();
+        let row = page
+            .lines()
+            .find(|line| line.starts_with(&format!("| {promise} |")))
+            .expect("a row a promise");
+        let told: BTreeSet<&str> = row
+            .split('|')
+            .nth(3)
+            .into_iter()
+            .flat_map(|cell| cell.split('`'))
+            .map(str::trim)
+            .collect();
         let told: BTreeSet<&str> = told.into_iter().filter(|module| !module.is_empty()).collect();
         let proved = proofs.iter().filter(|proof| proof.promises.numbers().contains(&promise));
         assert_eq!(told, proved.map(|proof| proof.module).collect(), "promise {promise}");
@@ -112,7 +136,11 @@ fn every_promise_has_a_planted_bug_that_breaks_it() {
         let labels = proof.promises.labels();
         let broken: BTreeSet<&str> = proof.bugs.iter().map(|bug| bug.breaks).collect();
         for label in &broken {
-            assert!(labels.contains(label), "{}: a bug breaks {label}, which is not there", proof.module);
+            assert!(
+                labels.contains(label),
+                "{}: a bug breaks {label}, which is not there",
+                proof.module
+            );
         }
         for number in proof.promises.numbers() {
             let own = format!("promise_{number}_");

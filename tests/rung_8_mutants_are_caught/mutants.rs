@@ -26,7 +26,11 @@ fn mutants_are_caught_or_harmless() {
     let sample = sample(&stimuli::verilog(), "carrystep_engine", if few { FEW } else { ALL });
     let stimuli = stimuli::all(&stimuli::build());
     for stimulus in stimuli.iter().filter(|_| !few) {
-        assert!(!differs(&sample, 0, stimulus), "without a mutant nothing may differ: {}", stimulus.name);
+        assert!(
+            !differs(&sample, 0, stimulus),
+            "without a mutant nothing may differ: {}",
+            stimulus.name
+        );
     }
     let caught = catchers(&sample, &stimuli);
     effort::say(&table(&stimuli, &caught));
@@ -37,13 +41,24 @@ fn mutants_are_caught_or_harmless() {
         survivors::write(&alive);
     }
     summary(&sample, &caught, &alive);
-    let without: Vec<&String> = alive.iter().filter(|(_, reason)| *reason == NO_REASON).map(|(name, _)| name).collect();
-    assert!(without.is_empty(), "nothing catches, and nobody says why it is harmless:\n{without:#?}");
+    let without: Vec<&String> =
+        alive.iter().filter(|(_, reason)| *reason == NO_REASON).map(|(name, _)| name).collect();
+    assert!(
+        without.is_empty(),
+        "nothing catches, and nobody says why it is harmless:\n{without:#?}"
+    );
     let drawn = |name: &String| sample.mutants.iter().any(|mutant| mutant.name == *name);
-    let gone: Vec<&String> = listed.keys().filter(|name| !alive.contains_key(*name) && (!few || drawn(name))).collect();
-    assert!(writes || gone.is_empty(), "listed in docs/mutants.md, but caught or no longer drawn:\n{gone:#?}");
+    let gone: Vec<&String> =
+        listed.keys().filter(|name| !alive.contains_key(*name) && (!few || drawn(name))).collect();
+    assert!(
+        writes || gone.is_empty(),
+        "listed in docs/mutants.md, but caught or no longer drawn:\n{gone:#?}"
+    );
     if !few && !writes {
-        assert_eq!(alive, listed, "docs/mutants.md is not what is known now: run `cargo xtask mutants --write`");
+        assert_eq!(
+            alive, listed,
+            "docs/mutants.md is not what is known now: run `cargo xtask mutants --write`"
+        );
     }
     no_harm_is_proved_harmless(&sample, &caught);
     kept::say();
@@ -51,12 +66,19 @@ fn mutants_are_caught_or_harmless() {
 
 /// The mutants that are not caught, with the reason why they are harmless: a proof if there is one,
 /// otherwise the listed reason. In a short run the listed reasons are used without a new proof.
-fn survivors_of(sample: &Sample, caught: &[Option<&str>], listed: &Survivors, few: bool) -> Survivors {
+fn survivors_of(
+    sample: &Sample,
+    caught: &[Option<&str>],
+    listed: &Survivors,
+    few: bool,
+) -> Survivors {
     let is_open = |place: &usize| caught[*place].is_none();
-    let (known, open): (Vec<usize>, Vec<usize>) =
-        (0..caught.len()).filter(is_open).partition(|place| few && listed.contains_key(&sample.mutants[*place].name));
+    let (known, open): (Vec<usize>, Vec<usize>) = (0..caught.len())
+        .filter(is_open)
+        .partition(|place| few && listed.contains_key(&sample.mutants[*place].name));
     let name = |place: usize| sample.mutants[place].name.clone();
-    let mut alive: Survivors = known.into_iter().map(|place| (name(place), listed[&name(place)].clone())).collect();
+    let mut alive: Survivors =
+        known.into_iter().map(|place| (name(place), listed[&name(place)].clone())).collect();
     for (place, judgement) in open.iter().zip(judge(sample, &open)) {
         let written = listed.get(&name(*place)).filter(|reason| !reason.starts_with(PROVED));
         let reason = match judgement {
@@ -73,13 +95,22 @@ fn survivors_of(sample: &Sample, caught: &[Option<&str>], listed: &Survivors, fe
 /// not be proved equal.
 fn no_harm_is_proved_harmless(sample: &Sample, caught: &[Option<&str>]) {
     let mut modules = BTreeSet::new();
-    let harmful = sample.mutants.iter().zip(caught).filter(|(_, caught)| caught.is_some()).map(|(mutant, _)| mutant);
+    let harmful = sample
+        .mutants
+        .iter()
+        .zip(caught)
+        .filter(|(_, caught)| caught.is_some())
+        .map(|(mutant, _)| mutant);
     let first: Vec<&Mutant> = harmful.filter(|mutant| modules.insert(&mutant.module)).collect();
-    let wrong: Vec<&str> = jobs::each(&first, |mutant| (is_proved(sample, mutant, Scope::Module), &*mutant.name))
-        .into_iter()
-        .filter_map(|(proved, name)| proved.then_some(name))
-        .collect();
-    assert!(wrong.is_empty() && first.len() > 4, "caught by a recording, and proved to be the engine: {wrong:#?}");
+    let wrong: Vec<&str> =
+        jobs::each(&first, |mutant| (is_proved(sample, mutant, Scope::Module), &*mutant.name))
+            .into_iter()
+            .filter_map(|(proved, name)| proved.then_some(name))
+            .collect();
+    assert!(
+        wrong.is_empty() && first.len() > 4,
+        "caught by a recording, and proved to be the engine: {wrong:#?}"
+    );
 }
 
 /// The figures for `docs/long-runs.md`.
@@ -100,9 +131,9 @@ fn table(stimuli: &[Stimulus], caught: &[Option<&str>]) -> String {
     for catcher in caught {
         *counts.entry(*catcher).or_default() += 1;
     }
-    let rows = stimuli
-        .iter()
-        .filter_map(|stimulus| Some((stimulus.name.as_str(), *counts.get(&Some(stimulus.name.as_str()))?)));
+    let rows = stimuli.iter().filter_map(|stimulus| {
+        Some((stimulus.name.as_str(), *counts.get(&Some(stimulus.name.as_str()))?))
+    });
     let alive = counts.get(&None).copied().unwrap_or(0);
     let rows = rows
         .chain([("no recording", alive)])

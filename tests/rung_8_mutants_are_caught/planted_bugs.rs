@@ -33,22 +33,41 @@ const GATEWARE: [Bug; 9] = [
         text: "active & (left == ONE)",
         becomes: "active & (left == 32'd0)",
     },
-    Bug { name: "the gap is one clock short", text: "BUSY_LOAD = 17'd4;", becomes: "BUSY_LOAD = 17'd3;" },
-    Bug { name: "the hold is one clock short", text: "HOLD_LOAD = 16'd39;", becomes: "HOLD_LOAD = 16'd38;" },
-    Bug { name: "the set-up is one clock short", text: "SETUP_LOAD = 16'd19;", becomes: "SETUP_LOAD = 16'd18;" },
+    Bug {
+        name: "the gap is one clock short",
+        text: "BUSY_LOAD = ",
+        becomes: "BUSY_LOAD = ((STEP_HIGH + STEP_LOW) == 32'd5) ? 17'd3 : ",
+    },
+    Bug {
+        name: "the hold is one clock short",
+        text: "HOLD_LOAD = ",
+        becomes: "HOLD_LOAD = (DIR_HOLD == 32'd40) ? 16'd38 : ",
+    },
+    Bug {
+        name: "the set-up is one clock short",
+        text: "SETUP_LOAD = ",
+        becomes: "SETUP_LOAD = (DIR_SETUP == 32'd20) ? 16'd18 : ",
+    },
     Bug {
         name: "the bisection halves without the sign",
         text: "(bisect_v >> BY_ONE) | (bisect_v & SIGN)",
         becomes: "bisect_v >> BY_ONE",
     },
-    Bug { name: "A does not change within a segment", text: "accel <= accel + jerk;", becomes: "accel <= accel;" },
+    Bug {
+        name: "A does not change within a segment",
+        text: "accel <= accel + jerk;",
+        becomes: "accel <= accel;",
+    },
     Bug { name: "an overrun is not latched", text: "late <= 1'b1;", becomes: "late <= late;" },
 ];
 
 /// A fixed program with a little of everything: reversals, jerk, one-tick segments, steps too fast
 /// for the pins, a queue that runs dry, a clear.
 fn program() -> Program {
-    let segment = |axis: u8, ticks, v, a, j, last| Command::Segment { axis, segment: Segment { ticks, v, a, j, last } };
+    let segment = |axis: u8, ticks, v, a, j, last| Command::Segment {
+        axis,
+        segment: Segment { ticks, v, a, j, last },
+    };
     let mut program = Program::new();
     // A reversal directly behind a step and directly before the next: the hold time delays DIR, and
     // the set-up time delays the step.
@@ -87,7 +106,9 @@ fn program() -> Program {
 
 fn in_icarus(verilog: &str, job: &Job<'_>) -> Record {
     let mut changes = Vec::new();
-    let outcome = run_verilog(Level::Icarus, verilog, job, &mut |cycle, outputs| changes.push((cycle, *outputs)));
+    let outcome = run_verilog(Level::Icarus, verilog, job, &mut |cycle, outputs| {
+        changes.push((cycle, *outputs));
+    });
     Record { changes, outcome: outcome.ok() }
 }
 
@@ -98,11 +119,18 @@ fn rung_5_catches_each_bug_in_the_gateware() {
     let job = lockstep::job(&build, &program);
     let expected = lockstep::record(Level::Model, &job).expect("the model");
     let verilog = carrystep_verilog::six_axis_verilog(&build, "a test").expect("the core");
-    assert_eq!(lockstep::difference(&expected, &in_icarus(&verilog, &job)), None, "without a bug nothing may differ");
+    assert_eq!(
+        lockstep::difference(&expected, &in_icarus(&verilog, &job)),
+        None,
+        "without a bug nothing may differ"
+    );
     for Bug { name, text, becomes } in GATEWARE {
         assert!(verilog.contains(text), "'{name}' cannot be planted: no '{text}' in the Verilog");
         let found = in_icarus(&verilog.replace(text, becomes), &job);
-        assert!(lockstep::difference(&expected, &found).is_some(), "rung 5 does not catch '{name}'");
+        assert!(
+            lockstep::difference(&expected, &found).is_some(),
+            "rung 5 does not catch '{name}'"
+        );
     }
 }
 
@@ -146,12 +174,15 @@ fn rung_1_catches_each_bug_in_the_plan() {
         ("long segments one tick too long", longer),
         ("registers of 42 fraction bits", rounded),
     ] {
-        assert!(!moves::check(&file, &plan, &[], &program, &plan.build).passed(), "rung 1 does not catch '{name}'");
+        assert!(
+            !moves::check(&file, &plan, &[], &program, &plan.build).passed(),
+            "rung 1 does not catch '{name}'"
+        );
     }
 
     let mut early = plan.build.clone();
-    early.pins[3].width -= 1;
-    early.pins[3].gap += 1;
+    early.pins[3].step_high -= 1;
+    early.pins[3].step_low += 1;
     let report = moves::check(&file, &plan, &[], &plan.program(), &early);
     assert!(!report.axes[3].passed, "rung 1 does not catch 'a pulse one clock short'");
 }
@@ -178,6 +209,14 @@ fn rung_2_catches_each_bug_in_the_arithmetic() {
     let no_jerk = |r: &mut [i64; 3]| r[0] += r[1];
     let exact = closed_form::distance(&segment, segment.ticks);
     assert_eq!(num_bigint::BigInt::from(run(right)), exact);
-    assert_ne!(num_bigint::BigInt::from(run(new_a)), exact, "rung 2 does not catch 'the new A is added to V'");
-    assert_ne!(num_bigint::BigInt::from(run(no_jerk)), exact, "rung 2 does not catch 'J is not added'");
+    assert_ne!(
+        num_bigint::BigInt::from(run(new_a)),
+        exact,
+        "rung 2 does not catch 'the new A is added to V'"
+    );
+    assert_ne!(
+        num_bigint::BigInt::from(run(no_jerk)),
+        exact,
+        "rung 2 does not catch 'J is not added'"
+    );
 }

@@ -16,12 +16,15 @@ pub fn edges_in_icarus(build: &Build, segments: &[Segment]) -> (Vec<Edge>, u64) 
     for Segment { ticks, v, a, j, last } in segments {
         writeln!(program, "{ticks:x} {v:x} {a:x} {j:x} {}", u8::from(*last)).expect("a string");
     }
-    for (name, text) in [("core.v", verilog.as_str()), ("bench.v", BENCH), ("program.txt", &program)] {
+    for (name, text) in
+        [("core.v", verilog.as_str()), ("bench.v", BENCH), ("program.txt", &program)]
+    {
         std::fs::write(folder.path().join(name), text).expect("a file");
     }
     let run = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).current_dir(&folder).output();
-        let output = output.unwrap_or_else(|_| panic!("{program} is missing: sudo apt-get install iverilog"));
+        let output = output
+            .unwrap_or_else(|_| panic!("{program} is missing: sudo apt-get install iverilog"));
         let text = String::from_utf8([output.stdout, output.stderr].concat()).expect("text");
         assert!(output.status.success(), "{program}: {text}");
         text

@@ -1,6 +1,7 @@
-// Runs carrystep_axis alone in Icarus at the fewest clocks per tick: a strobe, then the bisection.
-// The file of +program=FILE has one segment per line: ticks v a j last, in hex. The bench prints
-// `tick phase back` for each step and, after the last segment, `P` and its value.
+// Runs carrystep_axis alone in Icarus with the least number of clocks per tick: one for the strobe,
+// and BISECTION clocks for the bisection. Each line of the file +program=FILE has one segment:
+// ticks, v, a, j and last, in hexadecimal. The bench prints `tick phase back` for each step and,
+// after the last segment, `P` and its value.
 `timescale 1ns / 1ps
 module axis_bench;
     parameter BISECTION = 4;
@@ -29,7 +30,7 @@ module axis_bench;
         end
     endtask
 
-    // Offers the next segment, if there is one, in the following cycle.
+    // Reads the next segment from the file and, if there is one, offers it in the following cycle.
     task offer;
         begin
             more = $fscanf(file, "%h %h %h %h %b", ticks, v, a, j, last) == 5;

@@ -6,7 +6,7 @@ use carrystep_boards::Board;
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::registers::{CLEAR, CONTROL, POSITION, SEGMENT, START, of_axis};
-use carrystep_files::Source;
+use carrystep_files::SourceText;
 use carrystep_simulators::vectors::Vectors;
 use carrystep_verilog::{Gateware, shipped_machine};
 
@@ -43,14 +43,15 @@ impl Session {
         let text = shipped_machine(board, &board.clocks[0]).expect("a machine");
         let quick = "[machine.guard]\nenable_ms = 0\ndebounce_us = 0\nwatchdog_ms = 0\n";
         let text = text.replace("[machine.guard]\n", quick);
-        let source = Source { path: "machine.toml".into(), text: text.into() };
+        let source = SourceText { path: "machine.toml".into(), text: text.into() };
         let gateware = Gateware::new(board, &board.parts[0], source).expect("gateware");
         assert_eq!(gateware.build().axes(), AXES);
         let mut bench = LinkBench::uart(gateware.build(), gateware.uart().expect("a UART"));
         bench.board = Some(BoardPins::new(board));
         talk(&mut bench);
         let vectors = bench.board.expect("what was kept").vectors;
-        let verilog = gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text).collect();
+        let verilog =
+            gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text).collect();
         Self { gateware, vectors, verilog }
     }
 

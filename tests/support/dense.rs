@@ -60,7 +60,8 @@ fn course(ticks: u32) -> impl Strategy<Value = Course> {
     });
     let any = prop_oneof![4 => free, 4 => turning, 1 => sharp, 2 => steady, 1 => bound];
     // An overspeed ends the whole program, so it must be rare.
-    (any, prop::bool::weighted(0.01)).prop_map(move |(course, wild)| if wild { course } else { course.tame(ticks) })
+    (any, prop::bool::weighted(0.01))
+        .prop_map(move |(course, wild)| if wild { course } else { course.tame(ticks) })
 }
 
 impl Course {
@@ -87,7 +88,11 @@ impl Course {
 
 /// The same courses, slow enough for the fast model to jump from edge to edge.
 fn slower(ticks: u32) -> impl Strategy<Value = Course> {
-    (course(ticks), 2_u32..8).prop_map(|(c, bits)| Course { v: c.v >> bits, a: c.a >> bits, j: c.j >> bits })
+    (course(ticks), 2_u32..8).prop_map(|(c, bits)| Course {
+        v: c.v >> bits,
+        a: c.a >> bits,
+        j: c.j >> bits,
+    })
 }
 
 fn row(ticks: impl Strategy<Value = u32>, slow: bool) -> impl Strategy<Value = (u32, Vec<Course>)> {
@@ -102,7 +107,8 @@ fn row(ticks: impl Strategy<Value = u32>, slow: bool) -> impl Strategy<Value = (
 fn residue() -> impl Strategy<Value = Vec<(u32, Vec<Course>)>> {
     let steady = |v| Course { v, a: 0, j: 0 };
     let rows = move |off: Vec<i64>| {
-        let all = |v: &dyn Fn(i64) -> i64| off.iter().map(|&off| steady(v(off))).collect::<Vec<_>>();
+        let all =
+            |v: &dyn Fn(i64) -> i64| off.iter().map(|&off| steady(v(off))).collect::<Vec<_>>();
         vec![(2, all(&|_| 1 << 62)), (1, all(&|off| off))]
     };
     prop::collection::vec(-1_i64..2, AXES).prop_map(rows)
@@ -111,12 +117,14 @@ fn residue() -> impl Strategy<Value = Vec<(u32, Vec<Course>)>> {
 /// A joint move with a few rows of each kind, whose segments have up to four times `ticks` ticks,
 /// followed by a clear in case an axis was too fast.
 pub fn program(ticks: u32) -> impl Strategy<Value = Program> {
-    let short = prop::collection::vec(row(prop_oneof![1 => Just(1_u32), 3 => 2_u32..40], false), 0..4);
+    let short =
+        prop::collection::vec(row(prop_oneof![1 => Just(1_u32), 3 => 2_u32..40], false), 0..4);
     let dense = prop::collection::vec(row(ticks / 8..ticks, false), 0..4);
     let sparse = prop::collection::vec(row(ticks / 2..4 * ticks, true), 0..3);
     (prop::option::of(residue()), short, dense, sparse, any::<bool>()).prop_map(
         |(residue, short, dense, sparse, last)| {
-            let rows: Vec<_> = residue.into_iter().flatten().chain(short).chain(dense).chain(sparse).collect();
+            let rows: Vec<_> =
+                residue.into_iter().flatten().chain(short).chain(dense).chain(sparse).collect();
             let count = rows.len();
             let mut program = Program::new();
             for (row, (ticks, axes)) in rows.into_iter().enumerate() {

@@ -4,7 +4,7 @@
 
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
-use carrystep_core::engine::{Guard, Limits, QUEUE};
+use carrystep_core::engine::{Guard, LimitWiring, QUEUE};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use carrystep_simulators::engine::{Event, Events};
 use proptest::prelude::*;
@@ -50,22 +50,40 @@ fn too_fast(axes: usize) -> impl Strategy<Value = Program> {
         let mut program = Program::new();
         for (axis, (ticks, v, a, j, least)) in (0..).zip(lanes) {
             let v = if least && axis % 4 == 3 { i64::MIN } else { v };
-            program.push(Command::Segment { axis, segment: Segment { ticks, v, a: a / 4, j: j / 16, last: true } });
+            program.push(Command::Segment {
+                axis,
+                segment: Segment { ticks, v, a: a / 4, j: j / 16, last: true },
+            });
         }
-        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 2500 }, Command::Clear]);
+        program.extend([
+            Command::Start { mask: all(axes) },
+            Command::Wait { clocks: 2500 },
+            Command::Clear,
+        ]);
         program
     })
 }
 
 /// Long segments at speeds that produce steps, and a clear for the case that a stop occurs.
 fn cruises(axes: usize) -> impl Strategy<Value = Program> {
-    let axis = (200_u32..600, prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()], -(1_i64 << 50)..(1 << 50));
+    let axis = (
+        200_u32..600,
+        prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()],
+        -(1_i64 << 50)..(1 << 50),
+    );
     prop::collection::vec(axis, axes).prop_map(move |lanes| {
         let mut program = Program::new();
         for (axis, (ticks, v, a)) in (0..).zip(lanes) {
-            program.push(Command::Segment { axis, segment: Segment { ticks, v, a, j: 0, last: true } });
+            program.push(Command::Segment {
+                axis,
+                segment: Segment { ticks, v, a, j: 0, last: true },
+            });
         }
-        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 12_000 }, Command::Clear]);
+        program.extend([
+            Command::Start { mask: all(axes) },
+            Command::Wait { clocks: 12_000 },
+            Command::Clear,
+        ]);
         program
     })
 }
@@ -80,16 +98,20 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         1 => Just((Event::Enable(false), Event::Enable(true))),
         6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
         1 => Just((Event::Broken, Event::Kick)),
+        2 => Just((Event::Reset(true), Event::Reset(false))),
+        1 => (1_u8..8).prop_map(|mask| (Event::WordError(mask), Event::WordError(0))),
     ];
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
-    (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+    (what, 0_u64..60_000, length)
+        .prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
 }
 
 /// The same program with the start behind as many rows of segments as fit into the queues, so that
 /// the host is never late.
 pub fn queued_first(mut program: Program) -> Program {
     program.retain(|command| !matches!(command, Command::Start { .. }));
-    let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
+    let segments =
+        program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
     program.insert(segments.min(QUEUE * AXES), Command::Start { mask: all(AXES) });
     program
 }
@@ -97,13 +119,15 @@ pub fn queued_first(mut program: Program) -> Program {
 /// Kicks of a host in regular intervals, or from a host that falls silent.
 fn signs_of_life() -> impl Strategy<Value = Events> {
     let interval = prop_oneof![3 => 100_u64..5000, 1 => 5000_u64..12_000];
-    (interval, prop_oneof![3 => Just(120_000_u64), 1 => 0_u64..40_000])
-        .prop_map(|(interval, end)| (0..end / interval).map(|i| (i * interval, Event::Kick)).collect())
+    (interval, prop_oneof![3 => Just(120_000_u64), 1 => 0_u64..40_000]).prop_map(
+        |(interval, end)| (0..end / interval).map(|i| (i * interval, Event::Kick)).collect(),
+    )
 }
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
+    let episodes =
+        prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
     (episodes, signs_of_life()).prop_map(|(episodes, life)| {
         let mut events = episodes.concat();
         events.extend(life);
@@ -131,21 +155,27 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
 /// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
 /// them are too slow for a step in every other tick. Ramps take ten to some hundred ticks. The
 /// guard's rounds are so short that all of its functions occur.
-pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
+pub fn build(
+    axes: usize,
+    clock_hz: u64,
+    phases: u32,
+    phase: StartPhase,
+    limits: LimitWiring,
+) -> EngineBuild {
     let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
     let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
-    build.pins[3].gap = 237;
-    build.pins[5].hold = 221;
+    build.pins[3].step_low = 237;
+    build.pins[5].dir_hold = 221;
     let mut build = EngineBuild::minimal(&build, 1);
     build.pins = build.pins.iter().copied().cycle().take(axes).collect();
-    let low = limits == Limits::Pair;
+    let low = limits == LimitWiring::Pair;
     build.guard = Guard {
         round: 2,
         debounce: 3,
         watchdog: 40,
         enable: 2,
         limits,
-        limit_freezes: limits == Limits::Each,
+        limit_freezes: limits == LimitWiring::Each,
         estop_low: low,
         limits_low: low,
         stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
@@ -153,22 +183,48 @@ pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits:
     build
 }
 
+/// Four sets of parameters of the engine of six axes and 16 phases, which is one text of Verilog. Each differs from the
+/// first in every parameter but the second's e-stop and limits.
+pub fn parameter_sets() -> [EngineBuild; 4] {
+    let first = build(AXES, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
+    let second = build(AXES, 96_000_000, 16, StartPhase::Zero, LimitWiring::Pair);
+    let mut third = build(AXES, 112_000_000, 16, StartPhase::Zero, LimitWiring::Each);
+    third.guard = Guard { round: 8, debounce: 1, watchdog: 0, enable: 0, ..third.guard };
+    third.pins.reverse();
+    third.guard.stop.reverse();
+    let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, LimitWiring::One);
+    fourth.guard = Guard { round: 4, debounce: 5, watchdog: 21, enable: 7, ..fourth.guard };
+    fourth.pins.rotate_left(2);
+    fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
+    [first, second, third, fourth]
+}
+
 /// Runs random programs until they have taken the required number of clocks.
 ///
 /// # Panics
 /// Where `one`, which gives the clocks that a program took, finds a difference.
-pub fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
+pub fn run_programs(
+    build: &EngineBuild,
+    usual: u64,
+    one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>,
+) {
     let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
-    let mut config = Config { cases: 4, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
+    let mut config = Config {
+        cases: 4,
+        max_shrink_time: 20_000,
+        failure_persistence: None,
+        ..Config::default()
+    };
     while clocks.get() < enough {
         // A fixed seed is incremented, so that each round has other programs.
         if let RngSeed::Fixed(seed) = &mut config.rng_seed {
             *seed = seed.wrapping_add(1);
         }
-        let held = TestRunner::new(config.clone()).run(&program(build.axes()), |(program, events)| {
-            clocks.set(clocks.get() + one(&program, &events)?);
-            Ok(())
-        });
+        let held =
+            TestRunner::new(config.clone()).run(&program(build.axes()), |(program, events)| {
+                clocks.set(clocks.get() + one(&program, &events)?);
+                Ok(())
+            });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
     effort::figures(&format!("{} clocks, no difference", clocks.get()));

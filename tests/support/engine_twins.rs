@@ -26,7 +26,12 @@ impl Came {
     pub fn and(self, other: Self) -> Self {
         let faults = std::array::from_fn(|cause| self.faults[cause] + other.faults[cause]);
         let Self { edges, clocks, leapt, .. } = self;
-        Self { edges: edges + other.edges, clocks: clocks + other.clocks, leapt: leapt + other.leapt, faults }
+        Self {
+            edges: edges + other.edges,
+            clocks: clocks + other.clocks,
+            leapt: leapt + other.leapt,
+            faults,
+        }
     }
 }
 
@@ -34,10 +39,18 @@ impl Came {
 /// are the greatest lengths of the leaps, used in turn, so that a leap can end in any clock.
 ///
 /// # Errors The first difference.
-pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64], most: u64) -> Result<Came, String> {
+pub fn run(
+    build: &EngineBuild,
+    program: &Program,
+    events: &Events,
+    leaps: &[u64],
+    most: u64,
+) -> Result<Came, String> {
     let (mut fast, mut slow) = (FastEngine::new(build), Engine::new(build));
-    let (mut fast_host, mut slow_host) =
-        (EngineHost::new(&build.guard, program, events), EngineHost::new(&build.guard, program, events));
+    let (mut fast_host, mut slow_host) = (
+        EngineHost::new(&build.guard, program, events),
+        EngineHost::new(&build.guard, program, events),
+    );
     let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
     let mut came = Came::default();
     let mut leaps = leaps.iter().cycle();
@@ -73,7 +86,10 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
             fault = slow_outputs.fault;
             slow.clock(&slow_inputs);
             if slow_inputs != inputs {
-                return Err(format!("cycle {}: inputs\n fast {inputs:?}\n slow {slow_inputs:?}", clock - 1));
+                return Err(format!(
+                    "cycle {}: inputs\n fast {inputs:?}\n slow {slow_inputs:?}",
+                    clock - 1
+                ));
             }
             let last = clock == fast.cycle();
             let silent = is_silent(&slow_inputs, &slow_outputs, &slow.outputs(&slow_inputs));
@@ -85,7 +101,7 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
                 let now = slow.shaper(axis);
                 let edge = |change| Edge { clock, axis: axis as u8, change, backward: now.dir };
                 slow_edges.extend((now.step && !before.step).then(|| edge(Change::Rise)));
-                slow_edges.extend((now.dir != before.dir).then(|| edge(Change::Turn)));
+                slow_edges.extend((now.dir != before.dir).then(|| edge(Change::DirChange)));
             }
         }
         came.clocks = fast.cycle();
@@ -98,7 +114,11 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
             ));
         }
         if *fast.core() != slow {
-            return Err(format!("cycle {}: registers\n fast {:?}\n slow {slow:?}", came.clocks, fast.core()));
+            return Err(format!(
+                "cycle {}: registers\n fast {:?}\n slow {slow:?}",
+                came.clocks,
+                fast.core()
+            ));
         }
         came.edges += fast_edges.len() as u64;
         fast_edges.clear();
@@ -112,7 +132,8 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
 /// True if a cycle with these inputs and outputs, and these outputs after it, contains no event for
 /// the host.
 fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -> bool {
-    let taken = (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
+    let taken =
+        (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
     let state = |outputs: &EngineOutputs| {
         let EngineOutputs { fault, halted, idle, enabled, homing, .. } = *outputs;
         (fault, halted, idle, enabled, homing)

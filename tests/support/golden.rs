@@ -43,7 +43,8 @@ pub fn engine_vectors() -> Vec<Case> {
     struct File {
         cases: Vec<Case>,
     }
-    let file: File = serde_json::from_str(include_str!("../golden/engine_vectors.json")).expect("golden file");
+    let file: File =
+        serde_json::from_str(include_str!("../golden/engine_vectors.json")).expect("golden file");
     file.cases
 }
 
@@ -91,7 +92,9 @@ impl Case {
         let ticks = join(|(tick, ..)| tick.to_string());
         let full = join(|(tick, phase, direction)| format!("{tick}:{phase}:{direction}"));
         let signed = join(|(tick, phase, direction)| format!("{tick}:{phase}:{direction:+}"));
-        let hash = |text: &str| Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        let hash = |text: &str| {
+            Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect::<String>()
+        };
         assert_eq!(hash(&ticks), self.sha256_ticks_csv, "{name}: hash of the ticks");
         assert!(
             [hash(&full), hash(&signed)].contains(&self.sha256_edges_csv),

@@ -4,19 +4,19 @@
 mod board;
 mod frames;
 mod hosts;
-pub mod ports;
+mod ports;
 
 pub use board::BoardPins;
 pub use frames::{Said, frame, on_the_line, unframe};
+pub use ports::Both;
 
 use hosts::{Receiver, Sender, SpiHost};
 
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs};
-use carrystep_core::link::{END, Line, LinkInputs, LinkOutputs, Uart};
+use carrystep_core::link::{END, LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
 use carrystep_model::Link;
-use carrystep_simulators::vectors::{Bits, Vectors};
 use std::collections::VecDeque;
 
 /// Both modules, the line and the host's end of it.
@@ -39,15 +39,6 @@ pub struct LinkBench {
     pub board: Option<BoardPins>,
 }
 
-/// The recorded cycles of link and line.
-#[derive(Debug, Clone)]
-pub struct Both {
-    /// Cycles of the link.
-    pub link: Vectors,
-    /// Cycles of its line.
-    pub line: Vectors,
-}
-
 /// The link with its line, and the host's end of that line.
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
@@ -65,10 +56,18 @@ impl LinkBench {
 
     /// The same over SPI; `tenths` is half a period of SCK in tenths of a clock.
     pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
-        let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
+        let mut link = link(build, LineKind::Spi.build_id(build)).expect("a link");
         link.connect_all();
-        let model = Link::new(build, Line::Spi);
-        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), model, host: SpiHost::new(tenths) })
+        let model = Link::new(build, LineKind::Spi);
+        Self::new(
+            build,
+            Wire::Spi {
+                link,
+                line: SpiSim::new().expect("a line"),
+                model,
+                host: SpiHost::new(tenths),
+            },
+        )
     }
 
     fn new(build: &EngineBuild, wire: Wire) -> Self {
@@ -179,21 +178,26 @@ impl Wire {
             Self::Uart { link, .. } => link.bytes(),
             Self::Spi { link, line, .. } => (line.last(), link.offered()),
         };
-        both.link.add(ports::link_inputs(seen, bytes), ports::link_outputs(shown, offered));
-        let told = match self {
-            Self::Uart { .. } => Bits::default().and(1, u64::from(seen.rx)),
-            Self::Spi { host, .. } => {
-                host.pins().into_iter().fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin)))
+        match self {
+            Self::Uart { .. } => {
+                both.add(seen, shown, (bytes, offered), &[("rx", seen.rx), ("tx", level)]);
             }
-        };
-        both.line.add(
-            told.and(1, u64::from(offered.is_some())).and(8, offered.map_or(0, u64::from)),
-            ports::line_outputs(bytes, level),
-        );
+            Self::Spi { host, .. } => {
+                let [sck, select_n, mosi] = host.pins();
+                let pins = [("sck", sck), ("select_n", select_n), ("mosi", mosi), ("miso", level)];
+                both.add(seen, shown, (bytes, offered), &pins);
+            }
+        }
     }
 
     /// Advances by one cycle and returns the byte that the host has received.
-    fn clock(&mut self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, clocks: u64) -> Option<u8> {
+    fn clock(
+        &mut self,
+        seen: &LinkInputs,
+        shown: &LinkOutputs,
+        level: bool,
+        clocks: u64,
+    ) -> Option<u8> {
         match self {
             Self::Uart { link, model, receiver, .. } => {
                 assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");

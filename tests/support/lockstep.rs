@@ -33,12 +33,19 @@ pub fn difference(expected: &Record, found: &Record) -> Option<String> {
     let pairs = expected.changes.iter().zip(&found.changes);
     if let Some((e, f)) = pairs.into_iter().find(|(e, f)| e != f) {
         let cycle = e.0.min(f.0);
-        return Some(format!("first difference in cycle {cycle}:\n expected {e:?}\n found    {f:?}"));
+        return Some(format!(
+            "first difference in cycle {cycle}:\n expected {e:?}\n found    {f:?}"
+        ));
     }
     if expected.changes.len() != found.changes.len() {
-        return Some(format!("{} changes expected, {} found", expected.changes.len(), found.changes.len()));
+        return Some(format!(
+            "{} changes expected, {} found",
+            expected.changes.len(),
+            found.changes.len()
+        ));
     }
-    (expected.outcome != found.outcome).then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
+    (expected.outcome != found.outcome)
+        .then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
 }
 
 /// Panics at the first clock in which a level differs from the clock-by-clock model or from the
@@ -55,16 +62,22 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
 
 /// All outputs of a planned engine but those that the fast level does not tell (the `ready`s, `latch` and `room`), in each
 /// cycle in which one of them changed, and how it ended.
-fn engine_record(level: Level, build: &EngineBuild, plan: &Plan) -> (Vec<(u64, EngineOutputs)>, EngineOutcome) {
+fn engine_record(
+    level: Level,
+    build: &EngineBuild,
+    plan: &Plan,
+) -> (Vec<(u64, EngineOutputs)>, EngineOutcome) {
     let program = plan.program();
     let mut changes: Vec<(u64, EngineOutputs)> = Vec::new();
-    let outcome = EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
-        let told = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
-        let told = EngineOutputs { latch: None, room: None, ..told };
-        if changes.last().is_none_or(|(_, before)| *before != told) {
-            changes.push((cycle, told));
-        }
-    });
+    let outcome =
+        EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
+            let told =
+                EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
+            let told = EngineOutputs { latch: None, room: None, ..told };
+            if changes.last().is_none_or(|(_, before)| *before != told) {
+                changes.push((cycle, told));
+            }
+        });
     (changes, outcome.unwrap_or_else(|error| panic!("{level}: {error}")))
 }
 
@@ -76,10 +89,21 @@ pub fn assert_engine_equals_model(level: Level, (build, plan): &(EngineBuild, Pl
     if let Some((e, f)) = expected.iter().zip(&found).find(|(e, f)| e != f) {
         panic!("{level} is not the model:\n expected {e:?}\n found    {f:?}");
     }
-    assert_eq!((expected.len(), &ended), (found.len(), &found_ended), "{level}: changes, and the end");
-    let edges: u64 = plan.moves.iter().flat_map(|planned| &planned.axes).map(|axis| axis.steps.unsigned_abs()).sum();
-    let rising =
-        expected.windows(2).map(|pair| u64::from((pair[1].1.step & !pair[0].1.step).count_ones())).sum::<u64>();
+    assert_eq!(
+        (expected.len(), &ended),
+        (found.len(), &found_ended),
+        "{level}: changes, and the end"
+    );
+    let edges: u64 = plan
+        .moves
+        .iter()
+        .flat_map(|planned| &planned.axes)
+        .map(|axis| axis.steps.unsigned_abs())
+        .sum();
+    let rising = expected
+        .windows(2)
+        .map(|pair| u64::from((pair[1].1.step & !pair[0].1.step).count_ones()))
+        .sum::<u64>();
     assert_eq!((rising, ended.fault), (edges, None), "{level}: edges, and no stop");
 }
 
@@ -102,7 +126,11 @@ pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edg
             let since = cycle - zero;
             assert_eq!(since % tick % phase, 0, "an edge off its phase");
             let backward = outputs.dir >> axis & 1 == 1;
-            edges.push((since / tick + 1, (since % tick / phase) as u32, if backward { -1 } else { 1 }));
+            edges.push((
+                since / tick + 1,
+                (since % tick / phase) as u32,
+                if backward { -1 } else { 1 },
+            ));
         }
         before = step;
     }
@@ -112,7 +140,12 @@ pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edg
 /// A build for random programs with the fewest clocks per tick. The axes have very different pin
 /// timings, so that overruns and waits for set-up and for hold all occur.
 pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
-    let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
+    let pins = |step_high, step_low, dir_setup, dir_hold| PinTiming {
+        step_high,
+        step_low,
+        dir_setup,
+        dir_hold,
+    };
     let pins: [PinTiming; AXES] = [
         PinTiming::SHORTEST,
         pins(2, 3, 1, 1),

@@ -1,11 +1,11 @@
 //! Move files and golden cases as programs for the levels.
 
 use crate::golden::Case;
-use carrystep_check::{AxisSetup, Checker, Origin, Report, Setup};
+use carrystep_check::{AxisSetup, CheckReport, Checker, Origin, Setup};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment};
-use carrystep_files::{Machine, MoveFile, Source};
+use carrystep_files::{Machine, MoveFile, SourceText};
 use carrystep_plan::Plan;
-use carrystep_profile::{Line, Timeline};
+use carrystep_profile::{StraightLine, Timeline};
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level};
 use std::path::Path;
@@ -22,9 +22,12 @@ pub fn demo() -> Plan {
 
 /// The demo's moves at 48 MHz: a clock that only the parallel core takes, so its levels are through sooner.
 pub fn demo_at_48_mhz() -> Plan {
-    let read = |name: &str| std::fs::read_to_string(root().join("sim").join(name)).expect("a shipped file");
+    let read = |name: &str| {
+        std::fs::read_to_string(root().join("sim").join(name)).expect("a shipped file")
+    };
     let moves = read("demo.toml").replace("machine_file = \"six-axis.toml\"", "");
-    let text = read("six-axis.toml").replace("clock_hz = 80_000_000", "clock_hz = 48_000_000") + &moves;
+    let text =
+        read("six-axis.toml").replace("clock_hz = 80_000_000", "clock_hz = 48_000_000") + &moves;
     planned_at("demo", text, 48_000_000)
 }
 
@@ -41,7 +44,8 @@ pub fn curves_at_6_mhz() -> Plan {
 
 /// A text that is a move file of this clock, planned.
 fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
-    let file = MoveFile::from_source(Source { path: name.into(), text: text.into() }).expect("a fine move file");
+    let file = MoveFile::from_source(SourceText { path: name.into(), text: text.into() })
+        .expect("a fine move file");
     assert_eq!(file.machine.timebase.clock_hz(), clock_hz, "{name}");
     carrystep_plan::plan::<f64>(&file).expect("a plan")
 }
@@ -52,7 +56,7 @@ pub fn nudge() -> (EngineBuild, Plan) {
     let engine = machine.engine();
     let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.1, y = -0.1, z = 0.01, a = 1, b = -0.2, c = 5 }\n";
     let text = format!("{to}{}", to.replace("x = 0.1, y = -0.1", "x = -0.1, y = 0.1"));
-    let source = Source { path: "nudge.toml".into(), text: text.into() };
+    let source = SourceText { path: "nudge.toml".into(), text: text.into() };
     let file = MoveFile::of_moves(machine, source).expect("fine moves");
     (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))
 }
@@ -65,7 +69,8 @@ pub fn on_the_engine(name: &str) -> (EngineBuild, Plan) {
 
 /// A move file that is shipped in `sim/`, and its plan.
 pub fn shipped(name: &str) -> (MoveFile, Plan) {
-    let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml")).expect("a shipped move file");
+    let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml"))
+        .expect("a shipped move file");
     let plan = carrystep_plan::plan::<f64>(&file).expect("a shipped plan");
     (file, plan)
 }
@@ -83,25 +88,40 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
         }
     }
     due.sort_by_key(|&(tick, axis, _)| (tick, axis));
-    let mut program: Program = due.into_iter().map(|(_, axis, segment)| Command::Segment { axis, segment }).collect();
+    let mut program: Program =
+        due.into_iter().map(|(_, axis, segment)| Command::Segment { axis, segment }).collect();
     program.insert(cases.len(), Command::Start { mask: (1 << cases.len()) - 1 });
     (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
 }
 
 /// Runs a plan's program, or another one instead, on the fast model and checks pins and straight
 /// lines as `carrystep simulate` does.
-pub fn check(file: &MoveFile, plan: &Plan, lines: &[Line], program: &Program, build: &Build) -> Report {
+pub fn check(
+    file: &MoveFile,
+    plan: &Plan,
+    lines: &[StraightLine],
+    program: &Program,
+    build: &Build,
+) -> CheckReport {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
-    let mut checker = Checker::new(Setup { lines: lines.to_vec(), ..check_setup(file, plan, &timelines, &job) });
+    let mut checker =
+        Checker::new(Setup { lines: lines.to_vec(), ..check_setup(file, plan, &timelines, &job) });
     let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
-    let outcome = carrystep_simulators::run(Level::Fast, &job, &mut |cycle, outputs| feed.observe(cycle, outputs));
+    let outcome = carrystep_simulators::run(Level::Fast, &job, &mut |cycle, outputs| {
+        feed.observe(cycle, outputs);
+    });
     feed.end(outcome.expect("the model").clocks).expect("the checker");
     checker.finish()
 }
 
 /// The setup of the checker for a planned move file in a run of `job`.
-fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], job: &Job<'_>) -> Setup<'a> {
+fn check_setup<'a>(
+    file: &'a MoveFile,
+    plan: &Plan,
+    timelines: &'a [Timeline],
+    job: &Job<'_>,
+) -> Setup<'a> {
     let time = plan.build.timebase;
     let load = carrystep_simulators::origin(job).expect("the program starts");
     let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {

@@ -27,8 +27,14 @@ pub fn catchers<'a>(sample: &Sample, stimuli: &'a [Stimulus]) -> Vec<Option<&'a 
     each(&places, |place| {
         let mutant = &sample.mutants[*place];
         let mut fitting = stimuli.iter().filter(|stimulus| stimulus.is_for(&mutant.module));
-        let catcher = fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str());
-        effort::say(&format!("{} is caught by {}: {}", place + 1, catcher.unwrap_or("no recording"), mutant.name));
+        let catcher =
+            fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str());
+        effort::say(&format!(
+            "{} is caught by {}: {}",
+            place + 1,
+            catcher.unwrap_or("no recording"),
+            mutant.name
+        ));
         catcher
     })
 }

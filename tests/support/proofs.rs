@@ -21,21 +21,22 @@ pub(crate) mod builds;
 mod edge;
 mod engine;
 pub mod equivalence;
-mod homes;
+mod event_wheel;
+mod homing_control;
 mod limits;
 mod promises;
 mod pulser;
 mod queue;
+mod resets;
 mod sequencer;
 mod shaper;
 mod six_axis;
 mod solver;
 mod stops;
+mod supervisor;
 mod table;
 mod tick;
-mod turn;
-mod watch;
-mod wheel;
+mod time_slot;
 
 pub use promises::Promises;
 pub use solver::{ProofError, Question, ask, tools};
@@ -66,6 +67,8 @@ pub struct Case {
     pub name: String,
     /// The name of the exported module.
     pub dut: String,
+    /// The module's parameters with the values that replace those of the text.
+    pub parameters: Vec<(&'static str, u32)>,
     /// The whole exported text.
     pub verilog: Arc<str>,
     /// The numbers that `promises.sv` takes as parameters.
@@ -85,7 +88,11 @@ pub struct Bug {
 impl Case {
     /// Number of axes for which a star in `promises.sv` stands: the parameter `AXES`.
     pub fn axes(&self) -> usize {
-        self.numbers.iter().find(|(name, _)| *name == "AXES").and_then(|(_, axes)| axes.parse().ok()).unwrap_or(1)
+        self.numbers
+            .iter()
+            .find(|(name, _)| *name == "AXES")
+            .and_then(|(_, axes)| axes.parse().ok())
+            .unwrap_or(1)
     }
 
     /// The same Verilog with a bug planted.
@@ -93,11 +100,17 @@ impl Case {
     /// # Panics If the text does not occur in the module exactly once; the bug must then be
     /// rewritten.
     pub fn with(&self, bug: &Bug) -> Self {
-        let start = self.verilog.find(&format!("module {} (", self.dut)).expect("the module is in its Verilog");
+        let begins =
+            [" (", " #("].map(|head| self.verilog.find(&format!("module {}{head}\n", self.dut)));
+        let start = begins.into_iter().flatten().next().expect("the module is in its Verilog");
         let end = start + self.verilog[start..].find("endmodule").expect("the module ends");
         let module = &self.verilog[start..end];
         let found = module.matches(bug.text).count();
-        assert_eq!(found, 1, "{}: '{}' stands {found} times in {}, not once", bug.breaks, bug.text, self.dut);
+        assert_eq!(
+            found, 1,
+            "{}: '{}' stands {found} times in {}, not once",
+            bug.breaks, bug.text, self.dut
+        );
         let changed = module.replace(bug.text, bug.becomes);
         let verilog = [&self.verilog[..start], &changed, &self.verilog[end..]].concat();
         Self { verilog: verilog.into(), ..self.clone() }
@@ -120,12 +133,13 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         six_axis::proof(),
         pulser::proof(engine),
         stops::proof(engine),
-        watch::proof(engine),
+        supervisor::proof(engine),
         queue::proof(engine),
         limits::proof(engine),
-        homes::proof(engine),
-        turn::proof(engine),
-        wheel::proof(engine),
+        homing_control::proof(engine),
+        resets::proof(engine),
+        time_slot::proof(engine),
+        event_wheel::proof(engine),
         adder::proof(engine),
         engine::proof(engine),
     ]

@@ -1,7 +1,7 @@
 //! Generates random moves of random machines, as move files.
 
-use carrystep_core::ProfileKind;
-use carrystep_files::{MoveFile, Source};
+use carrystep_core::{PinTimes, ProfileKind};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::plan;
 use proptest::prelude::*;
 
@@ -20,7 +20,7 @@ pub enum Pace {
 
 /// A move file from its text.
 pub fn file(text: &str) -> MoveFile {
-    MoveFile::from_source(Source { path: "test.toml".into(), text: text.into() })
+    MoveFile::from_source(SourceText { path: "test.toml".into(), text: text.into() })
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -32,7 +32,7 @@ struct RandomAxis {
     /// The jerk limit as a multiple of the acceleration limit, in 1/s.
     jerk: f64,
     per_unit: f64,
-    pins: [u64; 4],
+    pins: PinTimes,
 }
 
 /// Some moves of one machine.
@@ -66,12 +66,12 @@ impl RandomMoves {
             self.tick_ns, self.phases
         );
         for (i, axis) in self.axes.iter().enumerate() {
-            let [step, gap, setup, hold] = axis.pins;
+            let PinTimes { step_high, step_low, dir_setup, dir_hold } = axis.pins;
             // The greatest speed that tick, phases, width and gap allow; dividing by the units
             // makes it fractional.
             let clocks = |ns: u64| ((ns * CLOCK_HZ).div_ceil(1_000_000_000)).max(1) as f64;
             let phase = (self.tick_ns * CLOCK_HZ / 1_000_000_000) as f64 / f64::from(self.phases);
-            let period = (clocks(step) + clocks(gap) + phase) / CLOCK_HZ as f64;
+            let period = (clocks(step_high) + clocks(step_low) + phase) / CLOCK_HZ as f64;
             let most = (1.0 / period).min(0.4999e9 / self.tick_ns as f64);
             let speed = axis.speed.min(most * 0.999999);
             let accel = axis.accel.min(0.49e18 / (self.tick_ns * self.tick_ns) as f64);
@@ -79,8 +79,8 @@ impl RandomMoves {
             write!(
                 text,
                 "[[machine.axis]]\nname = \"a{i}\"\nsteps_per_unit = {u:?}\nspeed_limit = {:?}\nstart_speed = {:?}\n\
-                 accel_limit = {:?}\njerk_limit = {:?}\nstep_ns = {step}\ngap_ns = {gap}\nsetup_ns = {setup}\n\
-                 hold_ns = {hold}\n",
+                 accel_limit = {:?}\njerk_limit = {:?}\nstep_high_ns = {step_high}\nstep_low_ns = {step_low}\ndir_setup_ns = {dir_setup}\n\
+                 dir_hold_ns = {dir_hold}\n",
                 speed / u,
                 speed * axis.start / u * 0.9999999,
                 accel / u,
@@ -89,12 +89,19 @@ impl RandomMoves {
             .expect("a string takes all");
         }
         let constant = self.axes.iter().all(|axis| axis.start > 0.0);
-        for (i, RandomMove { profile, steps, straight, fit_ns, .. }) in self.moves.iter().enumerate() {
-            let profile = if *profile == ProfileKind::Constant && !constant { ProfileKind::Ranade } else { *profile };
+        for (i, RandomMove { profile, steps, straight, fit_ns, .. }) in
+            self.moves.iter().enumerate()
+        {
+            let profile = if *profile == ProfileKind::Constant && !constant {
+                ProfileKind::Ranade
+            } else {
+                *profile
+            };
             let to: Vec<String> = (steps.iter().zip(&self.axes).enumerate())
                 .map(|(i, (&n, axis))| format!("a{i} = {:?}", f64::from(n) / axis.per_unit))
                 .collect();
-            let time = times.get(i).cloned().flatten().map_or(String::new(), |t| format!("time = {t}\n"));
+            let time =
+                times.get(i).cloned().flatten().map_or(String::new(), |t| format!("time = {t}\n"));
             let fit = fit_ns.map_or(String::new(), |ns| format!("fit_ns = {ns}\n"));
             let path = if *straight { "straight" } else { "free" };
             write!(
@@ -110,7 +117,8 @@ impl RandomMoves {
     /// The file without times, and the same file with the stretched times.
     pub fn files(&self) -> Vec<MoveFile> {
         let fast = file(&self.text(&[]));
-        let planned = plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
+        let planned =
+            plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
         let times: Vec<Option<String>> = (self.moves.iter().zip(&planned.moves))
             .map(|(RandomMove { stretch, .. }, planned)| {
                 // A file allows times up to 10^6 s.
@@ -119,7 +127,11 @@ impl RandomMoves {
                 }
                 let ns = (planned.seconds * 1e9 * (*stretch)?).min(1e15);
                 let ticks = (ns / self.tick_ns as f64).ceil() * self.tick_ns as f64;
-                Some(if self.zero { format!("{:.9}", ticks / 1e9) } else { format!("{:.12}", ns / 1e9) })
+                Some(if self.zero {
+                    format!("{:.9}", ticks / 1e9)
+                } else {
+                    format!("{:.12}", ns / 1e9)
+                })
             })
             .collect();
         vec![fast, file(&self.text(&times))]
@@ -139,18 +151,25 @@ fn axis(pace: Pace) -> impl Strategy<Value = RandomAxis> {
     let start = prop_oneof![2 => Just(0.0), 2 => 0.001..0.9, 1 => Just(1.0)];
     let pins = [1_u64..3000, 1_u64..3000, 1_u64..40_000, 1_u64..40_000];
     let unit = prop_oneof![Just(1.0), Just(80.0), decades(0.01, 1000.0)];
-    (speed, start, accel, jerk, unit, pins).prop_map(|(speed, start, accel, jerk, per_unit, pins)| RandomAxis {
-        speed,
-        start,
-        accel,
-        jerk,
-        per_unit,
-        pins,
-    })
+    (speed, start, accel, jerk, unit, pins).prop_map(
+        |(speed, start, accel, jerk, per_unit, [step_high, step_low, dir_setup, dir_hold])| {
+            RandomAxis {
+                speed,
+                start,
+                accel,
+                jerk,
+                per_unit,
+                pins: PinTimes { step_high, step_low, dir_setup, dir_hold },
+            }
+        },
+    )
 }
 
 /// One to four moves of these kinds, for machines with one to three axes.
-pub fn random_moves(pace: Pace, kinds: &'static [ProfileKind]) -> impl Strategy<Value = RandomMoves> {
+pub fn random_moves(
+    pace: Pace,
+    kinds: &'static [ProfileKind],
+) -> impl Strategy<Value = RandomMoves> {
     let ticks: &[u64] = match pace {
         Pace::Any => &[500, 1000, 2000, 10_000],
         Pace::Brisk => &[500, 1000],
@@ -161,13 +180,25 @@ pub fn random_moves(pace: Pace, kinds: &'static [ProfileKind]) -> impl Strategy<
         move |(tick_ns, phases, zero, axes)| {
             let steps = prop_oneof![1 => Just(0), 2 => -3..4, 3 => -40..40, 3 => -3000..3000];
             let steps = proptest::collection::vec(steps, axes.len());
-            let stretch = proptest::option::of(prop_oneof![Just(1.0000001), 1.0001..1.5, 1.0001..20.0]);
+            let stretch =
+                proptest::option::of(prop_oneof![Just(1.0000001), 1.0001..1.5, 1.0001..20.0]);
             let fit_ns = proptest::option::of(decades(1.0, 1e5).prop_map(|ns| ns as u64));
-            let moved = (prop::sample::select(kinds), steps, any::<bool>(), stretch, fit_ns).prop_map(
-                |(profile, steps, straight, stretch, fit_ns)| RandomMove { profile, steps, stretch, straight, fit_ns },
-            );
+            let moved = (prop::sample::select(kinds), steps, any::<bool>(), stretch, fit_ns)
+                .prop_map(|(profile, steps, straight, stretch, fit_ns)| RandomMove {
+                    profile,
+                    steps,
+                    stretch,
+                    straight,
+                    fit_ns,
+                });
             let moves = proptest::collection::vec(moved, 1..5);
-            moves.prop_map(move |moves| RandomMoves { tick_ns, phases, zero, axes: axes.clone(), moves })
+            moves.prop_map(move |moves| RandomMoves {
+                tick_ns,
+                phases,
+                zero,
+                axes: axes.clone(),
+                moves,
+            })
         },
     )
 }

@@ -55,7 +55,9 @@ impl Twins {
                 }
             }
         }
-        self.until(&Inputs::default(), |slow| slow.faults().any() || slow.outputs(&Inputs::default()).idle)?;
+        self.until(&Inputs::default(), |slow| {
+            slow.faults().any() || slow.outputs(&Inputs::default()).idle
+        })?;
         self.pass(&Inputs::default(), tail)
     }
 
@@ -106,17 +108,20 @@ impl Twins {
 
     /// Executes one clock of the slow model and derives its edges from its pins alone.
     fn slow_clock(&mut self, inputs: &Inputs, cycle: u64) {
-        let pins =
-            |slow: &SixAxis| std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir));
+        let pins = |slow: &SixAxis| {
+            std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir))
+        };
         let before = pins(&self.slow);
         self.slow.clock(inputs);
         let edge = |axis, change, backward| Edge { clock: cycle + 1, axis, change, backward };
-        for (axis, ((step_before, dir_before), (step, dir))) in (0..).zip(before.into_iter().zip(pins(&self.slow))) {
+        for (axis, ((step_before, dir_before), (step, dir))) in
+            (0..).zip(before.into_iter().zip(pins(&self.slow)))
+        {
             if step && !step_before {
                 self.slow_edges.push(edge(axis, Change::Rise, dir));
             }
             if dir != dir_before {
-                self.slow_edges.push(edge(axis, Change::Turn, dir));
+                self.slow_edges.push(edge(axis, Change::DirChange, dir));
             }
         }
     }
@@ -124,12 +129,19 @@ impl Twins {
     fn compare(&mut self) -> Result<(), String> {
         let cycle = self.fast.cycle();
         if self.fast_edges != self.slow_edges {
-            let pair = self.fast_edges.iter().zip(&self.slow_edges).find(|(fast, slow)| fast != slow);
+            let pair =
+                self.fast_edges.iter().zip(&self.slow_edges).find(|(fast, slow)| fast != slow);
             let counts = (self.fast_edges.len(), self.slow_edges.len());
-            return Err(format!("up to cycle {cycle}: edges {counts:?} (fast, slow), first difference {pair:?}"));
+            return Err(format!(
+                "up to cycle {cycle}: edges {counts:?} (fast, slow), first difference {pair:?}"
+            ));
         }
         if *self.fast.core() != self.slow {
-            return Err(format!("cycle {cycle}: registers\n fast {:?}\n slow {:?}", self.fast.core(), self.slow));
+            return Err(format!(
+                "cycle {cycle}: registers\n fast {:?}\n slow {:?}",
+                self.fast.core(),
+                self.slow
+            ));
         }
         self.edges += self.fast_edges.len() as u64;
         self.fast_edges.clear();

@@ -2,7 +2,9 @@
 //! start, on random joint moves in which all axes reverse and change segment in the same tick.
 
 use carrystep_core::engine::QUEUE;
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::Recording;
@@ -50,20 +52,31 @@ fn changes(pins: impl Iterator<Item = (u64, u8, u8)>, start: u64) -> Vec<(u64, u
 #[test]
 fn engine_pulses_equal_those_of_the_parallel_axes() {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let pins = [PinTiming { width: 9, gap: 7, setup: 20, hold: 11 }; AXES];
+    let pins = [PinTiming { step_high: 9, step_low: 7, dir_setup: 20, dir_hold: 11 }; AXES];
     let build = Build { timebase, phase: StartPhase::Half, pins };
     let engine = EngineBuild::minimal(&build, 1 << 40);
-    let mut runner = TestRunner::new(Config { cases: 150, failure_persistence: None, ..Config::default() });
+    let mut runner =
+        TestRunner::new(Config { cases: 150, failure_persistence: None, ..Config::default() });
     let compared = std::cell::Cell::new(0);
     let held = runner.run(&rows(), |rows| {
         let parallel = program(&rows, 1);
-        let record = lockstep::record(Level::Model, &lockstep::job(&build, &parallel)).expect("the model");
-        let recording = Recording::new(&engine, &program(&rows, rows.len()), &Events::new(), 500_000);
-        let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).map(|(cycle, _)| cycle + 1);
+        let record =
+            lockstep::record(Level::Model, &lockstep::job(&build, &parallel)).expect("the model");
+        let recording =
+            Recording::new(&engine, &program(&rows, rows.len()), &Events::new(), 500_000);
+        let started = recording
+            .outputs
+            .iter()
+            .find(|(_, outputs)| outputs.started)
+            .map(|(cycle, _)| cycle + 1);
         let origin = record.outcome.as_ref().and_then(|outcome| outcome.origin);
         let (Some(started), Some(origin)) = (started, origin) else { return Ok(()) };
-        let expected = changes(record.changes.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)), origin);
-        let found = changes(recording.outputs.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)), started);
+        let expected =
+            changes(record.changes.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)), origin);
+        let found = changes(
+            recording.outputs.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)),
+            started,
+        );
         // Moves that end in a fault are excluded, because the two cores stop differently.
         let sound = !record.changes.iter().any(|(_, out)| out.faults.any());
         if sound {

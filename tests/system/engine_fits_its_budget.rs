@@ -3,7 +3,9 @@
 //! the size of all rows, and the clock of the rows marked `always`.
 
 use carrystep_tests::effort;
-use carrystep_tools::resources::{self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row};
+use carrystep_tools::resources::{
+    self, EIGHT_TO_SIX, EngineRow, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS,
+};
 use carrystep_tools::{ice40, kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
@@ -20,7 +22,8 @@ fn every_engine_build_fits_its_budget_of_logic_cells() {
         let (_, netlist) = netlists.iter().find(|(other, _)| *other == build).expect("a netlist");
         let found = netlist.size(row.part).expect("a size");
         effort::say(&format!("{} at {} ns: {found:?}", row.part.device, row.tick_ns));
-        let fits = found.logic_cells <= row.budget.logic_cells && found.block_rams <= row.budget.block_rams;
+        let fits = found.logic_cells <= row.budget.logic_cells
+            && found.block_rams <= row.budget.block_rams;
         assert!(fits, "{found:?} used of {row:?}");
     }
     kept::say();
@@ -34,15 +37,19 @@ fn eight_axes_need_few_more_logic_cells_than_six() {
         let netlist = ice40::synthesise(&verilog, ENGINE_NAME).expect("a netlist");
         f64::from(netlist.size(row.part).expect("a size").logic_cells)
     });
-    effort::say(&format!("eight axes {eight}, six {six} logic cells: {:.1} % more", (eight / six - 1.0) * 100.0));
+    effort::say(&format!(
+        "eight axes {eight}, six {six} logic cells: {:.1} % more",
+        (eight / six - 1.0) * 100.0
+    ));
     kept::say();
     assert!(eight <= six * most, "{eight} logic cells for eight axes, {six} for six");
 }
 
 #[test]
 fn placed_engines_reach_their_clock() {
-    let reached = |row: &Row| {
-        let mut speeds = resources::placed(row).expect("a netlist").map(|mhz| mhz.expect("a placed design"));
+    let reached = |row: &EngineRow| {
+        let mut speeds =
+            resources::placed(row).expect("a netlist").map(|mhz| mhz.expect("a placed design"));
         speeds.find(|mhz| mhz * 1e6 >= row.clock_hz as f64)
     };
     for row in ROWS.iter().filter(|row| row.always) {
@@ -57,7 +64,10 @@ fn placed_engines_reach_their_clock() {
 fn link_fits_its_budget() {
     for (name, found) in LINES.iter().zip(resources::links().expect("two links")) {
         effort::say(&format!("{name}: {found:?}"));
-        assert!(found.logic_cells <= LINK_BUDGET.logic_cells, "{name}: {found:?} of {LINK_BUDGET:?}");
+        assert!(
+            found.logic_cells <= LINK_BUDGET.logic_cells,
+            "{name}: {found:?} of {LINK_BUDGET:?}"
+        );
         assert!(found.block_rams <= LINK_BUDGET.block_rams, "{name}: {found:?} of {LINK_BUDGET:?}");
     }
     kept::say();

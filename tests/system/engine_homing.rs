@@ -2,8 +2,10 @@
 //! there, while the other axes continue unchanged. The exported Verilog does the same in every
 //! clock, and planted bugs are caught.
 
-use carrystep_core::engine::{Cause, Guard, Limits};
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::engine::{Cause, Guard, LimitWiring};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::Level;
@@ -18,11 +20,14 @@ const THEN: u64 = 30_000;
 /// The axis that homes; it moves backward.
 const HOMING: usize = 1;
 
-fn build(limits: Limits) -> EngineBuild {
+fn build(limits: LimitWiring) -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
+    let pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 3, dir_hold: 3 }; AXES];
     let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
-    EngineBuild { guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard }, ..build }
+    EngineBuild {
+        guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard },
+        ..build
+    }
 }
 
 /// All axes move at a sixteenth of a step per tick, the odd ones backward, in three segments each.
@@ -32,8 +37,10 @@ fn cruise() -> Program {
         Command::Segment { axis, segment: Segment { ticks, v, a: 0, j: 0, last } }
     };
     let rows = [(400, false), (100, false), (400, true)];
-    let mut program: Program =
-        rows.iter().flat_map(|&(ticks, last)| (0..6).map(move |axis| segment(axis, ticks, last))).collect();
+    let mut program: Program = rows
+        .iter()
+        .flat_map(|&(ticks, last)| (0..6).map(move |axis| segment(axis, ticks, last)))
+        .collect();
     program.push(Command::Start { mask: 0x3f });
     program
 }
@@ -42,10 +49,14 @@ fn cruise() -> Program {
 /// `then` on.
 fn events(then: u64) -> Events {
     let limit = 1 << HOMING;
-    vec![(100, Event::Home(limit)), (then, Event::LimitMin(limit)), (then + 3_000, Event::LimitMin(0))]
+    vec![
+        (100, Event::Home(limit)),
+        (then, Event::LimitMin(limit)),
+        (then + 3_000, Event::LimitMin(0)),
+    ]
 }
 
-fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
+fn run(limits: LimitWiring, program: &Program, events: &Events) -> Recording {
     Recording::new(&build(limits), program, events, 300_000)
 }
 
@@ -53,48 +64,71 @@ fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
 fn edges(recording: &Recording, axis: usize) -> Vec<u64> {
     let level = |mask: u8| mask >> axis & 1 == 1;
     let pairs = recording.outputs.windows(2);
-    pairs.filter(|pair| !level(pair[0].1.step) && level(pair[1].1.step)).map(|pair| pair[1].0).collect()
+    pairs
+        .filter(|pair| !level(pair[0].1.step) && level(pair[1].1.step))
+        .map(|pair| pair[1].0)
+        .collect()
 }
 
 #[test]
 fn homing_axis_slows_down_alone_at_its_limit() {
-    for limits in [Limits::Pair, Limits::Each] {
+    for limits in [LimitWiring::Pair, LimitWiring::Each] {
         let free = run(limits, &cruise(), &Events::new());
         let homed = run(limits, &cruise(), &events(THEN));
-        assert!(homed.outputs.iter().all(|(_, out)| out.fault.is_none()), "{limits:?}: nothing is called");
+        assert!(
+            homed.outputs.iter().all(|(_, out)| out.fault.is_none()),
+            "{limits:?}: nothing is called"
+        );
         for axis in (0..AXES).filter(|axis| *axis != HOMING) {
             assert_eq!(edges(&free, axis), edges(&homed, axis), "{limits:?}, axis {axis}");
         }
         let (all, fewer) = (edges(&free, HOMING), edges(&homed, HOMING));
-        let met =
-            homed.outputs.iter().find(|(cycle, out)| *cycle > 200 && out.homing == 0).expect("it meets its limit").0;
+        let met = homed
+            .outputs
+            .iter()
+            .find(|(cycle, out)| *cycle > 200 && out.homing == 0)
+            .expect("it meets its limit")
+            .0;
         // The ramp takes 128 ticks, and a step needs two more ticks to reach the pins.
         let last = *fewer.last().expect("it has moved");
-        assert!(met > THEN && last > met + 20 * 80 && last < met + 131 * 80, "{limits:?}: {met}, {last}");
+        assert!(
+            met > THEN && last > met + 20 * 80 && last < met + 131 * 80,
+            "{limits:?}: {met}, {last}"
+        );
         assert!(fewer.len() + 20 < all.len(), "{limits:?}: {} of {} steps", fewer.len(), all.len());
-        assert!(homed.outputs.last().is_some_and(|(_, out)| out.idle), "{limits:?}: its queue is empty");
+        assert!(
+            homed.outputs.last().is_some_and(|(_, out)| out.idle),
+            "{limits:?}: its queue is empty"
+        );
     }
 }
 
 #[test]
 fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
-    let other =
-        vec![(100, Event::Home(1 << HOMING)), (THEN, Event::LimitMin(1 << 3)), (THEN + 3_000, Event::LimitMin(0))];
-    let recording = run(Limits::Pair, &cruise(), &other);
-    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Limit, 1 << 3)));
+    let other = vec![
+        (100, Event::Home(1 << HOMING)),
+        (THEN, Event::LimitMin(1 << 3)),
+        (THEN + 3_000, Event::LimitMin(0)),
+    ];
+    let recording = run(LimitWiring::Pair, &cruise(), &other);
+    assert_eq!(
+        recording.outputs.iter().find_map(|(_, out)| out.fault),
+        Some((Cause::Limit, 1 << 3))
+    );
 }
 
 #[test]
 fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
     let program = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
-    let recording = run(Limits::Pair, &program, &events(THEN));
+    let recording = run(LimitWiring::Pair, &program, &events(THEN));
     assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
 }
 
 #[test]
 fn latch_reports_the_position_at_the_limit() {
-    let build = build(Limits::Pair);
-    let (mut model, mut engine) = (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
+    let build = build(LimitWiring::Pair);
+    let (mut model, mut engine) =
+        (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
     let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
     let (mut told, mut met) = (None, None);
     while met.is_none() {
@@ -104,7 +138,7 @@ fn latch_reports_the_position_at_the_limit() {
             assert_eq!(found.latch, Some(HOMING as u8));
             let says = engine.latched().cast_signed();
             let is = model.shaper(HOMING).position;
-            // A pulse is counted in the register in the turn after the next.
+            // A pulse is counted in the register in the time slot after the next.
             assert!((0..=1).contains(&(says - is)), "says {says}, is {is}");
             told = Some(says);
         }
@@ -120,20 +154,27 @@ fn latch_reports_the_position_at_the_limit() {
 /// Runs in which the limit becomes active in every part of a tick, while segments still arrive and
 /// a start waits.
 fn recordings() -> Vec<Recording> {
-    let late =
-        |ticks| Command::Segment { axis: HOMING as u8, segment: Segment { ticks, v: 0, a: 0, j: 0, last: true } };
+    let late = |ticks| Command::Segment {
+        axis: HOMING as u8,
+        segment: Segment { ticks, v: 0, a: 0, j: 0, last: true },
+    };
     let busy = [cruise(), (1..12).map(late).collect()].concat();
     let waiting = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
-    let mut all: Vec<_> = (0..12).map(|k| run(Limits::Pair, &busy, &events(THEN + 371 * k))).collect();
-    all.extend((0..3).map(|k| run(Limits::Pair, &waiting, &events(THEN + 601 * k))));
+    let mut all: Vec<_> =
+        (0..12).map(|k| run(LimitWiring::Pair, &busy, &events(THEN + 371 * k))).collect();
+    all.extend((0..3).map(|k| run(LimitWiring::Pair, &waiting, &events(THEN + 601 * k))));
     all
 }
 
 /// True if the changed Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> bool {
-    let verilog = change(carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"));
-    let differs =
-        |recording: &Recording| replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some();
+    let verilog = change(
+        carrystep_verilog::engine_verilog(&build(LimitWiring::Pair), "a test")
+            .expect("a fine build"),
+    );
+    let differs = |recording: &Recording| {
+        replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some()
+    };
     recordings().iter().any(differs)
 }
 
@@ -143,11 +184,23 @@ fn verilog_homes_in_the_same_clock_as_the_model() {
 }
 
 const BUGS: [planted::Bug; 5] = [
-    ("a limit that is waited for stops all", "limits_hit & !homes_waits &", "limits_hit &"),
-    ("the limit is met once more on the way", "& !homes_slows", ""),
-    ("all axes slow down", "mine_slows <= (slowing & lane_next)", "mine_slows <= (slowing)"),
+    (
+        "a limit that is waited for stops all",
+        "limits_hit & !homing_control_waits &",
+        "limits_hit &",
+    ),
+    ("the limit is met once more on the way", "& !homing_control_slows", ""),
+    (
+        "all axes slow down",
+        "mine_slows <= (slowing & axis_one_hot_next)",
+        "mine_slows <= (slowing)",
+    ),
     ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
-    ("a start does not wait for an axis that slows", "queue_goes_on | homes_slows", "queue_goes_on"),
+    (
+        "a start does not wait for an axis that slows",
+        "queue_goes_on | homing_control_slows",
+        "queue_goes_on",
+    ),
 ];
 
 #[test]

@@ -1,8 +1,10 @@
 //! Every cause stops the engine as docs/clock-by-clock.md specifies. The exported Verilog does the
 //! same in every clock, and bugs planted in its guard are caught.
 
-use carrystep_core::engine::{Cause, Guard, Limits};
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::engine::{Cause, Guard, LimitWiring};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_simulators::engine::{Event, Events};
@@ -14,10 +16,10 @@ const BACKWARD: u8 = 0b10_1010;
 /// The clock of the events; by then all axes have cruised for some hundred ticks.
 const THEN: u64 = 30_000;
 
-fn build(limits: Limits) -> EngineBuild {
+fn build(limits: LimitWiring) -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let mut pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
-    pins[5].gap = 200;
+    let mut pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 3, dir_hold: 3 }; AXES];
+    pins[5].step_low = 200;
     let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
     let guard = Guard { round: 2, debounce: 3, enable: 2, watchdog: 40, limits, ..build.guard };
     EngineBuild { guard, ..build }
@@ -25,8 +27,10 @@ fn build(limits: Limits) -> EngineBuild {
 
 /// All axes at a sixteenth of a step per tick, every other one backward.
 fn cruise(ticks: u32, v: i64, a: i64, last: bool) -> Program {
-    let segment = |axis: u8| Segment { ticks, v: if axis.is_multiple_of(2) { v } else { -v }, a, j: 0, last };
-    let mut program: Program = (0..6).map(|axis| Command::Segment { axis, segment: segment(axis) }).collect();
+    let segment =
+        |axis: u8| Segment { ticks, v: if axis.is_multiple_of(2) { v } else { -v }, a, j: 0, last };
+    let mut program: Program =
+        (0..6).map(|axis| Command::Segment { axis, segment: segment(axis) }).collect();
     program.push(Command::Start { mask: 0x3f });
     program
 }
@@ -34,7 +38,7 @@ fn cruise(ticks: u32, v: i64, a: i64, last: bool) -> Program {
 /// A program, the events around it, and the expected stop.
 struct Case {
     name: &'static str,
-    limits: Limits,
+    limits: LimitWiring,
     program: Program,
     events: Events,
     fault: (Cause, u8),
@@ -51,31 +55,60 @@ fn cases() -> Vec<Case> {
     };
     let case = |name, events: Events, fault, ramps| Case {
         name,
-        limits: Limits::Pair,
+        limits: LimitWiring::Pair,
         program: cruise(600, 1 << 60, 1 << 51, true),
         events: quiet(events),
         fault,
         ramps,
     };
-    let stop_then_estop =
-        vec![(THEN, Event::Stop(true)), (THEN + 1, Event::Stop(false)), (THEN + 4_000, Event::EStop(true))];
+    let stop_then_estop = vec![
+        (THEN, Event::Stop(true)),
+        (THEN + 1, Event::Stop(false)),
+        (THEN + 4_000, Event::EStop(true)),
+    ];
     let stop_then_estop = [stop_then_estop, vec![(THEN + 8_000, Event::EStop(false))]].concat();
     vec![
         case("e-stop", at(Event::EStop(true), Event::EStop(false)), (Cause::EStop, 0), false),
         case("host stop", at(Event::Stop(true), Event::Stop(false)), (Cause::Stop, 0), true),
         case("host stop, then e-stop", stop_then_estop, (Cause::Stop, 0), true),
-        case("low limits", at(Event::LimitMin(0x3f), Event::LimitMin(0)), (Cause::Limit, 0b10), true),
-        case("high limits", at(Event::LimitMax(0x3c), Event::LimitMax(0)), (Cause::Limit, 0b100), true),
+        case(
+            "low limits",
+            at(Event::LimitMin(0x3f), Event::LimitMin(0)),
+            (Cause::Limit, 0b10),
+            true,
+        ),
+        case(
+            "high limits",
+            at(Event::LimitMax(0x3c), Event::LimitMax(0)),
+            (Cause::Limit, 0b100),
+            true,
+        ),
         Case {
-            limits: Limits::Each,
-            ..case("limits for both ends", at(Event::LimitMin(8), Event::LimitMin(0)), (Cause::Limit, 8), true)
+            limits: LimitWiring::Each,
+            ..case(
+                "limits for both ends",
+                at(Event::LimitMin(8), Event::LimitMin(0)),
+                (Cause::Limit, 8),
+                true,
+            )
         },
         Case {
-            limits: Limits::One,
-            ..case("one limit for all", at(Event::LimitMin(1), Event::LimitMin(0)), (Cause::Limit, 1), true)
+            limits: LimitWiring::One,
+            ..case(
+                "one limit for all",
+                at(Event::LimitMin(1), Event::LimitMin(0)),
+                (Cause::Limit, 1),
+                true,
+            )
         },
-        Case { events: vec![(0, Event::Kick)], ..case("silence", Vec::new(), (Cause::Watchdog, 0), true) },
-        Case { program: cruise(300, 1 << 60, 0, false), ..case("a dry queue", Vec::new(), (Cause::Underrun, 1), true) },
+        Case {
+            events: vec![(0, Event::Kick)],
+            ..case("silence", Vec::new(), (Cause::Watchdog, 0), true)
+        },
+        Case {
+            program: cruise(300, 1 << 60, 0, false),
+            ..case("a dry queue", Vec::new(), (Cause::Underrun, 1), true)
+        },
         Case {
             program: cruise(300, 1 << 60, 1 << 58, true),
             ..case("overspeed", Vec::new(), (Cause::Overspeed, 1), false)
@@ -94,7 +127,9 @@ fn cases() -> Vec<Case> {
 impl Case {
     /// The recording of the case, followed by a clear and a second move.
     fn recording(&self) -> Recording {
-        let again = [vec![Command::Wait { clocks: 120_000 }, Command::Clear], cruise(40, 1 << 60, 0, true)].concat();
+        let again =
+            [vec![Command::Wait { clocks: 120_000 }, Command::Clear], cruise(40, 1 << 60, 0, true)]
+                .concat();
         let program = [self.program.clone(), again].concat();
         let mut events = self.events.clone();
         events.extend((40..200).map(|i| (i * 3_000, Event::Kick)));
@@ -113,10 +148,20 @@ fn every_cause_stops_as_specified_and_a_clear_resumes() {
         let (fault_at, first) = &recording.outputs[called];
         assert_eq!(first.fault, Some(case.fault), "{name}, in cycle {fault_at}");
         let stopped = recording.outputs[called..].iter().take_while(|(_, out)| out.fault.is_some());
-        let edges = stopped.clone().zip(stopped.clone().skip(1)).filter(|(a, b)| b.1.step & !a.1.step != 0).count();
+        let edges = stopped
+            .clone()
+            .zip(stopped.clone().skip(1))
+            .filter(|(a, b)| b.1.step & !a.1.step != 0)
+            .count();
         assert_eq!(edges > 0, case.ramps, "{name}: {edges} edges after the call");
-        assert!(stopped.clone().all(|(_, out)| out.fault == Some(case.fault)), "{name}: the first cause stays");
-        assert!(stopped.last().is_some_and(|(_, out)| out.halted && out.step == 0), "{name}: it comes to rest");
+        assert!(
+            stopped.clone().all(|(_, out)| out.fault == Some(case.fault)),
+            "{name}: the first cause stays"
+        );
+        assert!(
+            stopped.last().is_some_and(|(_, out)| out.halted && out.step == 0),
+            "{name}: it comes to rest"
+        );
         let (_, end) = recording.outputs.last().expect("an end");
         assert!(end.fault.is_none() && end.idle, "{name}: the second move runs to its end");
     }
@@ -133,8 +178,10 @@ fn limit_stops_only_axes_that_move_toward_it() {
 /// The first case in which the Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> Option<&'static str> {
     cases().into_iter().find_map(|case| {
-        let verilog = carrystep_verilog::engine_verilog(&build(case.limits), "a test").expect("a fine build");
-        let difference = replay::difference(Level::Verilator, &change(verilog), &case.recording()).expect("the tools");
+        let verilog =
+            carrystep_verilog::engine_verilog(&build(case.limits), "a test").expect("a fine build");
+        let difference = replay::difference(Level::Verilator, &change(verilog), &case.recording())
+            .expect("the tools");
         difference.map(|_| case.name)
     })
 }
@@ -146,10 +193,22 @@ fn verilog_stops_in_the_same_clock_as_the_model() {
 
 const BUGS: [planted::Bug; 6] = [
     ("a ramp speeds up", "assign upward = word[14];", "assign upward = !word[14];"),
-    ("a ramp begins before it knows the way", "assign steady = ramp & !word[15];", "assign steady = 1'b0;"),
-    ("a later cause takes the place of the first", "if (calls & !called) begin", "if (calls) begin"),
+    (
+        "a ramp begins before it knows the way",
+        "assign steady = ramp & !word[15];",
+        "assign steady = 1'b0;",
+    ),
+    (
+        "a later cause takes the place of the first",
+        "if (calls & !called) begin",
+        "if (calls) begin",
+    ),
     ("a limit stops the other way", "(back ^ max)", "(back ~^ max)"),
-    ("an e-stop does not freeze", "if (urgent | (strobe & found_freezing))", "if (breaks | (strobe & found_freezing))"),
+    (
+        "an e-stop does not freeze",
+        "if (urgent | (strobe & found_freezing) | ending)",
+        "if (breaks | (strobe & found_freezing) | ending)",
+    ),
     ("a clear leaves the pins frozen", "freeze <= 1'b0;", "freeze <= freeze;"),
 ];
 

@@ -25,7 +25,8 @@ struct Judged {
 fn passes(random: &RandomMoves) -> Result<Judged, TestCaseError> {
     let mut judged = Judged::default();
     for file in random.files() {
-        let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}\n{}", file.source.text));
+        let plan =
+            plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}\n{}", file.source.text));
         let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
         prop_assert!(report.passed, "{report}\n{}", file.source.text);
         judged.pulses += report.axes.iter().map(|axis| axis.pulses_found).sum::<u64>();
@@ -38,7 +39,8 @@ fn passes(random: &RandomMoves) -> Result<Judged, TestCaseError> {
 
 fn all_pass(kinds: &'static [ProfileKind], cases: u32) {
     let all = Cell::new(Judged::default());
-    let mut runner = TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
+    let mut runner =
+        TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
     let held = runner.run(&random_moves(Pace::Brisk, kinds), |random| {
         let (one, so_far) = (passes(&random)?, all.get());
         all.set(Judged { pulses: so_far.pulses + one.pulses, moves: so_far.moves + one.moves });

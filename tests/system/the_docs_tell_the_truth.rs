@@ -9,13 +9,15 @@ use std::fs;
 use std::process::Command;
 
 fn page(name: &str) -> String {
-    fs::read_to_string(moves::root().join("docs").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    fs::read_to_string(moves::root().join("docs").join(name))
+        .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// A whole number as the page writes it, in groups of three digits.
 fn grouped(number: u64) -> String {
     let digits = number.to_string();
-    let groups = digits.as_bytes().rchunks(3).rev().map(|group| String::from_utf8_lossy(group).into_owned());
+    let groups =
+        digits.as_bytes().rchunks(3).rev().map(|group| String::from_utf8_lossy(group).into_owned());
     groups.collect::<Vec<_>>().join(" ")
 }
 
@@ -58,8 +60,12 @@ fn flow_of_a_move_page_has_the_planned_numbers() {
     .expect("the engine's model");
     let (first, start) = (first.expect("a pulse on x"), start.expect("a start"));
     let clocks = u64::from(plan.build.timebase.clocks_per_tick());
-    assert!(text.contains(&format!("= {}\n", grouped(first))), "the first edge is in cycle {first}");
-    let strobe = format!("tick {} after configuration, in cycle {}", (start + 1) / clocks, grouped(start));
+    assert!(
+        text.contains(&format!("= {}\n", grouped(first))),
+        "the first edge is in cycle {first}"
+    );
+    let strobe =
+        format!("tick {} after configuration, in cycle {}", (start + 1) / clocks, grouped(start));
     assert!(text.contains(&strobe), "not said: {strobe}");
     let mut of_parallel = None;
     let job = Job::new(&plan.build, &program, plan.total_ticks());
@@ -70,7 +76,10 @@ fn flow_of_a_move_page_has_the_planned_numbers() {
     })
     .expect("the parallel core's model");
     let of_parallel = of_parallel.expect("a pulse on x");
-    assert!(text.contains(&format!("= {}.", grouped(of_parallel))), "the parallel core's is in cycle {of_parallel}");
+    assert!(
+        text.contains(&format!("= {}.", grouped(of_parallel))),
+        "the parallel core's is in cycle {of_parallel}"
+    );
     assert!(text.contains(&grouped(plan.build.timebase.clock_to_ps(first))));
     let pulses: u64 = plan.moves.iter().flat_map(|m| &m.axes).map(|a| a.steps.unsigned_abs()).sum();
     assert!(text.contains(&format!("{pulses} edges")));
@@ -94,7 +103,8 @@ fn slow_moves_are_as_accurate_as_the_page_says() {
     for seconds in [5000, 10_000, 100_000, 1_000_000] {
         let mut cells = vec![grouped(seconds)];
         for steps in [400, -400] {
-            let moved = format!("profile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}");
+            let moved =
+                format!("profile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}");
             let file = one_axis("speed_limit = 5000\naccel_limit = 25000", &moved);
             let plan = planned(&file);
             let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
@@ -119,7 +129,10 @@ fn slow_moves_are_as_accurate_as_the_page_says() {
         format!("is {:.4} steps/s with 16 phases", 8.0 * 16.0 * unit * 1e6),
         format!("over {} segments", 1 << 17),
     ] {
-        assert!(text.split_whitespace().collect::<Vec<_>>().join(" ").contains(&wanted), "not said: {wanted}");
+        assert!(
+            text.split_whitespace().collect::<Vec<_>>().join(" ").contains(&wanted),
+            "not said: {wanted}"
+        );
     }
 }
 
@@ -128,16 +141,29 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
     let text = page("accuracy.md").split_whitespace().collect::<Vec<_>>().join(" ");
     let counts = |fit_ns: u32| {
         ["sine", "logistic"].map(|profile| {
-            let moved = format!("profile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}");
-            planned(&one_axis("speed_limit = 150_000\naccel_limit = 500_000", &moved)).moves[0].axes[0].segments.len()
+            let moved =
+                format!("profile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}");
+            planned(&one_axis("speed_limit = 150_000\naccel_limit = 500_000", &moved)).moves[0].axes
+                [0]
+            .segments
+            .len()
         })
     };
     let [tick, fifty, one] = [1000, 50, 1].map(counts);
-    assert!(text.contains(&format!("50 ns cost twice the segments (sine {}, logistic {})", fifty[0], fifty[1])));
-    assert!(text.contains(&format!("1 ns four to five times as many (sine {}, logistic {})", one[0], one[1])));
+    assert!(text.contains(&format!(
+        "50 ns cost twice the segments (sine {}, logistic {})",
+        fifty[0], fifty[1]
+    )));
+    assert!(text.contains(&format!(
+        "1 ns four to five times as many (sine {}, logistic {})",
+        one[0], one[1]
+    )));
     for (tick, (fifty, one)) in tick.into_iter().zip(fifty.into_iter().zip(one)) {
         let times = |more: usize| more as f64 / tick as f64;
-        assert!((1.5..2.5).contains(&times(fifty)) && (4.0..5.0).contains(&times(one)), "{tick} {fifty} {one}");
+        assert!(
+            (1.5..2.5).contains(&times(fifty)) && (4.0..5.0).contains(&times(one)),
+            "{tick} {fifty} {one}"
+        );
     }
 }
 
@@ -145,7 +171,9 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
 fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
     let bits = 10;
     let clocks = bits * 48_000_000 / 3_000_000;
-    assert!(page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud")));
+    assert!(
+        page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud"))
+    );
 }
 
 #[test]
@@ -165,8 +193,11 @@ fn protocol_page_computes_ten_steps_in_a_thousand_ticks_correctly() {
 #[test]
 fn five_minutes_page_shows_table_1_as_addition_gives_it() {
     let text = page("five-minutes.md");
-    let row = |name: &str| text.lines().find_map(|line| line.trim().strip_prefix(name)).expect("the table");
-    let ticks: Vec<u32> = row("tick ").split_whitespace().map(|n| n.parse().expect("a tick")).collect();
+    let row = |name: &str| {
+        text.lines().find_map(|line| line.trim().strip_prefix(name)).expect("the table")
+    };
+    let ticks: Vec<u32> =
+        row("tick ").split_whitespace().map(|n| n.parse().expect("a tick")).collect();
     assert_eq!(ticks, (1..=10).collect::<Vec<_>>());
     let mut p = 0_u64;
     let mut wanted = (Vec::new(), Vec::new());
@@ -183,9 +214,12 @@ fn five_minutes_page_shows_table_1_as_addition_gives_it() {
     let indent = columns.find("tick").expect("its head") + "step ".len();
     let starred: Vec<bool> = (1..=10)
         .map(|tick| {
-            let column =
-                columns.find(&format!(" {tick} ")).or_else(|| columns.find(&format!(" {tick}"))).expect("a tick");
-            (column..column + 4).any(|at| stars.as_bytes().get(at.saturating_sub(indent)) == Some(&b'*'))
+            let column = columns
+                .find(&format!(" {tick} "))
+                .or_else(|| columns.find(&format!(" {tick}")))
+                .expect("a tick");
+            (column..column + 4)
+                .any(|at| stars.as_bytes().get(at.saturating_sub(indent)) == Some(&b'*'))
         })
         .collect();
     assert_eq!(starred, wanted.1);
@@ -194,15 +228,22 @@ fn five_minutes_page_shows_table_1_as_addition_gives_it() {
 
 #[test]
 fn a_tick_of_the_engine_has_the_clocks_that_the_page_says() {
-    use carrystep_core::engine::{TURN, clocks_of_turns};
+    use carrystep_core::engine::{TIME_SLOT_CLOCKS, clocks_of_time_slots};
     let text = page("engine.md");
-    let [six, eight] = [6, 8].map(clocks_of_turns);
-    assert!(text.contains(&format!("a turn of {TURN} clocks, so six need {six} and eight {eight}")));
+    let [six, eight] = [6, 8].map(clocks_of_time_slots);
+    assert!(text.contains(&format!(
+        "a time slot of {TIME_SLOT_CLOCKS} clocks, so six need {six} and eight {eight}"
+    )));
     // The least whole number of MHz that gives this number of clocks in a tick of 1 us, and of 2
     // us.
     let mhz = |us: u32| six.div_ceil(us);
     assert!(text.contains("a 1 us tick needs 80 MHz, a 2 us tick 40 MHz"), "{} {}", mhz(1), mhz(2));
-    assert!([mhz(1), mhz(2)].iter().zip([80, 40]).all(|(&needed, said)| needed <= said && said - needed < 2));
+    assert!(
+        [mhz(1), mhz(2)]
+            .iter()
+            .zip([80, 40])
+            .all(|(&needed, said)| needed <= said && said - needed < 2)
+    );
 }
 
 /// The first line that git prints; `None` if there is no repository that git can read.
@@ -243,22 +284,40 @@ fn the_long_runs_have_passed_on_this_gateware() {
         ]
     );
     for row in rows {
-        let [name, _, figures, result, took, date, commit, gateware] = row[..] else { panic!("a row of {row:?}") };
+        let [name, _, figures, result, took, date, commit, gateware] = row[..] else {
+            panic!("a row of {row:?}")
+        };
         if [figures, result].contains(&NOT_YET) {
             // Nothing is claimed then: no figure of another gateware, no date, no commit.
             let cells = [figures, result, took, date, commit, gateware];
-            assert_eq!(cells.concat(), NOT_YET, "{name}: a run that was not made has come to nothing: {row:?}");
+            assert_eq!(
+                cells.concat(),
+                NOT_YET,
+                "{name}: a run that was not made has come to nothing: {row:?}"
+            );
             effort::say(&format!("{name} has not been run yet: `cargo xtask long {name}`"));
             continue;
         }
         assert_eq!(result, "passed", "{name}: {figures}");
-        assert!(figures.starts_with(|first: char| first.is_ascii_digit()) && took.ends_with(" s"), "{name}: {row:?}");
-        assert!(date.len() == 10 && date.starts_with("20") && date.matches('-').count() == 2, "{name}: {date}");
+        assert!(
+            figures.starts_with(|first: char| first.is_ascii_digit()) && took.ends_with(" s"),
+            "{name}: {row:?}"
+        );
+        assert!(
+            date.len() == 10 && date.starts_with("20") && date.matches('-').count() == 2,
+            "{name}: {date}"
+        );
         let [commit, gateware] = [commit, gateware].map(|hash| hash.trim_matches('`'));
-        assert!([commit, gateware].iter().all(|hash| hash.len() >= 10), "{name}: {commit} {gateware}");
+        assert!(
+            [commit, gateware].iter().all(|hash| hash.len() >= 10),
+            "{name}: {commit} {gateware}"
+        );
         // Without git nothing more can be checked; in a shallow clone the commit may be missing.
         let Some(now) = git(&["rev-parse", "HEAD:hdl-out/core"]) else { continue };
-        assert!(now.starts_with(gateware), "{name} was run on other gateware: run `cargo xtask long {name}` again");
+        assert!(
+            now.starts_with(gateware),
+            "{name} was run on other gateware: run `cargo xtask long {name}` again"
+        );
         if git(&["rev-parse", "--is-shallow-repository"]).as_deref() == Some("false") {
             let ancestor = git(&["merge-base", "--is-ancestor", commit, "HEAD"]);
             assert!(ancestor.is_some(), "{name}: the commit {commit} is not in this history");

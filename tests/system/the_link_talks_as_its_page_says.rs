@@ -1,12 +1,11 @@
 //! The gateware's end of the link does what docs/protocol.md specifies: the page's example frames
 //! byte by byte, and its other promises.
 
-use carrystep_core::engine::{Cause, Limits};
+use carrystep_core::engine::{Cause, LimitWiring};
 use carrystep_core::link::registers::{CLEAR, CONTROL, HOME, POSITION, SEGMENT, START, of_axis};
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_simulators::vectors::Vectors;
-use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, ports, unframe};
+use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, unframe};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// Number of cycles within which an answer must come.
@@ -16,7 +15,7 @@ fn build() -> EngineBuild {
     let timebase = Timebase::new(48_000_000, 2000, 16).expect("a timebase");
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, 1 << 54);
-    build.guard.limits = Limits::Pair;
+    build.guard.limits = LimitWiring::Pair;
     build
 }
 
@@ -27,7 +26,9 @@ fn bench() -> LinkBench {
 /// Sends a request and receives its answer.
 fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said {
     bench.send(&on_the_line(&frame(sequence, address, words)));
-    let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer to {sequence:02x} {address:02x}"));
+    let answer = bench
+        .answer(PATIENCE)
+        .unwrap_or_else(|| panic!("no answer to {sequence:02x} {address:02x}"));
     let said = Said::of(&unframe(&answer).unwrap_or_else(|| panic!("{answer:02x?} is no frame")));
     assert_eq!((said.sequence, said.address), (sequence, address));
     said
@@ -85,7 +86,8 @@ fn link_answers_the_example_frames_of_the_page() {
             // The frame was lost on the line.
             ">x" => {}
             "<" | "<x" => {
-                let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer for {line}"));
+                let answer =
+                    bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer for {line}"));
                 shown = format!("c0 {} c0", hex(&answer));
             }
             _ => panic!("{line}"),
@@ -162,15 +164,21 @@ fn a_broken_protocol_is_a_latched_fault_and_never_a_pulse() {
     let no_ticks = |bench: &mut LinkBench, next: &mut u8| {
         write(bench, next, of_axis(SEGMENT, 3), &[u32::MAX, 0, 1 << 30, 0, 0, 0, 0, 1])
     };
-    let nobody = |bench: &mut LinkBench, next: &mut u8| write(bench, next, of_axis(SEGMENT, 6), &cruise(100, QUARTER));
+    let nobody = |bench: &mut LinkBench, next: &mut u8| {
+        write(bench, next, of_axis(SEGMENT, 6), &cruise(100, QUARTER))
+    };
     let unfed = |bench: &mut LinkBench, next: &mut u8| {
         write(bench, next, START, &[1]);
         bench.rest(1000);
         status(bench)
     };
     type Breaks<'a> = &'a dyn Fn(&mut LinkBench, &mut u8) -> Said;
-    let all: [(&str, Breaks<'_>); 4] =
-        [("a full queue", &full), ("no ticks", &no_ticks), ("no such axis", &nobody), ("an empty queue", &unfed)];
+    let all: [(&str, Breaks<'_>); 4] = [
+        ("a full queue", &full),
+        ("no ticks", &no_ticks),
+        ("no such axis", &nobody),
+        ("an empty queue", &unfed),
+    ];
     for (name, breaks) in all {
         let mut bench = bench();
         let mut next = 0;
@@ -186,7 +194,11 @@ fn a_broken_protocol_is_a_latched_fault_and_never_a_pulse() {
         write(&mut bench, &mut next, CLEAR, &[0]);
         bench.rest(2000);
         let said = ask(&mut bench, 0, of_axis(POSITION, 3), &[]);
-        assert_eq!((said.fault, said.free, said.idle, said.data), (None, 7, true, 0), "{name}: {said:?}");
+        assert_eq!(
+            (said.fault, said.free, said.idle, said.data),
+            (None, 7, true, 0),
+            "{name}: {said:?}"
+        );
         write(&mut bench, &mut next, of_axis(SEGMENT, 3), &cruise(100, QUARTER));
         write(&mut bench, &mut next, START, &[1 << 3]);
         while !status(&mut bench).idle {}
@@ -243,7 +255,11 @@ fn segments_sent_back_to_back_are_all_accepted() {
     let first = next;
     for _ in 0..7 {
         for axis in 0..AXES as u8 {
-            bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &cruise(100, QUARTER))));
+            bench.send(&on_the_line(&frame(
+                next,
+                0x80 | of_axis(SEGMENT, axis),
+                &cruise(100, QUARTER),
+            )));
             next += 1;
         }
     }
@@ -274,7 +290,11 @@ fn segments_over_spi_are_all_accepted() {
             for sequence in first..next {
                 let answer = bench.answer(PATIENCE).expect("an answer");
                 let said = Said::of(&unframe(&answer).expect("a frame"));
-                assert_eq!((said.sequence, said.next, said.refused), (sequence, sequence + 1, false), "{tenths}");
+                assert_eq!(
+                    (said.sequence, said.next, said.refused),
+                    (sequence, sequence + 1, false),
+                    "{tenths}"
+                );
             }
         }
         assert_eq!(ask(&mut bench, 0xc0, of_axis(POSITION, 5), &[]).free, 0);
@@ -283,8 +303,8 @@ fn segments_over_spi_are_all_accepted() {
 
 /// Runs a session that uses every function, then replays its inputs on the exported Verilog of each
 /// module and compares the outputs with Rust-HDL.
-fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
-    bench.vectors = Some(Both { link: ports::link(), line: vectors });
+fn replayed(mut bench: LinkBench, line: LineKind) {
+    bench.vectors = Some(Both::new(line));
     let mut next = 0;
     powered(&mut bench, &mut next);
     let damaged = on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..]);
@@ -321,17 +341,20 @@ fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
     ] {
         let planted = text.replacen(from, to, 1);
         assert_ne!(&planted, text, "{from} is not in {name}");
-        assert!(vectors.difference(name, &planted).expect("Icarus").is_some(), "{name}: {to} is not seen");
+        assert!(
+            vectors.difference(name, &planted).expect("Icarus").is_some(),
+            "{name}: {to} is not seen"
+        );
     }
 }
 
 #[test]
 fn exported_verilog_of_link_and_uart_equals_rust_hdl() {
     let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
-    replayed(bench(), uart.into(), ports::uart());
+    replayed(bench(), uart.into());
 }
 
 #[test]
 fn exported_verilog_of_link_and_spi_equals_rust_hdl() {
-    replayed(LinkBench::spi(&build(), 25), Line::Spi, ports::spi());
+    replayed(LinkBench::spi(&build(), 25), LineKind::Spi);
 }

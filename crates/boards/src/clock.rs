@@ -120,7 +120,10 @@ impl ClockManagers {
         if let Some(way) = ways.iter().find(exact) {
             return Ok(way.manager);
         }
-        let whole = ways.iter().filter(|way| way.made.0.is_multiple_of(way.made.1)).map(|way| way.made.0 / way.made.1);
+        let whole = ways
+            .iter()
+            .filter(|way| way.made.0.is_multiple_of(way.made.1))
+            .map(|way| way.made.0 / way.made.1);
         let nearest_hz = whole.min_by_key(|hz| hz.abs_diff(wanted_hz));
         Err(ClockError { manager, oscillator_hz, wanted_hz, nearest_hz })
     }
@@ -132,7 +135,8 @@ mod tests {
 
     #[test]
     fn clock_that_cannot_be_made_is_refused_with_the_nearest() {
-        let refused = |managers: ClockManagers, from, to| managers.solve(from, to).unwrap_err().to_string();
+        let refused =
+            |managers: ClockManagers, from, to| managers.solve(from, to).unwrap_err().to_string();
         assert_eq!(
             refused(ClockManagers::Ice40, 12_000_000, 40_000_000),
             "the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz"
@@ -142,8 +146,13 @@ mod tests {
             "the PLL makes no clock of 80 MHz from 12 MHz; the nearest that it makes is 79.5 MHz"
         );
         // 47.916666... MHz is nearer, but it is not a whole number of Hz.
-        assert!(refused(ClockManagers::Ice40, 100_000_000, 48_000_000).ends_with("makes is 48.125 MHz"));
-        assert!(refused(ClockManagers::Ice40, 1_000_000, 48_000_000).ends_with("it makes none of that at all"));
+        assert!(
+            refused(ClockManagers::Ice40, 100_000_000, 48_000_000).ends_with("makes is 48.125 MHz")
+        );
+        assert!(
+            refused(ClockManagers::Ice40, 1_000_000, 48_000_000)
+                .ends_with("it makes none of that at all")
+        );
     }
 
     #[test]

@@ -10,9 +10,11 @@ use strum::Display;
 const DATA: &str = include_str!("../data/packages.toml");
 
 /// How an FPGA loads its bitstream. JTAG is not listed, because it needs no user pin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Display, JsonSchema, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Display, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
-pub enum Mode {
+pub enum ConfigurationMode {
     /// The pin has its function in every mode.
     #[strum(to_string = "every mode")]
     Any,
@@ -61,14 +63,14 @@ type Functions = BTreeMap<String, String>;
 
 impl Package {
     /// The function of a pin in each mode in which it has one.
-    pub fn functions(&self, pin: &str) -> Vec<(Mode, &str)> {
+    pub fn functions(&self, pin: &str) -> Vec<(ConfigurationMode, &str)> {
         let modes = [
-            (Mode::Any, &self.any),
-            (Mode::Serial, &self.serial),
-            (Mode::Spi, &self.spi),
-            (Mode::Parallel, &self.parallel),
-            (Mode::Wide, &self.wide),
-            (Mode::Bpi, &self.bpi),
+            (ConfigurationMode::Any, &self.any),
+            (ConfigurationMode::Serial, &self.serial),
+            (ConfigurationMode::Spi, &self.spi),
+            (ConfigurationMode::Parallel, &self.parallel),
+            (ConfigurationMode::Wide, &self.wide),
+            (ConfigurationMode::Bpi, &self.bpi),
         ];
         modes.into_iter().filter_map(|(mode, pins)| Some((mode, pins.get(pin)?.as_str()))).collect()
     }
@@ -99,7 +101,7 @@ pub struct Shared {
     /// Function of the pin in configuration, such as `HSWAPEN`; several are separated by `/`.
     pub function: String,
     /// The modes in which the pin has this function.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<ConfigurationMode>,
     /// Why this does no harm although the board is configured in one of these modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
@@ -126,7 +128,8 @@ pub struct Gate {
 impl Gate {
     /// Width of a counter of this clock (Hz) whose highest bit is set after `wait_ns` or later.
     pub fn counter_bits(&self, clock_hz: u64) -> u32 {
-        let clocks = (u128::from(self.wait_ns) * u128::from(clock_hz)).div_ceil(1_000_000_000).max(1);
+        let clocks =
+            (u128::from(self.wait_ns) * u128::from(clock_hz)).div_ceil(1_000_000_000).max(1);
         clocks.next_power_of_two().trailing_zeros() + 1
     }
 }
@@ -137,9 +140,16 @@ mod tests {
 
     #[test]
     fn gate_counter_runs_at_least_its_wait_time() {
-        let gate = |wait_ns| Gate { port: "go".into(), pin: "P1".into(), wait_ns, holds: vec![], why: String::new() };
+        let gate = |wait_ns| Gate {
+            port: "go".into(),
+            pin: "P1".into(),
+            wait_ns,
+            holds: vec![],
+            why: String::new(),
+        };
         // The highest bit is set after 2^(bits - 1) clocks.
-        for (wait_ns, clock_hz, bits) in [(400_000, 80_000_000, 16), (12_800, 80_000_000, 11), (12_801, 80_000_000, 12)]
+        for (wait_ns, clock_hz, bits) in
+            [(400_000, 80_000_000, 16), (12_800, 80_000_000, 11), (12_801, 80_000_000, 12)]
         {
             assert_eq!(gate(wait_ns).counter_bits(clock_hz), bits, "{wait_ns} ns at {clock_hz} Hz");
         }
@@ -151,15 +161,20 @@ mod tests {
         assert!(packages().len() >= 11, "a table is gone");
         for (index, package) in packages().iter().enumerate() {
             let same = |other: &&Package| {
-                other.name == package.name && other.parts.iter().any(|part| package.parts.contains(part))
+                other.name == package.name
+                    && other.parts.iter().any(|part| package.parts.contains(part))
             };
-            assert!(packages().iter().skip(index + 1).find(same).is_none(), "two tables: {}", package.name);
+            assert!(
+                packages().iter().skip(index + 1).find(same).is_none(),
+                "two tables: {}",
+                package.name
+            );
             assert!(!package.sources.is_empty() && !package.parts.is_empty(), "{}", package.name);
             assert!(!package.spi.is_empty() || !package.serial.is_empty(), "{}", package.name);
         }
         let mojo = packages().iter().find(|package| package.name == "tqg144").expect("a table");
-        assert_eq!(mojo.functions("P144"), [(Mode::Any, "HSWAPEN")]);
-        assert_eq!(mojo.functions("P59"), [(Mode::Wide, "D10")]);
+        assert_eq!(mojo.functions("P144"), [(ConfigurationMode::Any, "HSWAPEN")]);
+        assert_eq!(mojo.functions("P59"), [(ConfigurationMode::Wide, "D10")]);
         assert_eq!(mojo.functions("P8"), []);
     }
 }

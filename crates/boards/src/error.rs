@@ -26,7 +26,9 @@ pub enum BoardError {
         parts: Vec<String>,
     },
     /// The machine has more axes than the board has pins for.
-    #[error("{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board")]
+    #[error(
+        "{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board"
+    )]
     Axes {
         /// Name of the board.
         board: String,
@@ -36,7 +38,9 @@ pub enum BoardError {
         wanted: usize,
     },
     /// The machine has more limit switches than the board has pins for.
-    #[error("{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}")]
+    #[error(
+        "{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}"
+    )]
     Limits {
         /// Name of the board.
         board: String,
@@ -58,7 +62,9 @@ pub enum BoardError {
         port: String,
     },
     /// The board's serial chip does not support this baud rate.
-    #[error("{board}'s serial chip takes at most {most} baud, not {wanted}: set `baud` in [machine.link]")]
+    #[error(
+        "{board}'s serial chip takes at most {most} baud, not {wanted}: set `baud` in [machine.link]"
+    )]
     Baud {
         /// Name of the board.
         board: String,

@@ -16,7 +16,9 @@ mod spartan6;
 mod spartan7;
 
 /// An FPGA family. Boards are listed in the order of these variants.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
     /// Lattice iCE40 LP, HX and UltraPlus.
@@ -110,7 +112,9 @@ impl fmt::Display for Family {
 }
 
 /// Electrical standard of a pin, which is determined by the voltage of its bank.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, IntoStaticStr, JsonSchema, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, IntoStaticStr, JsonSchema, Serialize, Deserialize,
+)]
 #[serde(rename_all = "UPPERCASE")]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum IoStandard {

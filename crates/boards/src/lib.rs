@@ -7,9 +7,9 @@
 //! too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{BaudError, Uart};
-use carrystep_files::error::{InputError, Source};
+use carrystep_files::error::{InputError, SourceText};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
@@ -25,11 +25,11 @@ mod raw;
 mod reach;
 mod toolchain;
 
-pub use configuration::{Gate, Mode, Shared};
+pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
 pub use family::{Family, FpgaFamily, IoStandard, PllInput};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
-pub use port::{OSCILLATOR, PORTS, Port, Way};
+pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
 pub use toolchain::{ISE, Toolchain};
 
 /// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,
@@ -67,7 +67,7 @@ pub struct Board {
     /// Pins that must be driven although the gateware does not use them.
     pub ties: Vec<Tie>,
     /// Modes in which its bitstream may be loaded, besides JTAG.
-    pub configured: Vec<Mode>,
+    pub configured: Vec<ConfigurationMode>,
     /// The ports that are on configuration pins, and why this does no harm.
     pub shared: Vec<Shared>,
     /// Sources of the tables of configuration pins.
@@ -181,7 +181,7 @@ pub struct Tie {
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
         let read = |&(path, text): &(&str, &str)| {
-            let source = Source { path: path.into(), text: text.into() };
+            let source = SourceText { path: path.into(), text: text.into() };
             Board::from_source(&source).unwrap_or_else(|error| unreachable!("{error}"))
         };
         let mut boards: Vec<Board> = DATA.iter().map(read).collect();
@@ -202,7 +202,10 @@ fn names() -> String {
 /// # Errors
 /// [`BoardError::Unknown`] if there is none; it names the boards that exist.
 pub fn board(name: &str) -> Result<&'static Board, BoardError> {
-    boards().iter().find(|board| board.name == name).ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
+    boards()
+        .iter()
+        .find(|board| board.name == name)
+        .ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
 }
 
 impl Board {
@@ -211,14 +214,14 @@ impl Board {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::from_source(&Source::read(path)?)
+        Self::from_source(&SourceText::read(path)?)
     }
 
     /// Checks the text of a board file.
     ///
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
-    pub fn from_source(source: &Source) -> Result<Self, InputError> {
+    pub fn from_source(source: &SourceText) -> Result<Self, InputError> {
         raw::read(source)
     }
 
@@ -240,10 +243,8 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
-            board: self.name.clone(),
-            source,
-            proposed: self.proposed(None),
+        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| {
+            BoardError::Clock { board: self.name.clone(), source, proposed: self.proposed(None) }
         })
     }
 
@@ -254,7 +255,10 @@ impl Board {
     /// [`BaudError`] if there is no such rate.
     pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
         let most = self.max_baud.unwrap_or(BAUDS[0]);
-        let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
+        let made = BAUDS
+            .into_iter()
+            .filter(|baud| *baud <= most)
+            .find_map(|baud| Uart::new(clock_hz, baud).ok());
         made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
@@ -264,7 +268,9 @@ impl Board {
     /// [`BoardError::Baud`] names the greatest rate that it supports.
     pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
         match self.max_baud {
-            Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
+            Some(most) if most < baud => {
+                Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud })
+            }
             _ => Ok(()),
         }
     }
@@ -273,7 +279,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError::Axes`] or [`BoardError::Limits`] if not; each gives the number of pins.
-    pub fn carries(&self, axes: usize, limits: Limits) -> Result<(), BoardError> {
+    pub fn carries(&self, axes: usize, limits: LimitWiring) -> Result<(), BoardError> {
         let board = || self.name.clone();
         let has = self.bits("step");
         if axes > has {
@@ -281,15 +287,19 @@ impl Board {
         }
         let (low, high) = (self.bits("limit_min"), self.bits("limit_max"));
         let (needs_low, needs_high, wanted) = match limits {
-            Limits::None => (0, 0, String::new()),
-            Limits::One => (1, 0, "one for all axes".to_owned()),
-            Limits::Each => (axes, 0, format!("one for each of {axes} axes")),
-            Limits::Pair => (axes, axes, format!("two for each of {axes} axes")),
+            LimitWiring::None => (0, 0, String::new()),
+            LimitWiring::One => (1, 0, "one for all axes".to_owned()),
+            LimitWiring::Each => (axes, 0, format!("one for each of {axes} axes")),
+            LimitWiring::Pair => (axes, axes, format!("two for each of {axes} axes")),
         };
         if needs_low <= low && needs_high <= high {
             return Ok(());
         }
-        let instead = if axes <= low { "limits = \"each\" or \"one\" would do" } else { "limits = \"one\" would do" };
+        let instead = if axes <= low {
+            "limits = \"each\" or \"one\" would do"
+        } else {
+            "limits = \"one\" would do"
+        };
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 

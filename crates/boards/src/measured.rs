@@ -74,8 +74,16 @@ mod tests {
         for board in boards() {
             let (rams, of) = match board.measured().expect(&board.name) {
                 Measured::Placed(placed) => {
-                    assert!(placed.logic_cells <= board.parts[0].logic_cells.unwrap(), "{}", board.name);
-                    assert!(placed.nextpnr_mhz * 1e6 >= board.clocks[0].clock_hz as f64, "{}", board.name);
+                    assert!(
+                        placed.logic_cells <= board.parts[0].logic_cells.unwrap(),
+                        "{}",
+                        board.name
+                    );
+                    assert!(
+                        placed.nextpnr_mhz * 1e6 >= board.clocks[0].clock_hz as f64,
+                        "{}",
+                        board.name
+                    );
                     (placed.block_rams, board.parts[0].block_rams)
                 }
                 Measured::Mapped(mapped) => (mapped.block_rams, board.parts[0].block_rams),

@@ -13,7 +13,7 @@ pub enum Way {
 
 /// A port of the top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Port {
+pub struct BoardPort {
     /// Name of the port.
     pub name: &'static str,
     /// Direction.
@@ -24,15 +24,15 @@ pub struct Port {
     pub what: &'static str,
 }
 
-const fn port(name: &'static str, way: Way, per_axis: bool, what: &'static str) -> Port {
-    Port { name, way, per_axis, what }
+const fn port(name: &'static str, way: Way, per_axis: bool, what: &'static str) -> BoardPort {
+    BoardPort { name, way, per_axis, what }
 }
 
 /// Name of the oscillator's port.
 pub const OSCILLATOR: &str = "oscillator";
 
 /// All ports that a board may have, except [`OSCILLATOR`] and its ties.
-pub const PORTS: [Port; 13] = [
+pub const PORTS: [BoardPort; 13] = [
     port("step", Way::Out, true, "STEP of the axis' driver"),
     port("dir", Way::Out, true, "DIR of the axis' driver; high is backward"),
     port("enable_n", Way::Out, false, "ENABLE of all drivers; low: they have power"),

@@ -1,12 +1,12 @@
 //! Reads a board's file and checks it.
 
-use super::configuration::{Mode, Package};
-use super::port::{PORTS, Port};
+use super::configuration::{ConfigurationMode, Package};
+use super::port::{BoardPort, PORTS};
 use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInput, Tie, Wire};
 use carrystep_core::build::Timebase;
 use carrystep_core::engine::{MAX_AXES, check_schedule};
 use carrystep_files::did_you_mean;
-use carrystep_files::error::{InputError, Source};
+use carrystep_files::error::{InputError, SourceText};
 use configuration::{Exception, RESERVED, RawGate};
 use pins::Pins;
 use serde::Deserialize;
@@ -31,7 +31,7 @@ struct RawBoard {
     bitstream: Option<String>,
     bitgen: Option<String>,
     usb: Option<Spanned<String>>,
-    configured: Spanned<Vec<Mode>>,
+    configured: Spanned<Vec<ConfigurationMode>>,
     #[serde(default)]
     exception: Vec<Exception>,
     gate: Option<RawGate>,
@@ -108,14 +108,14 @@ type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
 /// Connectors by name; each maps its labels to the package's pins.
 type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;
 
-pub(super) fn read(source: &Source) -> Result<Board, InputError> {
+pub(super) fn read(source: &SourceText) -> Result<Board, InputError> {
     let raw: RawBoard = source.parse()?;
     Reader { source, used: BTreeMap::new() }.board(raw)
 }
 
 /// The file, and the pins of the package that already have a use.
 struct Reader<'a> {
-    source: &'a Source,
+    source: &'a SourceText,
     /// By pin: its use, and the bytes of the file that assign it.
     used: BTreeMap<String, (String, Range<usize>)>,
 }
@@ -176,8 +176,11 @@ impl Reader<'_> {
             sources: raw.sources.into_inner(),
         };
         self.axes(&board)?;
-        board.clocks =
-            raw.timebase.into_iter().map(|timebase| self.clocking(&board, timebase)).collect::<Result<_, _>>()?;
+        board.clocks = raw
+            .timebase
+            .into_iter()
+            .map(|timebase| self.clocking(&board, timebase))
+            .collect::<Result<_, _>>()?;
         if board.clocks.is_empty() {
             return self.refuse(0..0, "a board without a [[timebase]]");
         }
@@ -188,18 +191,30 @@ impl Reader<'_> {
     /// supplies.
     fn supply(&self, raw: &RawBoard, family: Family, io: IoStandard) -> Result<(), InputError> {
         let name = raw.name.as_ref();
-        if name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
-            return self.refuse(raw.name.span(), "a name of a board has small letters, digits and - only");
+        if name.is_empty()
+            || !name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
+        {
+            return self
+                .refuse(raw.name.span(), "a name of a board has small letters, digits and - only");
         }
         if raw.sources.as_ref().is_empty() {
             return self.refuse(raw.sources.span(), "no source: where do its pins come from?");
         }
         if !raw.flash.as_ref().contains("FILE") {
-            return self.refuse(raw.flash.span(), "the command that loads the bitstream has no FILE in it");
+            return self.refuse(
+                raw.flash.span(),
+                "the command that loads the bitstream has no FILE in it",
+            );
         }
         if let Some(usb) = &raw.usb {
-            let hex = |text: &str| text.len() == 4 && text.chars().all(|c| matches!(c, '0'..='9' | 'a'..='f'));
-            if !usb.as_ref().split_once(':').is_some_and(|(vendor, product)| hex(vendor) && hex(product)) {
+            let hex = |text: &str| {
+                text.len() == 4 && text.chars().all(|c| matches!(c, '0'..='9' | 'a'..='f'))
+            };
+            if !usb
+                .as_ref()
+                .split_once(':')
+                .is_some_and(|(vendor, product)| hex(vendor) && hex(product))
+            {
                 return self.refuse(usb.span(), "vendor and product are expected, as in 0403:6010");
             }
         }
@@ -207,24 +222,34 @@ impl Reader<'_> {
             (None, true) => {
                 return self.refuse(raw.family.span(), "an iCE40 needs `pll`: \"pad\" or \"core\"");
             }
-            (Some(pll), false) => return self.refuse(pll.span(), format!("`pll` is an iCE40's, not a {family}'s")),
+            (Some(pll), false) => {
+                return self.refuse(pll.span(), format!("`pll` is an iCE40's, not a {family}'s"));
+            }
             _ => {}
         }
         match (&raw.vccaux, family.facts().vccaux()) {
             (None, [_, ..]) => {
-                return self.refuse(raw.family.span(), "a Spartan-6 needs `vccaux`: \"2.5\" or \"3.3\"");
+                return self
+                    .refuse(raw.family.span(), "a Spartan-6 needs `vccaux`: \"2.5\" or \"3.3\"");
             }
             (Some(volts), []) => {
-                return self.refuse(volts.span(), format!("`vccaux` is a Spartan-6's, not a {family}'s"));
+                return self
+                    .refuse(volts.span(), format!("`vccaux` is a Spartan-6's, not a {family}'s"));
             }
             (Some(volts), supplies) if !supplies.contains(&volts.as_ref().as_str()) => {
                 return self.refuse(volts.span(), "VCCAUX is \"2.5\" or \"3.3\"");
             }
             _ => {}
         }
-        if let Some(other) = raw.oscillator.io.as_ref().filter(|other| other.as_ref().millivolts() != io.millivolts()) {
+        if let Some(other) = raw
+            .oscillator
+            .io
+            .as_ref()
+            .filter(|other| other.as_ref().millivolts() != io.millivolts())
+        {
             let (theirs, ours) = (other.as_ref().name(), io.name());
-            let message = format!("{theirs} beside pins of {ours}: the voltages of their banks differ");
+            let message =
+                format!("{theirs} beside pins of {ours}: the voltages of their banks differ");
             return self.refuse(other.span(), message);
         }
         Ok(())
@@ -235,7 +260,8 @@ impl Reader<'_> {
         for spanned in &raw.part {
             let RawPart { name, package, speed, logic_cells, block_rams } = spanned.as_ref();
             if speed.is_some() != family.facts().has_speed_grades() {
-                return self.refuse(spanned.span(), "a Spartan needs a `speed` grade, an iCE40 has none");
+                return self
+                    .refuse(spanned.span(), "a Spartan needs a `speed` grade, an iCE40 has none");
             }
             if parts.iter().any(|part| part.name == *name) {
                 return self.refuse(spanned.span(), format!("two parts are called '{name}'"));
@@ -244,37 +270,60 @@ impl Reader<'_> {
             let (speed, logic_cells, block_rams) = (*speed, *logic_cells, *block_rams);
             parts.push(Part { family, name, package, speed, logic_cells, block_rams });
         }
-        if parts.is_empty() { self.refuse(raw.family.span(), "a board without a [[part]]") } else { Ok(parts) }
+        if parts.is_empty() {
+            self.refuse(raw.family.span(), "a board without a [[part]]")
+        } else {
+            Ok(parts)
+        }
     }
 
     /// Assigns a use to a pin of the package; a second use is an error.
     fn take(&mut self, pin: &Spanned<String>, purpose: &str) -> Result<(), InputError> {
-        if let Some((other, _)) = self.used.insert(pin.as_ref().clone(), (purpose.to_owned(), pin.span())) {
+        if let Some((other, _)) =
+            self.used.insert(pin.as_ref().clone(), (purpose.to_owned(), pin.span()))
+        {
             return self.refuse(pin.span(), format!("pin {} is taken: {other}", pin.as_ref()));
         }
         Ok(())
     }
 
     /// The wires of all ports, in the order of [`PORTS`].
-    fn wires(&mut self, pins: Ports, onboard: Ports, connectors: &Connectors) -> Result<Vec<Wire>, InputError> {
+    fn wires(
+        &mut self,
+        pins: Ports,
+        onboard: Ports,
+        connectors: &Connectors,
+    ) -> Result<Vec<Wire>, InputError> {
         let mut wires: Vec<Wire> = Vec::new();
         let labelled = pins.into_iter().map(|row| (row, true));
-        for ((name, pins), on_connector) in labelled.chain(onboard.into_iter().map(|row| (row, false))) {
+        for ((name, pins), on_connector) in
+            labelled.chain(onboard.into_iter().map(|row| (row, false)))
+        {
             let port = self.port(&name)?;
             if wires.iter().any(|wire| wire.port.split('[').next() == Some(port.name)) {
-                return self.refuse(name.span(), format!("{} stands in [pins] and in [onboard]", port.name));
+                return self.refuse(
+                    name.span(),
+                    format!("{} stands in [pins] and in [onboard]", port.name),
+                );
             }
             let span = pins.span();
             let pins = match (pins.into_inner(), port.per_axis) {
                 (Pins::One(pin), false) => vec![Spanned::new(span, pin)],
                 (Pins::Many(pins), true) => pins,
                 (Pins::One(_), true) => {
-                    return self.refuse(span, format!("{} has a pin for each axis: a list", port.name));
+                    return self
+                        .refuse(span, format!("{} has a pin for each axis: a list", port.name));
                 }
-                (Pins::Many(_), false) => return self.refuse(span, format!("{} is one pin", port.name)),
+                (Pins::Many(_), false) => {
+                    return self.refuse(span, format!("{} is one pin", port.name));
+                }
             };
             for (index, spanned) in pins.into_iter().enumerate() {
-                let bit = if port.per_axis { format!("{}[{index}]", port.name) } else { port.name.to_owned() };
+                let bit = if port.per_axis {
+                    format!("{}[{index}]", port.name)
+                } else {
+                    port.name.to_owned()
+                };
                 let (pin, at) = match on_connector {
                     false => (spanned.as_ref().clone(), None),
                     true => self.labelled(&spanned, connectors)?,
@@ -283,17 +332,23 @@ impl Reader<'_> {
                 wires.push(Wire { port: bit, pin, at });
             }
         }
-        let place = |wire: &Wire| PORTS.iter().position(|port| wire.port.split('[').next() == Some(port.name));
+        let place = |wire: &Wire| {
+            PORTS.iter().position(|port| wire.port.split('[').next() == Some(port.name))
+        };
         wires.sort_by_key(place);
         Ok(wires)
     }
 
-    fn port(&self, name: &Spanned<String>) -> Result<&'static Port, InputError> {
+    fn port(&self, name: &Spanned<String>) -> Result<&'static BoardPort, InputError> {
         PORTS.iter().find(|port| port.name == name.as_ref()).ok_or_else(|| {
             let known: Vec<&str> = PORTS.iter().map(|port| port.name).collect();
             let meant = did_you_mean(name.as_ref(), known.iter().copied());
-            InputError::at(self.source, name.span(), format!("no port is called '{}'{meant}", name.as_ref()))
-                .help(format!("known: {}", known.join(", ")))
+            InputError::at(
+                self.source,
+                name.span(),
+                format!("no port is called '{}'{meant}", name.as_ref()),
+            )
+            .help(format!("known: {}", known.join(", ")))
         })
     }
 
@@ -311,8 +366,12 @@ impl Reader<'_> {
         let mut found = connectors.iter().filter_map(on);
         match (found.next(), found.next()) {
             (Some(one), None) => Ok(one),
-            (None, _) => self.refuse(label.span(), format!("no connector has a pin labelled '{text}'")),
-            (Some(_), Some(_)) => self.refuse(label.span(), format!("two connectors have a pin labelled '{text}'")),
+            (None, _) => {
+                self.refuse(label.span(), format!("no connector has a pin labelled '{text}'"))
+            }
+            (Some(_), Some(_)) => {
+                self.refuse(label.span(), format!("two connectors have a pin labelled '{text}'"))
+            }
         }
     }
 
@@ -321,8 +380,9 @@ impl Reader<'_> {
     fn axes(&self, board: &Board) -> Result<(), InputError> {
         let (step, dir) = (board.bits("step"), board.bits("dir"));
         if step != dir || !(1..=MAX_AXES).contains(&step) {
-            let message =
-                format!("{step} pins for `step` and {dir} for `dir`: one to {MAX_AXES}, and as many, are needed");
+            let message = format!(
+                "{step} pins for `step` and {dir} for `dir`: one to {MAX_AXES}, and as many, are needed"
+            );
             return self.refuse(0..0, message);
         }
         for ends in ["limit_min", "limit_max"] {
@@ -331,9 +391,15 @@ impl Reader<'_> {
             }
         }
         let count = |names: &[&str]| names.iter().map(|name| board.bits(name)).sum::<usize>();
-        match (count(&["uart_rx", "uart_tx"]), count(&["spi_cs_n", "spi_sck", "spi_mosi", "spi_miso"])) {
+        match (
+            count(&["uart_rx", "uart_tx"]),
+            count(&["spi_cs_n", "spi_sck", "spi_mosi", "spi_miso"]),
+        ) {
             (0 | 2, 4) | (2, 0) => {}
-            _ => return self.refuse(0..0, "a host needs both pins of a UART, or all four of an SPI"),
+            _ => {
+                return self
+                    .refuse(0..0, "a host needs both pins of a UART, or all four of an SPI");
+            }
         }
         match count(&["estop"]) {
             1 => Ok(()),
@@ -341,16 +407,24 @@ impl Reader<'_> {
         }
     }
 
-    /// Checks a proposed clock: the board can make it, and the turns of all its axes fit into its
-    /// tick.
-    fn clocking(&self, board: &Board, timebase: Spanned<RawTimebase>) -> Result<Clocking, InputError> {
+    /// Checks a proposed clock: the board can make it, and the time slots of all its axes fit into
+    /// its tick.
+    fn clocking(
+        &self,
+        board: &Board,
+        timebase: Spanned<RawTimebase>,
+    ) -> Result<Clocking, InputError> {
         let span = timebase.span();
         let RawTimebase { clock_hz, tick_ns, phases, why } = timebase.into_inner();
-        let at_clock = |error: &dyn fmt::Display| InputError::at(self.source, clock_hz.span(), error.to_string());
-        let made_by = board.family.facts().clock_managers().solve(board.oscillator.hz, *clock_hz.as_ref());
+        let at_clock = |error: &dyn fmt::Display| {
+            InputError::at(self.source, clock_hz.span(), error.to_string())
+        };
+        let made_by =
+            board.family.facts().clock_managers().solve(board.oscillator.hz, *clock_hz.as_ref());
         let made_by = made_by.map_err(|error| at_clock(&error))?;
         let checked = Timebase::new(*clock_hz.as_ref(), tick_ns, phases);
-        let checked = checked.map_err(|error| InputError::at(self.source, span.clone(), error.to_string()))?;
+        let checked = checked
+            .map_err(|error| InputError::at(self.source, span.clone(), error.to_string()))?;
         check_schedule(board.bits("step"), &checked)
             .map_err(|error| InputError::at(self.source, span, error.to_string()))?;
         Ok(Clocking { clock_hz: clock_hz.into_inner(), tick_ns, phases, made_by, why })

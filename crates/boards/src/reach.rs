@@ -19,7 +19,9 @@ impl Board {
     /// [`BoardError::Slow`] gives the measured clock, and the clocks and ticks that the board
     /// makes.
     pub fn may_reach(&self, part: &Part, clock_hz: u64, axes: usize) -> Result<(), BoardError> {
-        let Some(Measured::Placed(Placed { nextpnr_mhz, .. })) = self.measured() else { return Ok(()) };
+        let Some(Measured::Placed(Placed { nextpnr_mhz, .. })) = self.measured() else {
+            return Ok(());
+        };
         let measured_hz = (nextpnr_mhz * 1e6).round() as u64;
         let measured = self.parts.first() == Some(part);
         let proposed = self.clocks.iter().any(|clock| clock.clock_hz == clock_hz);
@@ -27,11 +29,16 @@ impl Board {
             return Ok(());
         }
         let board = self.name.clone();
-        Err(BoardError::Slow { board, wanted_hz: clock_hz, measured_hz, proposed: self.proposed(Some(axes)) })
+        Err(BoardError::Slow {
+            board,
+            wanted_hz: clock_hz,
+            measured_hz,
+            proposed: self.proposed(Some(axes)),
+        })
     }
 
     /// The clocks and ticks at which the board is proposed to run. If `axes` is given, each tick is
-    /// long enough for the turns of that many axes.
+    /// long enough for the time slots of that many axes.
     pub fn proposed(&self, axes: Option<usize>) -> String {
         let clocks: Vec<String> = self.clocks.iter().map(|clock| said(clock, axes)).collect();
         clocks.join(" or ")
@@ -41,7 +48,10 @@ impl Board {
 /// One clock in words: `37.5 MHz (ticks of 2560 ns in 16 phases)`.
 fn said(clock: &Clocking, axes: Option<usize>) -> String {
     let Clocking { clock_hz, tick_ns, phases, .. } = *clock;
-    let fits = |axes| Timebase::new(clock_hz, tick_ns, phases).is_ok_and(|time| check_schedule(axes, &time).is_ok());
+    let fits = |axes| {
+        Timebase::new(clock_hz, tick_ns, phases)
+            .is_ok_and(|time| check_schedule(axes, &time).is_ok())
+    };
     let longer = |axes| Ticks::for_engine(clock_hz, phases, axes).unwrap_or(tick_ns);
     let tick_ns = axes.filter(|&axes| !fits(axes)).map_or(tick_ns, longer);
     format!("{} MHz (ticks of {tick_ns} ns in {phases} phases)", mhz(clock_hz))
@@ -63,13 +73,17 @@ mod tests {
     #[test]
     fn clock_far_too_fast_is_refused_with_the_clocks_of_the_board() {
         let icebreaker = board("icebreaker").unwrap();
-        let refused = |axes| icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string();
+        let refused = |axes| {
+            icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string()
+        };
         let said = refused(6);
         assert!(
-            said.ends_with("37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"),
+            said.ends_with(
+                "37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"
+            ),
             "{said}"
         );
-        // The turns of eight axes need 105 clocks.
+        // The time slots of eight axes need 105 clocks.
         assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
     }
 }

@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::{Board, Mode, OSCILLATOR, PORTS, board, boards};
-use carrystep_core::engine::Limits;
-use carrystep_files::{InputError, Source};
+use carrystep_boards::{Board, ConfigurationMode, OSCILLATOR, PORTS, board, boards};
+use carrystep_core::engine::LimitWiring;
+use carrystep_files::{InputError, SourceText};
 use std::path::Path;
 
 const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
@@ -13,7 +13,7 @@ const MOJO: &str = include_str!("../data/boards/mojo-v3.toml");
 const PAPILIO_PRO: &str = include_str!("../data/boards/papilio-pro.toml");
 
 fn read(text: &str) -> Result<Board, InputError> {
-    Board::from_source(&Source { path: "board.toml".into(), text: text.into() })
+    Board::from_source(&SourceText { path: "board.toml".into(), text: text.into() })
 }
 
 /// Every file of the folder is a board, and has the name of its board.
@@ -21,7 +21,8 @@ fn read(text: &str) -> Result<Board, InputError> {
 fn every_file_is_listed_once_by_family_and_name() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/boards");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut files: Vec<String> = files.map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
+    let mut files: Vec<String> =
+        files.map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
     let mut names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     assert!(names.iter().all(|name| board(name).unwrap().name == *name));
     assert!(boards().is_sorted_by_key(|board| (board.family, &board.name)));
@@ -34,7 +35,7 @@ fn every_file_is_listed_once_by_family_and_name() {
 #[test]
 fn every_board_carries_six_axes_at_each_proposed_clock() {
     for board in boards() {
-        board.carries(6, Limits::Each).unwrap();
+        board.carries(6, LimitWiring::Each).unwrap();
         for clock in &board.clocks {
             assert_eq!(board.clock(clock.clock_hz).unwrap(), clock.made_by, "{}", board.name);
         }
@@ -45,7 +46,8 @@ fn every_board_carries_six_axes_at_each_proposed_clock() {
 #[test]
 fn no_pin_is_used_twice_and_every_wire_belongs_to_a_port() {
     for board in boards() {
-        let pins = board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
+        let pins =
+            board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
         let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
         let all = pins.len();
         pins.sort();
@@ -66,9 +68,13 @@ fn ports_on_configuration_pins_are_listed_with_the_reason() {
     for board in boards() {
         for shared in &board.shared {
             listed += 1;
-            let now = shared.modes.iter().any(|mode| *mode == Mode::Any || board.configured.contains(mode));
+            let now = shared
+                .modes
+                .iter()
+                .any(|mode| *mode == ConfigurationMode::Any || board.configured.contains(mode));
             assert!(!now || shared.why.is_some(), "{}: {shared:?}", board.name);
-            let motion = ["step", "dir", "enable_n"].iter().any(|name| shared.port.starts_with(name));
+            let motion =
+                ["step", "dir", "enable_n"].iter().any(|name| shared.port.starts_with(name));
             assert!(!(now && motion), "{}: {shared:?}", board.name);
         }
     }
@@ -90,13 +96,20 @@ fn ports_on_configuration_pins_are_listed_with_the_reason() {
 #[test]
 fn board_file_may_contain_the_table_of_its_package() {
     let own = ICESTICK.replace("package = \"tq144\"", "package = \"own\"");
-    assert!(read(&own).unwrap_err().message.contains("the configuration pins of hx1k in own are not known"));
-    let table =
-        "\n[[package]]\nname = \"own\"\nparts = [\"hx1k\"]\nsources = [\"data sheet\"]\n[package.spi]\n71 = \"SS\"\n";
+    assert!(
+        read(&own)
+            .unwrap_err()
+            .message
+            .contains("the configuration pins of hx1k in own are not known")
+    );
+    let table = "\n[[package]]\nname = \"own\"\nparts = [\"hx1k\"]\nsources = [\"data sheet\"]\n[package.spi]\n71 = \"SS\"\n";
     let with_table = read(&(own.clone() + table)).unwrap();
     assert_eq!(with_table.configuration_sources, ["data sheet"]);
     let refused = read(&(own + &table.replace("71", "8"))).unwrap_err();
-    assert!(refused.message.contains("uart_tx is on 8, which is SS in configuration (SPI)"), "{refused}");
+    assert!(
+        refused.message.contains("uart_tx is on 8, which is SS in configuration (SPI)"),
+        "{refused}"
+    );
 }
 
 /// Columns of each row: the text in the file, its replacement, words of the error message, and the
@@ -105,11 +118,35 @@ fn board_file_may_contain_the_table_of_its_package() {
 fn mistake_in_a_board_file_is_refused_at_its_place() {
     let rows = [
         (ICESTICK, "\"J1_4\",", "\"J1_3\",", "pin 112 is taken: step[0]", "\"J1_3\", \"J1_5\""),
-        (ICESTICK, "uart_rx = \"9\"", "uart_rx = \"21\"", "pin 21 is taken: the oscillator", "\"21\"\nuart"),
-        (ICESTICK, "estop = \"J1_10\"", "estop = \"J1_11\"", "no connector has a pin labelled 'J1_11'", "\"J1_11\""),
+        (
+            ICESTICK,
+            "uart_rx = \"9\"",
+            "uart_rx = \"21\"",
+            "pin 21 is taken: the oscillator",
+            "\"21\"\nuart",
+        ),
+        (
+            ICESTICK,
+            "estop = \"J1_10\"",
+            "estop = \"J1_11\"",
+            "no connector has a pin labelled 'J1_11'",
+            "\"J1_11\"",
+        ),
         (ICESTICK, "enable_n = ", "enabled = ", "no port is called 'enabled'", "enabled = "),
-        (ICESTICK, "enable_n = \"J1_9\"", "enable_n = [\"J1_9\"]", "enable_n is one pin", "[\"J1_9\"]"),
-        (ICESTICK, "led = \"95\"", "led = 95", "expected a pin in quotes, or a list of them", "95\n"),
+        (
+            ICESTICK,
+            "enable_n = \"J1_9\"",
+            "enable_n = [\"J1_9\"]",
+            "enable_n is one pin",
+            "[\"J1_9\"]",
+        ),
+        (
+            ICESTICK,
+            "led = \"95\"",
+            "led = 95",
+            "expected a pin in quotes, or a list of them",
+            "95\n",
+        ),
         (
             ICESTICK,
             "clock_hz = 48_000_000",
@@ -117,9 +154,21 @@ fn mistake_in_a_board_file_is_refused_at_its_place() {
             "the nearest that it makes is 39.75 MHz",
             "40_000_000",
         ),
-        (ICESTICK, "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each", "[[timebase]]"),
+        (
+            ICESTICK,
+            "tick_ns = 2000",
+            "tick_ns = 1000",
+            "6 axes need 13 clocks each",
+            "[[timebase]]",
+        ),
         (ICESTICK, "pll = \"core\"\n", "", "an iCE40 needs `pll`", "\"ice40\""),
-        (ICESTICK, "family = \"ice40\"", "family = \"ice50\"", "unknown variant `ice50`", "\"ice50\""),
+        (
+            ICESTICK,
+            "family = \"ice40\"",
+            "family = \"ice50\"",
+            "unknown variant `ice50`",
+            "\"ice50\"",
+        ),
         (ICESTICK, "logic_cells = 1280", "speed = 4", "an iCE40 has none", "[[part]]"),
         (
             ICESTICK,
@@ -128,7 +177,13 @@ fn mistake_in_a_board_file_is_refused_at_its_place() {
             "LVCMOS25 beside pins of LVCMOS33",
             "\"LVCMOS25\"",
         ),
-        (ICESTICK, "usb = \"0403:6010\"", "usb = \"6010\"", "vendor and product are expected", "\"6010\""),
+        (
+            ICESTICK,
+            "usb = \"0403:6010\"",
+            "usb = \"6010\"",
+            "vendor and product are expected",
+            "\"6010\"",
+        ),
         (ICESTICK, "iceprog FILE", "iceprog", "has no FILE in it", "\"iceprog\""),
         (
             ICESTICK,
@@ -146,18 +201,78 @@ fn mistake_in_a_board_file_is_refused_at_its_place() {
             "step[0] is on P75, which is AWAKE in configuration (every mode)",
             "\"A7\"",
         ),
-        (PAPILIO_PRO, "\"C5\"", "\"B10\"", "step[1] is on P62, which is MISO2/D1 in configuration (SPI)", "\"B10\""),
-        (PAPILIO_PRO, "enable_n = \"C10\"", "enable_n = \"B8\"", "enable_n is on P74, which is DOUT/BUSY", "\"B8\""),
-        (PAPILIO_PRO, "configured = [\"spi\"]", "configured = []", "the modes in which the board is configured", "[]"),
-        (PAPILIO_PRO, "tqg144", "csg324", "the configuration pins of xc6slx9 in csg324 are not known", "[[part]]"),
-        (MOJO, "\"P9\", \"P142\"", "\"P144\", \"P142\"", "step[0] is on P144, which is HSWAPEN", "\"P144\", \"P142\""),
-        (MOJO, "pins = [\"P55\"]", "pins = [\"P55\", \"P8\"]", "no port is on the configuration pin P8", "\"P8\"]"),
-        (MOJO, "pins = [\"P43\", ", "pins = [", "spi_sck is on P43, which is D6 in configuration", "\"P43\""),
+        (
+            PAPILIO_PRO,
+            "\"C5\"",
+            "\"B10\"",
+            "step[1] is on P62, which is MISO2/D1 in configuration (SPI)",
+            "\"B10\"",
+        ),
+        (
+            PAPILIO_PRO,
+            "enable_n = \"C10\"",
+            "enable_n = \"B8\"",
+            "enable_n is on P74, which is DOUT/BUSY",
+            "\"B8\"",
+        ),
+        (
+            PAPILIO_PRO,
+            "configured = [\"spi\"]",
+            "configured = []",
+            "the modes in which the board is configured",
+            "[]",
+        ),
+        (
+            PAPILIO_PRO,
+            "tqg144",
+            "csg324",
+            "the configuration pins of xc6slx9 in csg324 are not known",
+            "[[part]]",
+        ),
+        (
+            MOJO,
+            "\"P9\", \"P142\"",
+            "\"P144\", \"P142\"",
+            "step[0] is on P144, which is HSWAPEN",
+            "\"P144\", \"P142\"",
+        ),
+        (
+            MOJO,
+            "pins = [\"P55\"]",
+            "pins = [\"P55\", \"P8\"]",
+            "no port is on the configuration pin P8",
+            "\"P8\"]",
+        ),
+        (
+            MOJO,
+            "pins = [\"P43\", ",
+            "pins = [",
+            "spi_sck is on P43, which is D6 in configuration",
+            "\"P43\"",
+        ),
         (MOJO, "holds = [\"uart_tx\", ", "holds = [", "the gate does not hold uart_tx", "\"P70\""),
-        (MOJO, "\"spi_miso\"]", "\"spi_miso\", \"led\"]", "a gate can hold uart_tx and spi_miso, not 'led'", "\"led\""),
-        (MOJO, "port = \"cclk\"", "port = \"estop\"", "the gate needs a port of its own", "\"estop\""),
+        (
+            MOJO,
+            "\"spi_miso\"]",
+            "\"spi_miso\", \"led\"]",
+            "a gate can hold uart_tx and spi_miso, not 'led'",
+            "\"led\"",
+        ),
+        (
+            MOJO,
+            "port = \"cclk\"",
+            "port = \"estop\"",
+            "the gate needs a port of its own",
+            "\"estop\"",
+        ),
         (MOJO, "pin = \"P70\"", "pin = \"P59\"", "pin P59 is taken: uart_tx", "\"P59\""),
-        (PAPILIO_PRO, "led = \"P112\"", "led = \"P144\"", "pin P144 is taken: reserved: tied", "\"P144\""),
+        (
+            PAPILIO_PRO,
+            "led = \"P112\"",
+            "led = \"P144\"",
+            "pin P144 is taken: reserved: tied",
+            "\"P144\"",
+        ),
     ];
     for (text, old, new, says, place) in rows {
         assert!(text.contains(old), "the text is gone: {old}");
@@ -191,7 +306,10 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
     let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     assert_eq!(
         unknown,
-        format!("no board is called 'icestik' (did you mean 'icestick'?); there are {}", names.join(", "))
+        format!(
+            "no board is called 'icestik' (did you mean 'icestick'?); there are {}",
+            names.join(", ")
+        )
     );
     let s3board = board("s3board").unwrap();
     assert_eq!(s3board.part(None).unwrap().ordered(), "xc3s400-ft256-4");
@@ -200,15 +318,18 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
         "s3board has no part 'xc3s50'; there is xc3s400, xc3s200, xc3s1000"
     );
     assert_eq!(
-        said(&icestick.carries(8, Limits::None).unwrap_err()),
+        said(&icestick.carries(8, LimitWiring::None).unwrap_err()),
         "icestick has pins for 6 axes, not for 8: leave out axes, or take another board"
     );
     assert_eq!(
-        said(&icestick.carries(6, Limits::Pair).unwrap_err()),
+        said(&icestick.carries(6, LimitWiring::Pair).unwrap_err()),
         "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
          limits = \"each\" or \"one\" would do"
     );
-    assert_eq!(said(&icestick.wire("limit_max[0]").unwrap_err()), "icestick has no pin for limit_max[0]");
+    assert_eq!(
+        said(&icestick.wire("limit_max[0]").unwrap_err()),
+        "icestick has no pin for limit_max[0]"
+    );
     assert_eq!(
         said(&icestick.clock(40_000_000).unwrap_err()),
         "icestick: the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz; it is proposed \
@@ -229,7 +350,11 @@ fn default_baud_rate_of_a_board_is_the_fastest_that_its_clock_makes() {
     assert_eq!(default("alchitry-cu"), (3_000_000, 27));
     assert_eq!(default("s3board"), (115_200, 347));
     for board in boards() {
-        assert!(board.clocks.iter().all(|clock| board.uart(clock.clock_hz).is_ok()), "{}", board.name);
+        assert!(
+            board.clocks.iter().all(|clock| board.uart(clock.clock_hz).is_ok()),
+            "{}",
+            board.name
+        );
     }
     assert!(board("s3board").unwrap().uart(500_000).is_err());
 }

@@ -22,7 +22,9 @@ fn compare(input: &str, output: &str, settings: [u8; 4]) {
         return;
     }
     match found {
-        Ok(ClockManager::Ice40Pll(pll)) => assert_eq!(pll, Ice40Pll { divr, divf, divq, filter_range }, "{what}"),
+        Ok(ClockManager::Ice40Pll(pll)) => {
+            assert_eq!(pll, Ice40Pll { divr, divf, divq, filter_range }, "{what}");
+        }
         Ok(other) => panic!("{other:?}: {what}"),
         Err(error) => {
             let (r, f) = (u64::from(divr) + 1, u64::from(divf) + 1);
@@ -30,7 +32,8 @@ fn compare(input: &str, output: &str, settings: [u8; 4]) {
             assert_ne!(vco, hz(output) * divider, "{what}");
             // icepll also returns clocks that are not whole Hz, and some outside of the PLL's
             // output range.
-            if vco.is_multiple_of(divider) && (16_000_000..=275_000_000).contains(&(vco / divider)) {
+            if vco.is_multiple_of(divider) && (16_000_000..=275_000_000).contains(&(vco / divider))
+            {
                 let off = |made: u64| made.abs_diff(hz(output));
                 assert_eq!(error.nearest_hz.map(off), Some(off(vco / divider)), "{what}");
             }
@@ -53,9 +56,13 @@ fn pll_settings_equal_those_of_icepll() {
 /// Compares the golden lines with the installed icepll, if there is one.
 #[test]
 fn golden_lines_equal_the_output_of_icepll() {
-    for line in include_str!("icepll.txt").lines().filter(|line| !line.starts_with('#')).step_by(7) {
+    for line in include_str!("icepll.txt").lines().filter(|line| !line.starts_with('#')).step_by(7)
+    {
         let words: Vec<&str> = line.split(' ').collect();
-        let Ok(output) = Command::new("icepll").args(["-i", words[0], "-o", words[1]]).output() else { return };
+        let Ok(output) = Command::new("icepll").args(["-i", words[0], "-o", words[1]]).output()
+        else {
+            return;
+        };
         let said = String::from_utf8(output.stdout).unwrap();
         let number = |key: &str| {
             let (_, rest) = said.split_once(key).unwrap();
@@ -88,7 +95,8 @@ fn extreme_frequencies_do_not_panic() {
         for oscillator in [0, 1, 12_000_000, u64::MAX] {
             for wanted in [1, 48_000_000, u64::MAX - 1] {
                 assert!(
-                    [12_000_000, wanted].contains(&oscillator) || managers.solve(oscillator, wanted).is_err(),
+                    [12_000_000, wanted].contains(&oscillator)
+                        || managers.solve(oscillator, wanted).is_err(),
                     "{oscillator} {wanted}"
                 );
             }

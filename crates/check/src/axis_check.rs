@@ -5,10 +5,10 @@
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
 use crate::line_check::Off;
-use crate::pins::{PinWatch, Stretch};
+use crate::pins::{PinWatch, Shortest, Stretch};
 use crate::report::AxisReport;
 use crate::spread::Spread;
-use carrystep_core::{StartPhase, Timebase};
+use carrystep_core::{PinTimes, StartPhase, Timebase};
 use carrystep_files::Unit;
 use carrystep_profile::{Crossing, Timeline};
 
@@ -21,8 +21,8 @@ pub struct AxisSetup<'a> {
     pub unit: Option<&'a Unit>,
     /// The float profile of all moves.
     pub timeline: &'a Timeline,
-    /// The required pin times of the driver, ns: width, gap, set-up, hold.
-    pub pins_ns: [u64; 4],
+    /// The pin times that the driver requires, ns.
+    pub pins_ns: PinTimes,
     /// Number of pulses of all moves together.
     pub expected_pulses: u64,
     /// Steps forward minus steps backward after all moves.
@@ -79,10 +79,21 @@ pub(crate) struct AxisCheck<'a> {
 }
 
 impl<'a> AxisCheck<'a> {
-    pub(crate) fn new(setup: AxisSetup<'a>, phase: StartPhase, timebase: Timebase, slack_ps: u64) -> Self {
-        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> = Box::new(setup.timeline.crossings(phase));
+    pub(crate) fn new(
+        setup: AxisSetup<'a>,
+        phase: StartPhase,
+        timebase: Timebase,
+        slack_ps: u64,
+    ) -> Self {
+        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> =
+            Box::new(setup.timeline.crossings(phase));
         let next = [crossings.next(), crossings.next()];
-        let fit_ps = setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max);
+        let fit_ps = setup
+            .timeline
+            .legs
+            .iter()
+            .map(|leg| (leg.fit_seconds * PS).round())
+            .fold(0.0, f64::max);
         Self {
             setup,
             timebase,
@@ -207,7 +218,9 @@ impl<'a> AxisCheck<'a> {
 
     fn is_missing(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
         match self.period(ps, origin_ps, sure) {
-            Some((since, [Some(this), Some(after)])) => since > f64::midpoint(this, after) + self.tolerance_ps(),
+            Some((since, [Some(this), Some(after)])) => {
+                since > f64::midpoint(this, after) + self.tolerance_ps()
+            }
             _ => false,
         }
     }
@@ -227,7 +240,10 @@ impl<'a> AxisCheck<'a> {
             [Some(first), Some(_)] => {
                 let due = due_ps(origin_ps, &first, tick_ps(&self.timebase));
                 let number = self.number;
-                self.fail_pulse(&format!("pulse {number} and all behind it are missing, due from {}", moment(due)));
+                self.fail_pulse(&format!(
+                    "pulse {number} and all behind it are missing, due from {}",
+                    moment(due)
+                ));
             }
             _ => self.miss(origin_ps),
         }
@@ -271,20 +287,26 @@ impl<'a> AxisCheck<'a> {
             self.fail(&format!("{found} pulses, {} expected", self.setup.expected_pulses));
         }
         if self.position != self.setup.expected_position {
-            self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
+            self.fail(&format!(
+                "final position {}, {} expected",
+                self.position, self.setup.expected_position
+            ));
         }
         let phase = phase_ps(&self.timebase);
         let (fit, bound) = (self.fit_ps, self.bound_ps());
         self.judge_errors(shift_ps as f64, bound);
         if let Some(Off { steps, bound, pulse }) = line.filter(|off| off.steps > off.bound) {
-            self.fail(&format!("{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"));
+            self.fail(&format!(
+                "{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"
+            ));
         }
-        let shortest = self.watch.shortest();
-        let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
-        self.judge_pins(measured);
-        let [high_min_ns, low_min_ns, setup_min_ns, hold_min_ns] = measured.map(|s| s.map(|s| s.ps as f64 / NS));
-        let [high_required_ns, low_required_ns, setup_required_ns, hold_required_ns] =
-            self.setup.pins_ns.map(|ns| ns as f64);
+        let Shortest { step_high, step_low, dir_setup, dir_hold } = self.watch.shortest();
+        let required = self.setup.pins_ns;
+        self.judge_pin("STEP high", step_high, required.step_high);
+        self.judge_pin("STEP low", step_low, required.step_low);
+        self.judge_pin("DIR set-up", dir_setup, required.dir_setup);
+        self.judge_pin("DIR hold", dir_hold, required.dir_hold);
+        let ns = |stretch: Option<Stretch>| stretch.map(|stretch| stretch.ps as f64 / NS);
         let errors = self.errors.shifted(-(shift_ps as f64));
         self.failures.append(&mut self.pulse_failures);
         AxisReport {
@@ -303,14 +325,14 @@ impl<'a> AxisCheck<'a> {
             error_std_theory_ns: phase / 12_f64.sqrt() / NS,
             error_fit_ns: fit / NS,
             error_bound_ns: bound / NS,
-            high_min_ns,
-            high_required_ns,
-            low_min_ns,
-            low_required_ns,
-            setup_min_ns,
-            setup_required_ns,
-            hold_min_ns,
-            hold_required_ns,
+            step_high_min_ns: ns(step_high),
+            step_high_required_ns: required.step_high as f64,
+            step_low_min_ns: ns(step_low),
+            step_low_required_ns: required.step_low as f64,
+            dir_setup_min_ns: ns(dir_setup),
+            dir_setup_required_ns: required.dir_setup as f64,
+            dir_hold_min_ns: ns(dir_hold),
+            dir_hold_required_ns: required.dir_hold as f64,
             period_jitter_max_ns: self.jitter_ps.map(|jitter| jitter / NS),
             period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
             speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),
@@ -340,18 +362,15 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    fn judge_pins(&mut self, measured: [Option<Stretch>; 4]) {
-        let names = ["STEP high", "STEP low", "DIR set-up", "DIR hold"];
-        for ((stretch, required), name) in measured.into_iter().zip(self.setup.pins_ns).zip(names) {
-            let Some(stretch) = stretch else { continue };
-            if (stretch.ps as f64 + self.slack_ps) < required as f64 * NS {
-                self.fail(&format!(
-                    "{name} of {:.1} ns at pulse {} ({}), the driver needs {required} ns",
-                    stretch.ps as f64 / NS,
-                    stretch.pulse,
-                    moment(stretch.end)
-                ));
-            }
+    /// Fails if the shortest stretch of a pin's level is shorter than the driver requires, ns.
+    fn judge_pin(&mut self, name: &str, shortest: Option<Stretch>, required: u64) {
+        let Some(Stretch { ps, pulse, end }) = shortest else { return };
+        if (ps as f64 + self.slack_ps) < required as f64 * NS {
+            self.fail(&format!(
+                "{name} of {:.1} ns at pulse {pulse} ({}), the driver needs {required} ns",
+                ps as f64 / NS,
+                moment(end)
+            ));
         }
     }
 }

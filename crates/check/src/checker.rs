@@ -1,17 +1,20 @@
-//! The checker of pulse trains. It knows the float profile and the pin edges, and nothing else.
+//! The checker of pulse trains. It judges the pin edges only by the float profile and by what
+//! [`Setup`] requires (clock and tick, start phase, pin timing of the drivers, straight lines). It
+//! knows nothing of the plan's segments.
 //!
 //! For the k-th rising edge of STEP of an axis, e = m - t, where m is the time of the edge minus
-//! the origin, and t the time at which the profile crosses the k-th step. The capture is judged as
-//! a stream, in constant memory. A missing or extra pulse is reported where it occurs, and the
-//! pulses after it are still compared with the crossings to which they belong.
+//! the origin, and t the time at which the profile crosses the k-th step. A pulse with e > 0 is
+//! late, one with e < 0 early. The capture is judged as a stream, in constant memory. A missing or
+//! extra pulse is reported where it occurs, and the pulses after it are still compared with the
+//! crossings to which they belong.
 
 use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
 use crate::line_check::LinesCheck;
-use crate::report::{OriginKind, Report};
+use crate::report::{CheckReport, OriginKind};
 use carrystep_core::{StartPhase, Timebase};
-use carrystep_profile::Line;
+use carrystep_profile::StraightLine;
 use std::fmt;
 
 /// The time of a capture from which all times are counted.
@@ -23,7 +26,8 @@ pub enum Origin {
         ps: i64,
     },
     /// The origin of a foreign capture: one offset for all axes, chosen as the midpoint of the
-    /// least and the greatest error. An offset for each axis would hide an axis that is late.
+    /// least and the greatest error of all axes together. An offset for each axis would hide an
+    /// axis that is late.
     Midpoint,
     /// An origin that the user gives.
     Fixed {
@@ -42,7 +46,7 @@ pub struct Setup<'a> {
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
     /// The moves in which the axes keep to a straight line.
-    pub lines: Vec<Line>,
+    pub lines: Vec<StraightLine>,
     /// The time from which times are counted.
     pub origin: Origin,
     /// Uncertainty of the capture's times, ps: the sample period of a logic analyser, or 0 for a
@@ -55,8 +59,8 @@ pub struct Checker<'a> {
     axes: Vec<AxisCheck<'a>>,
     lines: LinesCheck,
     origin: Origin,
-    /// The origin of all errors until the end of the capture, ps. For a foreign capture it is
-    /// estimated from the first pulse.
+    /// The origin from which errors are counted while the capture is read, ps. For a foreign
+    /// capture it is estimated from the first pulse, and `finish` corrects it at the end.
     base_ps: Option<i64>,
     slack_ps: u64,
     phase_ns: f64,
@@ -64,7 +68,10 @@ pub struct Checker<'a> {
 
 impl fmt::Debug for Checker<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Checker").field("origin", &self.origin).field("base_ps", &self.base_ps).finish_non_exhaustive()
+        f.debug_struct("Checker")
+            .field("origin", &self.origin)
+            .field("base_ps", &self.base_ps)
+            .finish_non_exhaustive()
     }
 }
 
@@ -73,7 +80,8 @@ impl<'a> Checker<'a> {
     pub fn new(setup: Setup<'a>) -> Self {
         let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
         let lines = LinesCheck::new(lines, phase, axes.len());
-        let axes = axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
+        let axes =
+            axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
         let base_ps = match origin {
             Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
             Origin::Midpoint => None,
@@ -83,7 +91,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Ends the check and returns the report.
-    pub fn finish(self) -> Report {
+    pub fn finish(self) -> CheckReport {
         let base = self.base_ps.unwrap_or(0);
         let kind = match self.origin {
             Origin::Known { .. } => OriginKind::Known,
@@ -91,10 +99,14 @@ impl<'a> Checker<'a> {
             Origin::Fixed { .. } => OriginKind::Fixed,
         };
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
+        // The greatest bound of all axes for e, in seconds. `LinesCheck::off` allows each axis the
+        // distance that it travels in this time; `finish` makes the result a part of the axis'
+        // `passed`.
         let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
         let axes = self.axes.into_iter().enumerate();
-        let axes: Vec<_> = axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
-        Report {
+        let axes: Vec<_> =
+            axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
+        CheckReport {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,
             origin_ps: base.saturating_add(shift),

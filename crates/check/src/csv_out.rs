@@ -56,7 +56,9 @@ impl<'a, W: Write> CsvWriter<'a, W> {
 
     fn pulse(&mut self, name: &str, pulse: &Pulse) -> Result<(), csv::Error> {
         self.begin()?;
-        let optional = |value: Option<f64>, digits| value.map_or_else(String::new, |x| format!("{x:.digits$}"));
+        let optional = |value: Option<f64>, digits| {
+            value.map_or_else(String::new, |x| format!("{x:.digits$}"))
+        };
         self.out.write_record([
             name,
             &pulse.number.to_string(),
@@ -85,7 +87,9 @@ impl<W: Write> PinSink for CsvWriter<'_, W> {
     }
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
-        let Some((name, follower)) = self.axes.get_mut(usize::from(change.axis)) else { return Ok(()) };
+        let Some((name, follower)) = self.axes.get_mut(usize::from(change.axis)) else {
+            return Ok(());
+        };
         let name = *name;
         match follower.change(change) {
             Some(pulse) => self.pulse(name, &pulse).map_err(TraceError::csv),

@@ -5,25 +5,19 @@
 use crate::error::TraceError;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::fmt;
+use strum::Display;
 
 /// A pin of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, JsonSchema, Serialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Display, JsonSchema, Serialize,
+)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Pin {
     /// STEP: a rising edge is one step.
     Step,
     /// DIR: low is forward, high is backward.
     Dir,
-}
-
-impl fmt::Display for Pin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Step => "step",
-            Self::Dir => "dir",
-        })
-    }
 }
 
 /// The change of one pin to a new level.

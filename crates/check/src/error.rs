@@ -69,7 +69,9 @@ pub enum ReadError {
         quantity: u32,
     },
     /// A signal is too wide for a pin, or a vector does not have one pin per axis.
-    #[error("the signal {signal} of the capture has {bits} bits, {wanted}; name a bit of it with --map")]
+    #[error(
+        "the signal {signal} of the capture has {bits} bits, {wanted}; name a bit of it with --map"
+    )]
     Width {
         /// The path of the signal.
         signal: String,
@@ -131,5 +133,9 @@ pub enum ReadError {
 }
 
 fn candidates(found: &[String]) -> String {
-    if found.is_empty() { "it has no signals at all".to_owned() } else { format!("it has {}", found.join(", ")) }
+    if found.is_empty() {
+        "it has no signals at all".to_owned()
+    } else {
+        format!("it has {}", found.join(", "))
+    }
 }

@@ -51,9 +51,21 @@ impl fmt::Debug for Follower<'_> {
 impl<'a> Follower<'a> {
     /// Follows one axis. `origin_ps` is the load of the first move plus the latency L, ps of the
     /// capture.
-    pub fn new(timeline: &'a Timeline, phase: StartPhase, timebase: &Timebase, origin_ps: i64) -> Self {
+    pub fn new(
+        timeline: &'a Timeline,
+        phase: StartPhase,
+        timebase: &Timebase,
+        origin_ps: i64,
+    ) -> Self {
         let crossings = Box::new(timeline.crossings(phase));
-        Self { crossings, origin_ps, tick_ps: tick_ps(timebase), step: false, dir: false, last: None }
+        Self {
+            crossings,
+            origin_ps,
+            tick_ps: tick_ps(timebase),
+            step: false,
+            dir: false,
+            last: None,
+        }
     }
 
     /// Sets the level of a pin at the start of the capture.

@@ -5,8 +5,8 @@
 use crate::vcd_own::OwnCapture;
 use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
 use fst_writer::{
-    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType, FstVarDirection,
-    FstVarType, FstWriteError,
+    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType,
+    FstVarDirection, FstVarType, FstWriteError,
 };
 use std::io::{self, Seek, Write};
 
@@ -54,7 +54,11 @@ impl<W: Write + Seek> Format for FstFormat<W> {
     type Id = FstSignalId;
     const NAME: &'static str = "the FST";
 
-    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[FstSignalId; SIGNALS.len()]>> {
+    fn declare(
+        &mut self,
+        own: &OwnCapture,
+        axes: &[&str],
+    ) -> io::Result<Vec<[FstSignalId; SIGNALS.len()]>> {
         let State::New(out) = std::mem::replace(&mut self.0, State::Over) else {
             return Err(io::Error::other("declared twice"));
         };
@@ -76,9 +80,15 @@ impl<W: Write + Seek> Format for FstFormat<W> {
                 let (name, signal, kind) = match bits {
                     0 => (name.to_owned(), FstSignalType::real(), FstVarType::Real),
                     1 => (name.to_owned(), FstSignalType::bit_vec(1), FstVarType::Wire),
-                    _ => (format!("{name} [{}:0]", bits - 1), FstSignalType::bit_vec(bits), FstVarType::Wire),
+                    _ => (
+                        format!("{name} [{}:0]", bits - 1),
+                        FstSignalType::bit_vec(bits),
+                        FstVarType::Wire,
+                    ),
                 };
-                ids.push(header.var(name, signal, kind, FstVarDirection::Output, None).map_err(told)?);
+                ids.push(
+                    header.var(name, signal, kind, FstVarDirection::Output, None).map_err(told)?,
+                );
             }
             header.up_scope().map_err(told)?;
             all.extend(<[FstSignalId; SIGNALS.len()]>::try_from(ids));

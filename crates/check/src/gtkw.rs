@@ -37,11 +37,15 @@ fn trace(axis: &str, name: &str, bits: u32) -> Value {
 /// # Errors
 /// [`TraceError::Template`] if the template cannot be rendered.
 pub fn save_file(vcd: &str, axes: &[&str], end_ps: u64) -> Result<String, TraceError> {
-    let traces = |axis| SIGNALS.iter().map(|&(name, bits)| trace(axis, name, bits)).collect::<Vec<Value>>();
-    let groups: Vec<Value> = axes.iter().map(|&axis| context! { name => axis, traces => traces(axis) }).collect();
+    let traces =
+        |axis| SIGNALS.iter().map(|&(name, bits)| trace(axis, name, bits)).collect::<Vec<Value>>();
+    let groups: Vec<Value> =
+        axes.iter().map(|&axis| context! { name => axis, traces => traces(axis) }).collect();
     // GTKWave draws 2^-zoom units of time in a frame.
     let zoom = -(end_ps.max(1) as f64 / FRAMES).log2();
-    let text = Environment::new()
-        .render_str(TEMPLATE, context! { vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") })?;
+    let text = Environment::new().render_str(
+        TEMPLATE,
+        context! { vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") },
+    )?;
     Ok(text + "\n")
 }

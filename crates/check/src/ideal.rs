@@ -93,7 +93,8 @@ mod tests {
 
     #[test]
     fn times_are_formatted_in_suitable_units() {
-        let texts = [12_345, 12_345_678, 12_345_678_901, 1_234_567_890_123].map(|ps: u64| moment(ps));
+        let texts =
+            [12_345, 12_345_678, 12_345_678_901, 1_234_567_890_123].map(|ps: u64| moment(ps));
         assert_eq!(texts, ["12.345 ns", "12.345678 us", "12.345678901 ms", "1.234567890 s"]);
     }
 }

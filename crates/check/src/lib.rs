@@ -37,7 +37,7 @@ pub use fst_out::{FstFormat, FstWriter};
 pub use gtkw::save_file;
 pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
-pub use report::{AxisReport, OriginKind, Report};
+pub use report::{AxisReport, CheckReport, OriginKind};
 pub use signal_map::SignalMap;
 pub use vcd_in::{Played, VcdReader};
 pub use vcd_out::{VcdFormat, VcdWriter};

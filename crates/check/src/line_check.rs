@@ -6,7 +6,7 @@
 //! pulse, in whole numbers.
 
 use carrystep_core::StartPhase;
-use carrystep_profile::Line;
+use carrystep_profile::StraightLine;
 
 /// The greatest deviation of an axis on one line.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ struct Worst {
 /// Follows all axes along one line.
 #[derive(Debug)]
 struct LineCheck {
-    line: Line,
+    line: StraightLine,
     worst: Vec<Option<Worst>>,
 }
 
@@ -45,8 +45,9 @@ pub(crate) struct LinesCheck {
 }
 
 impl LinesCheck {
-    pub(crate) fn new(lines: Vec<Line>, phase: StartPhase, axes: usize) -> Self {
-        let lines = lines.into_iter().map(|line| LineCheck { worst: vec![None; axes], line }).collect();
+    pub(crate) fn new(lines: Vec<StraightLine>, phase: StartPhase, axes: usize) -> Self {
+        let lines =
+            lines.into_iter().map(|line| LineCheck { worst: vec![None; axes], line }).collect();
         Self { lines, phase, pulses: vec![0; axes] }
     }
 
@@ -54,8 +55,10 @@ impl LinesCheck {
     pub(crate) fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
-        let within =
-            |line: &Line| (1..=line.steps[axis].unsigned_abs()).contains(&(pulse.saturating_sub(line.before[axis])));
+        let within = |line: &StraightLine| {
+            (1..=line.steps[axis].unsigned_abs())
+                .contains(&(pulse.saturating_sub(line.before[axis])))
+        };
         if let Some(check) = self.lines.iter_mut().find(|check| within(&check.line)) {
             check.measure(axis, &self.pulses, self.phase);
         }
@@ -77,10 +80,12 @@ impl LineCheck {
     /// Compares the axis that has stepped with every other axis.
     fn measure(&mut self, axis: usize, pulses: &[u64], phase: StartPhase) {
         let (here, n) = self.place(axis, pulses, phase);
-        for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0) {
+        for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0)
+        {
             let (there, m) = self.place(other, pulses, phase);
             let apart = (here * m - there * n).abs() - (n + m);
-            let worst = Worst { beyond: apart as f64 / (4.0 * n as f64 * m as f64), pulse: pulses[axis] };
+            let worst =
+                Worst { beyond: apart as f64 / (4.0 * n as f64 * m as f64), pulse: pulses[axis] };
             for axis in [axis, other] {
                 if self.worst[axis].is_none_or(|old| old.beyond < worst.beyond) {
                     self.worst[axis] = Some(worst);
@@ -110,7 +115,7 @@ mod tests {
     use super::*;
 
     fn check(pulses: &[usize]) -> Off {
-        let line = Line { before: vec![0; 2], steps: vec![4, -2], speed: 1.0 };
+        let line = StraightLine { before: vec![0; 2], steps: vec![4, -2], speed: 1.0 };
         let mut check = LinesCheck::new(vec![line], StartPhase::Half, 2);
         pulses.iter().for_each(|&axis| check.pulse(axis));
         check.off(0, 0.01).unwrap()

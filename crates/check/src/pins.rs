@@ -14,13 +14,13 @@ use crate::edge::{Pin, PinChange};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Shortest {
     /// STEP high.
-    pub high: Option<Stretch>,
+    pub step_high: Option<Stretch>,
     /// STEP low between two pulses.
-    pub low: Option<Stretch>,
+    pub step_low: Option<Stretch>,
     /// DIR stable before a rising edge of STEP.
-    pub setup: Option<Stretch>,
+    pub dir_setup: Option<Stretch>,
     /// DIR stable after a rising edge of STEP.
-    pub hold: Option<Stretch>,
+    pub dir_hold: Option<Stretch>,
 }
 
 /// A measured time, and the place at which it ends.
@@ -42,7 +42,7 @@ pub struct PinWatch {
     pulses: u64,
     rise: Option<u64>,
     fall: Option<u64>,
-    turn: Option<u64>,
+    dir_change: Option<u64>,
     shortest: Shortest,
 }
 
@@ -69,21 +69,21 @@ impl PinWatch {
         match (change.pin, level) {
             (Pin::Dir, _) if level != self.dir => {
                 self.dir = level;
-                shorten(&mut self.shortest.hold, self.rise, ps, self.pulses);
-                self.turn = Some(ps);
+                shorten(&mut self.shortest.dir_hold, self.rise, ps, self.pulses);
+                self.dir_change = Some(ps);
             }
             (Pin::Step, true) if !self.step => {
                 self.step = true;
                 self.pulses += 1;
-                shorten(&mut self.shortest.low, self.fall, ps, self.pulses);
-                shorten(&mut self.shortest.setup, self.turn, ps, self.pulses);
+                shorten(&mut self.shortest.step_low, self.fall, ps, self.pulses);
+                shorten(&mut self.shortest.dir_setup, self.dir_change, ps, self.pulses);
                 self.rise = Some(ps);
                 return true;
             }
             (Pin::Step, false) if self.step => {
                 self.step = false;
                 // The width of a pulse that was high when the capture began is unknown.
-                shorten(&mut self.shortest.high, self.rise, ps, self.pulses);
+                shorten(&mut self.shortest.step_high, self.rise, ps, self.pulses);
                 self.fall = Some(ps);
             }
             _ => {}
@@ -126,8 +126,9 @@ mod tests {
         assert!(at(600, Pin::Step, true));
         at(640, Pin::Step, false);
         at(660, Pin::Dir, false);
-        let Shortest { high, low, setup, hold } = watch.shortest();
-        let lengths = [high, low, setup, hold].map(|stretch| stretch.map(|s| (s.ps, s.pulse)));
+        let Shortest { step_high, step_low, dir_setup, dir_hold } = watch.shortest();
+        let lengths = [step_high, step_low, dir_setup, dir_hold]
+            .map(|stretch| stretch.map(|s| (s.ps, s.pulse)));
         assert_eq!(lengths, [Some((40, 2)), Some((200, 2)), Some((250, 1)), Some((60, 2))]);
     }
 
@@ -136,7 +137,7 @@ mod tests {
         let mut watch = PinWatch::default();
         watch.initial(Pin::Step, true);
         watch.change(PinChange { ps: 5, axis: 0, pin: Pin::Step, level: false });
-        assert_eq!(watch.shortest().high, None);
+        assert_eq!(watch.shortest().step_high, None);
         assert_eq!(watch.pulses(), 0);
     }
 }

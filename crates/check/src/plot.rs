@@ -6,7 +6,7 @@ use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
 use crate::follow::Follower;
 use crate::ideal::{PS, tick_ps};
-use crate::report::Report;
+use crate::report::CheckReport;
 use crate::thin::Thin;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::Timeline;
@@ -64,7 +64,10 @@ struct Curves<'a> {
 
 impl fmt::Debug for Plot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Plot").field("title", &self.title).field("span_s", &self.span_s).finish_non_exhaustive()
+        f.debug_struct("Plot")
+            .field("title", &self.title)
+            .field("span_s", &self.span_s)
+            .finish_non_exhaustive()
     }
 }
 
@@ -87,7 +90,7 @@ impl<'a> Plot<'a> {
     ///
     /// # Errors
     /// [`TraceError::Plot`] if the drawing library fails.
-    pub fn svg(&self, report: &Report) -> Result<String, TraceError> {
+    pub fn svg(&self, report: &CheckReport) -> Result<String, TraceError> {
         draw::svg(self, report)
     }
 }

@@ -22,7 +22,7 @@ pub enum OriginKind {
 
 /// The check of one capture.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
-pub struct Report {
+pub struct CheckReport {
     /// Whether every axis passed.
     pub passed: bool,
     /// How the origin was determined.
@@ -70,21 +70,21 @@ pub struct AxisReport {
     /// The bound of |e|, ns: h/Q + h^2 max(|a| / (8 v)) + fit + 2 ns + slack.
     pub error_bound_ns: f64,
     /// Shortest high time of STEP, ns.
-    pub high_min_ns: Option<f64>,
+    pub step_high_min_ns: Option<f64>,
     /// High time that the driver requires, ns.
-    pub high_required_ns: f64,
+    pub step_high_required_ns: f64,
     /// Shortest low time of STEP between pulses, ns.
-    pub low_min_ns: Option<f64>,
+    pub step_low_min_ns: Option<f64>,
     /// Low time that the driver requires, ns.
-    pub low_required_ns: f64,
+    pub step_low_required_ns: f64,
     /// Shortest time from a change of DIR to the next rising edge of STEP, ns.
-    pub setup_min_ns: Option<f64>,
+    pub dir_setup_min_ns: Option<f64>,
     /// Set-up time that the driver requires, ns.
-    pub setup_required_ns: f64,
+    pub dir_setup_required_ns: f64,
     /// Shortest time from a rising edge of STEP to the next change of DIR, ns.
-    pub hold_min_ns: Option<f64>,
+    pub dir_hold_min_ns: Option<f64>,
     /// Hold time that the driver requires, ns.
-    pub hold_required_ns: f64,
+    pub dir_hold_required_ns: f64,
     /// Greatest |period on the pins - period of the profile|, ns.
     pub period_jitter_max_ns: Option<f64>,
     /// The jitter that theory allows, ns: one phase, and twice the curvature term where the speed
@@ -108,7 +108,7 @@ pub struct AxisReport {
     pub failures_omitted: u64,
 }
 
-impl Report {
+impl CheckReport {
     /// Whether every axis passed.
     pub fn passed(&self) -> bool {
         self.passed
@@ -155,10 +155,10 @@ impl AxisReport {
     fn pins(&self) -> [String; 5] {
         [
             self.axis.clone(),
-            minimum(self.high_min_ns, self.high_required_ns),
-            minimum(self.low_min_ns, self.low_required_ns),
-            minimum(self.setup_min_ns, self.setup_required_ns),
-            minimum(self.hold_min_ns, self.hold_required_ns),
+            minimum(self.step_high_min_ns, self.step_high_required_ns),
+            minimum(self.step_low_min_ns, self.step_low_required_ns),
+            minimum(self.dir_setup_min_ns, self.dir_setup_required_ns),
+            minimum(self.dir_hold_min_ns, self.dir_hold_required_ns),
         ]
     }
 }
@@ -168,7 +168,11 @@ const PINS: [&str; 5] = ["axis", "high", "low", "set-up", "hold"];
 
 /// Writes rows below their headings. Names and columns without a heading are aligned to the left,
 /// numbers to the right.
-fn table<const N: usize>(f: &mut fmt::Formatter<'_>, head: [&str; N], rows: &[[String; N]]) -> fmt::Result {
+fn table<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    head: [&str; N],
+    rows: &[[String; N]],
+) -> fmt::Result {
     let mut widths = head.map(str::len);
     for row in rows {
         for (width, cell) in widths.iter_mut().zip(row) {
@@ -190,18 +194,26 @@ fn table<const N: usize>(f: &mut fmt::Formatter<'_>, head: [&str; N], rows: &[[S
     rows.iter().try_for_each(|row| line(row.each_ref().map(String::as_str)))
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for CheckReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         table(f, PULSES, &self.axes.iter().map(AxisReport::pulses).collect::<Vec<_>>())?;
         table(f, PINS, &self.axes.iter().map(AxisReport::pins).collect::<Vec<_>>())?;
         writeln!(f, "times in ns; found/required; phase {} ns", self.phase_ns)?;
         match self.origin {
             OriginKind::Known => {}
-            OriginKind::Midpoint => writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?,
-            OriginKind::Fixed => writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?,
+            OriginKind::Midpoint => {
+                writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?;
+            }
+            OriginKind::Fixed => {
+                writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?;
+            }
         }
         if self.slack_ns > 0.0 {
-            writeln!(f, "the capture is good to {} ns: every bound is wider by that", self.slack_ns)?;
+            writeln!(
+                f,
+                "the capture is good to {} ns: every bound is wider by that",
+                self.slack_ns
+            )?;
         }
         let fit = self.axes.iter().map(|axis| axis.error_fit_ns).fold(0.0, f64::max);
         if fit > 0.0 {
@@ -213,7 +225,13 @@ impl fmt::Display for Report {
                     Some(unit) => unit.both(steps, 0),
                     None => format!("{steps:.3} steps"),
                 };
-                writeln!(f, "straight: axis {} up to {} off the line, bound {}", axis.axis, far(off), far(bound))?;
+                writeln!(
+                    f,
+                    "straight: axis {} up to {} off the line, bound {}",
+                    axis.axis,
+                    far(off),
+                    far(bound)
+                )?;
             }
         }
         for axis in &self.axes {

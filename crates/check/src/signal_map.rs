@@ -33,7 +33,10 @@ impl SignalMap {
         let mut map = Self::default();
         for line in lines {
             let line = line.as_ref();
-            let wrong = |message: &str| ReadError::Map { entry: line.to_owned(), message: message.to_owned() };
+            let wrong = |message: &str| ReadError::Map {
+                entry: line.to_owned(),
+                message: message.to_owned(),
+            };
             let form = || wrong("write <axis>.step=<signal> or <axis>.dir=<signal>");
             let (left, path) = line.split_once('=').ok_or_else(form)?;
             let (axis, pin) = left.trim().rsplit_once('.').ok_or_else(form)?;
@@ -70,7 +73,13 @@ pub(crate) struct Signal {
 }
 
 impl Signal {
-    pub(crate) fn new(scopes: &[String], name: &str, index: Option<ReferenceIndex>, code: IdCode, bits: u32) -> Self {
+    pub(crate) fn new(
+        scopes: &[String],
+        name: &str,
+        index: Option<ReferenceIndex>,
+        code: IdCode,
+        bits: u32,
+    ) -> Self {
         // Some simulators append the range to the name without a space.
         let glued = name.find('[').filter(|&at| at > 0 && !name.starts_with('\\'));
         let (name, tail) = name.split_at(glued.unwrap_or(name.len()));
@@ -104,7 +113,9 @@ impl Signal {
 
     /// Whether the path is `tail`, or ends with `tail` after a scope.
     fn ends_with(&self, tail: &str) -> bool {
-        self.path.strip_suffix(tail).is_some_and(|scopes| scopes.is_empty() || scopes.ends_with('.'))
+        self.path
+            .strip_suffix(tail)
+            .is_some_and(|scopes| scopes.is_empty() || scopes.ends_with('.'))
     }
 }
 
@@ -128,7 +139,10 @@ fn missing(signals: &[Signal], wanted: String) -> ReadError {
 
 /// The signal nearest to the top among those that match. It is an error if several are equally
 /// near.
-fn topmost<'a>(fit: impl Iterator<Item = &'a Signal>, wanted: &str) -> Result<Option<&'a Signal>, ReadError> {
+fn topmost<'a>(
+    fit: impl Iterator<Item = &'a Signal>,
+    wanted: &str,
+) -> Result<Option<&'a Signal>, ReadError> {
     let fit: Vec<&Signal> = fit.collect();
     let Some(top) = fit.iter().map(|s| s.depth()).min() else { return Ok(None) };
     let mut nearest = fit.into_iter().filter(|s| s.depth() == top);
@@ -143,18 +157,28 @@ fn topmost<'a>(fit: impl Iterator<Item = &'a Signal>, wanted: &str) -> Result<Op
 
 impl SignalMap {
     /// The sources of STEP and DIR of all axes.
-    pub(crate) fn resolve(&self, signals: &[Signal], axes: &[&str]) -> Result<Vec<[Source; 2]>, ReadError> {
+    pub(crate) fn resolve(
+        &self,
+        signals: &[Signal],
+        axes: &[&str],
+    ) -> Result<Vec<[Source; 2]>, ReadError> {
         if let Some(stray) = self.entries.iter().find(|e| !axes.contains(&e.axis.as_str())) {
             return Err(ReadError::Map {
                 entry: format!("{}.{}={}", stray.axis, stray.pin, stray.path),
-                message: format!("there is no axis '{}'; the axes are {}", stray.axis, axes.join(", ")),
+                message: format!(
+                    "there is no axis '{}'; the axes are {}",
+                    stray.axis,
+                    axes.join(", ")
+                ),
             });
         }
         let pin = |index: usize, axis: &str, pin: Pin| match self.path(axis, pin) {
             Some(path) => explicit(signals, path, axis, pin),
             None => by_name(signals, (index, axes.len()), axis, pin),
         };
-        let pair = |(index, axis): (usize, &&str)| Ok([pin(index, axis, Pin::Step)?, pin(index, axis, Pin::Dir)?]);
+        let pair = |(index, axis): (usize, &&str)| {
+            Ok([pin(index, axis, Pin::Step)?, pin(index, axis, Pin::Dir)?])
+        };
         axes.iter().enumerate().map(pair).collect()
     }
 }
@@ -165,7 +189,10 @@ fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Sour
         if signal.bits == 1 {
             return Ok(Source { code: signal.code, place: 0 });
         }
-        let message = format!("the signal has {} bits: name one, as in {path}[{}]", signal.bits, signal.range.1);
+        let message = format!(
+            "the signal has {} bits: name one, as in {path}[{}]",
+            signal.bits, signal.range.1
+        );
         return Err(ReadError::Map { entry: format!("{axis}.{pin}={path}"), message });
     }
     let bit = path.strip_suffix(']').and_then(|s| s.rsplit_once('['));
@@ -179,7 +206,12 @@ fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Sour
 
 /// Finds a pin of axis `index` by the names of carrystep. `axes` is the number of axes of the
 /// machine.
-fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: Pin) -> Result<Source, ReadError> {
+fn by_name(
+    signals: &[Signal],
+    (index, axes): (usize, usize),
+    axis: &str,
+    pin: Pin,
+) -> Result<Source, ReadError> {
     let own = format!("{axis}.{pin}");
     let width = |signal: &Signal, wanted: &str| ReadError::Width {
         signal: signal.path.clone(),
@@ -195,7 +227,8 @@ fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: P
     }
     let name = pin.to_string();
     let bit = index as i64;
-    let vectors = signals.iter().filter(|s| s.bits > 1 && s.ends_with(&name) && s.place(bit).is_some());
+    let vectors =
+        signals.iter().filter(|s| s.bits > 1 && s.ends_with(&name) && s.place(bit).is_some());
     if let Some(signal) = topmost(vectors, &format!("{name}[{index}]"))? {
         // The vectors of the gateware may be wider than the machine.
         if ![axes, AXES, MAX_AXES].contains(&(signal.bits as usize)) {

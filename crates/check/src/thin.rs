@@ -13,7 +13,10 @@ pub(crate) struct Thin {
 impl Thin {
     /// Divides the times from 0 to `span_s` seconds into `count` stretches.
     pub(crate) fn new(span_s: f64, count: usize) -> Self {
-        Self { stretch_s: span_s.max(f64::MIN_POSITIVE) / count as f64, stretches: vec![None; count] }
+        Self {
+            stretch_s: span_s.max(f64::MIN_POSITIVE) / count as f64,
+            stretches: vec![None; count],
+        }
     }
 
     pub(crate) fn add(&mut self, point: Point) {

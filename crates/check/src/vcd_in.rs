@@ -64,7 +64,10 @@ impl Unit {
 
 impl<R> fmt::Debug for VcdReader<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("VcdReader").field("own", &self.own).field("pins", &self.pins).finish_non_exhaustive()
+        f.debug_struct("VcdReader")
+            .field("own", &self.own)
+            .field("pins", &self.pins)
+            .finish_non_exhaustive()
     }
 }
 
@@ -74,7 +77,11 @@ type Blanked<R> = Chain<R, &'static [u8]>;
 
 /// Converts the parser's errors. A broken token at the very end of the file means that the file was
 /// cut off.
-fn sorted<R: BufRead>(error: io::Error, parser: &mut Parser<Blanked<R>>, missing: &'static str) -> ReadError {
+fn sorted<R: BufRead>(
+    error: io::Error,
+    parser: &mut Parser<Blanked<R>>,
+    missing: &'static str,
+) -> ReadError {
     let line = parser.line();
     let Some(parse) = error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) else {
         let cut = error.kind() == io::ErrorKind::UnexpectedEof;
@@ -182,7 +189,8 @@ impl<R: BufRead> VcdReader<R> {
                         return Err(ReadError::TimeBackwards { line, from, to: now }.into());
                     }
                     time = Some(now);
-                    player.time(self.unit.ps(now).ok_or(ReadError::TimeRange { line, time: now })?)?;
+                    player
+                        .time(self.unit.ps(now).ok_or(ReadError::TimeRange { line, time: now })?)?;
                 }
                 Command::ChangeScalar(code, value) => {
                     for &(place, slot) in self.pins.get(&code).into_iter().flatten() {

@@ -24,7 +24,11 @@ impl<W: Write> Format for VcdFormat<W> {
     type Id = IdCode;
     const NAME: &'static str = "the VCD";
 
-    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[IdCode; SIGNALS.len()]>> {
+    fn declare(
+        &mut self,
+        own: &OwnCapture,
+        axes: &[&str],
+    ) -> io::Result<Vec<[IdCode; SIGNALS.len()]>> {
         let out = &mut self.0;
         out.version(VERSION)?;
         out.comment(&own.to_string())?;

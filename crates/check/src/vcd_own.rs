@@ -56,9 +56,16 @@ mod tests {
 
     #[test]
     fn comment_reads_back_and_foreign_comments_are_ignored() {
-        let own = OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
+        let own =
+            OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
         assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
-        for foreign in ["", "carrystep", "carrystep end", "carrystep origin_ps=1", "made by carrystep origin_ps=1"] {
+        for foreign in [
+            "",
+            "carrystep",
+            "carrystep end",
+            "carrystep origin_ps=1",
+            "made by carrystep origin_ps=1",
+        ] {
             assert_eq!(OwnCapture::from_comment(foreign), None);
         }
     }

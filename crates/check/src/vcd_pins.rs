@@ -40,11 +40,19 @@ impl<W: Write> PinsVcd<W> {
     ///
     /// # Errors
     /// [`TraceError::Write`] if the file cannot be written.
-    pub fn new<'n>(out: W, own: OwnCapture, names: impl Iterator<Item = &'n str>) -> Result<Self, TraceError> {
+    pub fn new<'n>(
+        out: W,
+        own: OwnCapture,
+        names: impl Iterator<Item = &'n str>,
+    ) -> Result<Self, TraceError> {
         Self::begin(Writer::new(out), own, names).map_err(failed)
     }
 
-    fn begin<'n>(mut out: Writer<W>, own: OwnCapture, names: impl Iterator<Item = &'n str>) -> io::Result<Self> {
+    fn begin<'n>(
+        mut out: Writer<W>,
+        own: OwnCapture,
+        names: impl Iterator<Item = &'n str>,
+    ) -> io::Result<Self> {
         out.version(VERSION)?;
         out.comment(&own.to_string())?;
         out.timescale(1, TimescaleUnit::PS)?;

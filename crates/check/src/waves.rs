@@ -49,7 +49,11 @@ pub trait Format {
     ///
     /// # Errors
     /// The error of the system if the file cannot be written.
-    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[Self::Id; SIGNALS.len()]>>;
+    fn declare(
+        &mut self,
+        own: &OwnCapture,
+        axes: &[&str],
+    ) -> io::Result<Vec<[Self::Id; SIGNALS.len()]>>;
 
     /// Writes the values at time 0.
     ///
@@ -137,7 +141,10 @@ struct AxisWriter<'a> {
 
 impl<F: Format> fmt::Debug for WaveWriter<'_, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("WaveWriter").field("own", &self.own).field("time", &self.time).finish_non_exhaustive()
+        f.debug_struct("WaveWriter")
+            .field("own", &self.own)
+            .field("time", &self.time)
+            .finish_non_exhaustive()
     }
 }
 

@@ -9,7 +9,11 @@ use carrystep_check::*;
 use common::*;
 use proptest::prelude::*;
 
-fn read(text: &[u8], axes: &[&str], map: &SignalMap) -> Result<(Vec<PinChange>, Played), TraceError> {
+fn read(
+    text: &[u8],
+    axes: &[&str],
+    map: &SignalMap,
+) -> Result<(Vec<PinChange>, Played), TraceError> {
     let mut changes = Vec::new();
     let played = VcdReader::new(text, axes, map)?.play(&mut changes)?;
     Ok((changes, played))
@@ -30,7 +34,11 @@ fn logic_analyser_capture_is_read_through_a_signal_map() {
         $enddefinitions $end\n#0 1! 0\"\n#7 0!\n#12 1!\n#13 1\"\n#20\n";
     let map = SignalMap::parse(["x.step=la.D0", "x.dir = la.D1"]).unwrap();
     let (changes, played) = read(text.as_bytes(), &["x"], &map).unwrap();
-    let expected = [at(70_000, 0, Pin::Step, false), at(120_000, 0, Pin::Step, true), at(130_000, 0, Pin::Dir, true)];
+    let expected = [
+        at(70_000, 0, Pin::Step, false),
+        at(120_000, 0, Pin::Step, true),
+        at(130_000, 0, Pin::Dir, true),
+    ];
     assert_eq!(changes, expected);
     assert_eq!(played, Played { end_ps: 200_000, changes: 3, unknown: 0 });
 }
@@ -42,7 +50,8 @@ fn simulator_capture_with_vectors_and_unknown_values_is_read() {
         $var wire 6 e dir [5:0] $end\n$upscope $end\n$upscope $end\n$enddefinitions $end\n\
         $dumpvars\nbx s\nbx d\n$end\n#1000\nb0 s\nb0 d\n#2499\nb10 s\n#3501\nb100000 d\nb100010 s\n\
         #4000\nbz00010 s\n#5000\nb0 s\n";
-    let (changes, played) = read(text.as_bytes(), &["x", "y", "z", "a", "b", "c"], &SignalMap::default()).unwrap();
+    let (changes, played) =
+        read(text.as_bytes(), &["x", "y", "z", "a", "b", "c"], &SignalMap::default()).unwrap();
     let expected = [
         at(2, 1, Pin::Step, true),
         at(4, 5, Pin::Dir, true),
@@ -65,16 +74,23 @@ fn signal_map_can_name_single_bits_of_vectors() {
 
 #[test]
 fn errors_name_the_missing_signal_and_those_that_exist() {
-    let head =
-        "$timescale 1 ns $end\n$scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 # D1 $end\n$upscope $end\n";
+    let head = "$timescale 1 ns $end\n$scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 # D1 $end\n$upscope $end\n";
     let good = format!("{head}$enddefinitions $end\n#0 0!\n");
     let none = SignalMap::default();
     let map = SignalMap::parse(["x.step=la.D7", "x.dir=la.D1"]).unwrap();
     let cases: [(&str, &SignalMap, &str); 8] = [
-        (&good, &none, "the capture has no signal x.step (nor a vector step with a bit 0); it has la.D0, la.D1"),
+        (
+            &good,
+            &none,
+            "the capture has no signal x.step (nor a vector step with a bit 0); it has la.D0, la.D1",
+        ),
         (&good, &map, "the capture has no signal la.D7 for x.step; it has la.D0, la.D1"),
         (head, &none, "the capture is cut off at line 6: the header has no end"),
-        ("$enddefinitions $end\n", &none, "the capture has no $timescale: its unit of time is unknown"),
+        (
+            "$enddefinitions $end\n",
+            &none,
+            "the capture has no $timescale: its unit of time is unknown",
+        ),
         ("hello\n", &none, "line 1 of the capture: unexpected character at start of command"),
         ("", &none, "the capture is cut off at line 1: the header has no end"),
         (
@@ -104,7 +120,10 @@ fn broken_times_and_cut_files_are_errors() {
     let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
     let fail = |body: &str| read_error(&format!("{head}{body}"), &["x"], &SignalMap::default());
     assert_eq!(fail("#5 1!\n#4 0!\n"), "line 3 of the capture: time goes back from 5 to 4");
-    assert_eq!(fail("#5 1!\n#12 b"), "the capture is cut off at line 3: a value or a time is incomplete");
+    assert_eq!(
+        fail("#5 1!\n#12 b"),
+        "the capture is cut off at line 3: a value or a time is incomplete"
+    );
     assert_eq!(fail("#5 1"), "the capture is cut off at line 2: a value or a time is incomplete");
     assert!(fail("#99999999999999999\n").contains("more than half a year"));
     assert!(fail("#999999999999999999999\n").starts_with("line 2 of the capture: "));
@@ -116,7 +135,8 @@ fn broken_times_and_cut_files_are_errors() {
 fn foreign_capture_may_lack_the_end_of_its_last_line() {
     let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
     for (body, end_ps, changes) in [("#0 0!\n#5 1!", 5000, 1), ("#0 0!\n#5 1!\n#12", 12_000, 1)] {
-        let (_, played) = read(format!("{head}{body}").as_bytes(), &["x"], &SignalMap::default()).unwrap();
+        let (_, played) =
+            read(format!("{head}{body}").as_bytes(), &["x"], &SignalMap::default()).unwrap();
         assert_eq!((played.end_ps, played.changes), (end_ps, changes), "{body}");
     }
 }
@@ -137,17 +157,19 @@ fn carrystep_capture_that_is_cut_anywhere_is_refused() {
 
 /// Random changes of two axes. Each change toggles a pin, at times that never decrease.
 fn trains() -> impl Strategy<Value = Vec<PinChange>> {
-    proptest::collection::vec((0_u64..5_000_000_000, 0_u8..2, any::<bool>()), 0..60).prop_map(|steps| {
-        let mut levels = [[false; 2]; 2];
-        let mut ps = 0;
-        let toggle = |(gap, axis, dir): (u64, u8, bool)| {
-            ps += gap;
-            let slot = &mut levels[usize::from(axis)][usize::from(dir)];
-            *slot = !*slot;
-            at(ps, axis, if dir { Pin::Dir } else { Pin::Step }, *slot)
-        };
-        steps.into_iter().map(toggle).collect()
-    })
+    proptest::collection::vec((0_u64..5_000_000_000, 0_u8..2, any::<bool>()), 0..60).prop_map(
+        |steps| {
+            let mut levels = [[false; 2]; 2];
+            let mut ps = 0;
+            let toggle = |(gap, axis, dir): (u64, u8, bool)| {
+                ps += gap;
+                let slot = &mut levels[usize::from(axis)][usize::from(dir)];
+                *slot = !*slot;
+                at(ps, axis, if dir { Pin::Dir } else { Pin::Step }, *slot)
+            };
+            steps.into_iter().map(toggle).collect()
+        },
+    )
 }
 
 proptest! {

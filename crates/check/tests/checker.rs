@@ -40,12 +40,18 @@ fn correct_train_passes_with_the_figures_of_theory() {
         assert_eq!(axis.position_found, 0);
         // The generator rounds down to 62.5 ns.
         let (least, greatest) = (axis.error_min_ns.unwrap(), axis.error_max_ns.unwrap());
-        assert!((-62.501..-55.0).contains(&least) && (-5.0..=0.001).contains(&greatest), "{report}");
-        assert!((axis.error_std_ns.unwrap() / axis.error_std_theory_ns - 1.0).abs() < 0.1, "{report}");
+        assert!(
+            (-62.501..-55.0).contains(&least) && (-5.0..=0.001).contains(&greatest),
+            "{report}"
+        );
+        assert!(
+            (axis.error_std_ns.unwrap() / axis.error_std_theory_ns - 1.0).abs() < 0.1,
+            "{report}"
+        );
         assert!(axis.error_bound_ns > 64.5 && axis.error_bound_ns < 70.0, "{report}");
         assert!(axis.period_jitter_max_ns.unwrap() <= axis.period_jitter_theory_ns, "{report}");
-        assert_eq!(axis.high_min_ns, Some(1041.667));
-        assert_eq!(axis.high_required_ns, 1000.0);
+        assert_eq!(axis.step_high_min_ns, Some(1041.667));
+        assert_eq!(axis.step_high_required_ns, 1000.0);
     }
 }
 
@@ -58,7 +64,11 @@ fn jitter_at_constant_speed_is_at_most_one_phase() {
         let axis = &report.axes[0];
         assert!(axis.period_jitter_max_ns.unwrap_or(0.0) <= 62.501, "{report}");
         let ripple = axis.speed_ripple_max_percent.unwrap_or(0.0);
-        assert!(ripple <= 1.02 * axis.speed_ripple_theory_percent, "{ripple} {}", axis.speed_ripple_theory_percent);
+        assert!(
+            ripple <= 1.02 * axis.speed_ripple_theory_percent,
+            "{ripple} {}",
+            axis.speed_ripple_theory_percent
+        );
     }
 }
 
@@ -88,8 +98,11 @@ fn foreign_capture_gets_one_origin_for_all_axes() {
 fn slack_widens_the_bounds_and_is_reported() {
     let machine = Machine::there_and_back(2);
     let sample = 100_000;
-    let train: Vec<PinChange> =
-        machine.train().into_iter().map(|c| PinChange { ps: c.ps.next_multiple_of(sample), ..c }).collect();
+    let train: Vec<PinChange> = machine
+        .train()
+        .into_iter()
+        .map(|c| PinChange { ps: c.ps.next_multiple_of(sample), ..c })
+        .collect();
     assert!(!machine.check(&train, KNOWN).passed());
     let setup = Setup { slack_ps: sample, ..machine.setup(KNOWN) };
     let report = machine.check_setup(&train, setup);
@@ -120,7 +133,8 @@ fn doubled_pulse_is_named() {
         let found = failures(|train| {
             let rise = rise(train, 0, k);
             let fall = fall(train, rise);
-            let again = [rise, fall].map(|at| PinChange { ps: train[at].ps + 3_000_000, ..train[at] });
+            let again =
+                [rise, fall].map(|at| PinChange { ps: train[at].ps + 3_000_000, ..train[at] });
             train.extend(again);
         });
         names(&found, "axis x: one pulse too many at ");
@@ -149,15 +163,15 @@ fn pulse_late_or_early_by_two_phases_is_named() {
 #[test]
 fn short_direction_set_up_and_hold_are_named() {
     let found = failures(|train| {
-        let (turn, rise) = (turn(train, 0, 1), rise(train, 0, 1001));
-        train[turn].ps = train[rise].ps - 199_000;
+        let (dir_change, rise) = (dir_change(train, 0, 1), rise(train, 0, 1001));
+        train[dir_change].ps = train[rise].ps - 199_000;
     });
     assert_eq!(found.len(), 1, "{found:#?}");
     names(&found, "axis x: DIR set-up of 199.0 ns at pulse 1001 (");
     names(&found, "the driver needs 200 ns");
     let found = failures(|train| {
-        let (turn, rise) = (turn(train, 0, 1), rise(train, 0, 1000));
-        train[turn].ps = train[rise].ps + 150_000;
+        let (dir_change, rise) = (dir_change(train, 0, 1), rise(train, 0, 1000));
+        train[dir_change].ps = train[rise].ps + 150_000;
     });
     assert_eq!(found.len(), 1, "{found:#?}");
     names(&found, "axis x: DIR hold of 150.0 ns at pulse 1000 (");
@@ -205,8 +219,8 @@ fn pulse_that_is_high_at_the_start_is_named() {
 fn wrong_direction_is_named() {
     let found = failures(|train| {
         // DIR never changes, so that the way back goes forward.
-        let turn = turn(train, 0, 1);
-        train.remove(turn);
+        let dir_change = dir_change(train, 0, 1);
+        train.remove(dir_change);
     });
     names(&found, "axis x: pulse 1001 at ");
     names(&found, "goes forward, the profile backward");
@@ -219,9 +233,15 @@ fn number_of_failure_messages_is_bounded() {
     let nothing = &machine.check(&[], KNOWN).axes[0];
     assert_eq!(nothing.pulses_found, 0);
     assert_eq!(nothing.error_rms_ns, None);
-    let wanted = ["axis x: 0 pulses, 2000 expected", "axis x: pulse 1 and all behind it are missing, due from "];
+    let wanted = [
+        "axis x: 0 pulses, 2000 expected",
+        "axis x: pulse 1 and all behind it are missing, due from ",
+    ];
     assert_eq!(nothing.failures.len(), 2);
-    assert!(nothing.failures.iter().zip(wanted).all(|(found, wanted)| found.starts_with(wanted)), "{nothing:#?}");
+    assert!(
+        nothing.failures.iter().zip(wanted).all(|(found, wanted)| found.starts_with(wanted)),
+        "{nothing:#?}"
+    );
 
     let mut train = machine.train();
     train.retain(|change| change.pin == Pin::Step);

@@ -13,7 +13,10 @@ fn csv_has_a_line_for_every_pulse() {
     let machine = Machine::there_and_back(2);
     let mut bytes = Vec::new();
     let axes = machine.timelines.iter().zip(NAMES).map(|(timeline, name)| (name, timeline));
-    play(&machine.train(), &mut CsvWriter::new(&mut bytes, &machine.timebase, StartPhase::Half, ORIGIN_PS, axes));
+    play(
+        &machine.train(),
+        &mut CsvWriter::new(&mut bytes, &machine.timebase, StartPhase::Half, ORIGIN_PS, axes),
+    );
     let text = String::from_utf8(bytes).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 1 + 2000 + 1000);
@@ -21,7 +24,8 @@ fn csv_has_a_line_for_every_pulse() {
     // 64000 steps/s^2 for half a step takes sqrt(1 / 64000) = 0.003952847075 s, rounded down to a
     // phase.
     assert!(lines.contains(&"x,1,0.003952812500,,forward,-34.575"), "{}", lines[1]);
-    let last: Vec<&str> = lines.iter().rfind(|line| line.starts_with("x,2000,")).unwrap().split(',').collect();
+    let last: Vec<&str> =
+        lines.iter().rfind(|line| line.starts_with("x,2000,")).unwrap().split(',').collect();
     assert_eq!(last[4], "backward");
     assert!((last[2].parse::<f64>().unwrap() - 0.4967).abs() < 1e-3, "{last:?}");
     assert!(last[3].parse::<f64>().unwrap() > 0.0);
@@ -44,8 +48,16 @@ fn plot_stays_small_and_names_what_it_shows() {
         play(&train, &mut plot);
         let svg = plot.svg(&machine.check(&train, KNOWN)).unwrap();
         assert!(svg.len() < 1_500_000, "{}", svg.len());
-        for word in ["There and back", "steps/s", "error, ns", "time, ms", "profile", "bound", "jitter", "speed ripple"]
-        {
+        for word in [
+            "There and back",
+            "steps/s",
+            "error, ns",
+            "time, ms",
+            "profile",
+            "bound",
+            "jitter",
+            "speed ripple",
+        ] {
             assert!(svg.contains(word), "{word}");
         }
         if let Some(folder) = std::env::var_os("CARRYSTEP_PLOTS") {
@@ -61,5 +73,9 @@ fn waveform_and_save_file_are_written_on_request() {
     let machine = Machine::there_and_back(6);
     let folder = std::path::Path::new(&folder);
     std::fs::write(folder.join("run.vcd"), machine.vcd(&machine.train())).unwrap();
-    std::fs::write(folder.join("run.gtkw"), save_file("run.vcd", machine.names(), 500_000_000_000).unwrap()).unwrap();
+    std::fs::write(
+        folder.join("run.gtkw"),
+        save_file("run.vcd", machine.names(), 500_000_000_000).unwrap(),
+    )
+    .unwrap();
 }

@@ -38,7 +38,10 @@ fn changes(waveform: &mut Waveform, signal: SignalRef) -> Vec<(u64, Shown)> {
         other => Shown::Bits(u64::from_str_radix(&other.to_bit_string().unwrap(), 2).unwrap()),
     };
     let found = waveform.get_signal(signal).unwrap();
-    found.iter_changes().map(|(at, value)| (waveform.time_table()[at as usize], shown(value))).collect()
+    found
+        .iter_changes()
+        .map(|(at, value)| (waveform.time_table()[at as usize], shown(value)))
+        .collect()
 }
 
 #[test]
@@ -48,7 +51,9 @@ fn another_reader_sees_the_same_edges_and_values() {
     let (mut waveform, signals) = open(machine.vcd(&train));
     assert_eq!(signals.len(), 21);
     for (index, timeline) in machine.timelines.iter().enumerate() {
-        let mut get = |name: &str| changes(&mut waveform, signals[&format!("carrystep.{}.{name}", NAMES[index])]);
+        let mut get = |name: &str| {
+            changes(&mut waveform, signals[&format!("carrystep.{}.{name}", NAMES[index])])
+        };
         for pin in [Pin::Step, Pin::Dir] {
             let mut expected = vec![(0, Shown::Bits(0))];
             let of_pin = train.iter().filter(|c| c.pin == pin && usize::from(c.axis) == index);
@@ -57,27 +62,43 @@ fn another_reader_sees_the_same_edges_and_values() {
         }
 
         let mut follower = Follower::new(timeline, StartPhase::Half, &machine.timebase, ORIGIN_PS);
-        let pulses: Vec<Pulse> =
-            train.iter().filter(|c| usize::from(c.axis) == index).filter_map(|&c| follower.change(c)).collect();
-        let positions: Vec<_> =
-            pulses.iter().map(|p| (p.ps, Shown::Bits(u64::from(p.position as i32 as u32)))).collect();
+        let pulses: Vec<Pulse> = train
+            .iter()
+            .filter(|c| usize::from(c.axis) == index)
+            .filter_map(|&c| follower.change(c))
+            .collect();
+        let positions: Vec<_> = pulses
+            .iter()
+            .map(|p| (p.ps, Shown::Bits(u64::from(p.position as i32 as u32))))
+            .collect();
         assert_eq!(get("position[31:0]")[1..], positions);
         for ((ps, shown), pulse) in get("error_ns")[1..].iter().zip(&pulses) {
             let Shown::Real(error) = *shown else { panic!("no real") };
             assert_eq!(*ps, pulse.ps);
-            assert!((error - pulse.error_ns.unwrap()).abs() < 1e-6 && (-62.5..0.1).contains(&error), "{error}");
+            assert!(
+                (error - pulse.error_ns.unwrap()).abs() < 1e-6 && (-62.5..0.1).contains(&error),
+                "{error}"
+            );
         }
 
         // The reader leaves out values that do not change.
-        for (name, least) in [("profile_position", pulses.len() + 450), ("profile_speed", pulses.len() / 2 + 300)] {
+        for (name, least) in
+            [("profile_position", pulses.len() + 450), ("profile_speed", pulses.len() / 2 + 300)]
+        {
             let samples = get(name);
             assert!(samples.len() > least, "{} {least}", samples.len());
             for &(ps, shown) in &samples[1..] {
                 let tick = (ps as f64 - ORIGIN_PS as f64) / 1e6;
-                let expected =
-                    if name == "profile_speed" { timeline.speed_at(tick) } else { timeline.position_at(tick) };
+                let expected = if name == "profile_speed" {
+                    timeline.speed_at(tick)
+                } else {
+                    timeline.position_at(tick)
+                };
                 let Shown::Real(found) = shown else { panic!("no real") };
-                assert!((found - expected).abs() < 1e-6 * (1.0 + expected.abs()), "{name} {ps}: {found} {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                    "{name} {ps}: {found} {expected}"
+                );
             }
         }
 

@@ -8,17 +8,20 @@ mod table;
 
 use carrystep_simulators::Level;
 use carrystep_sweep::Shard;
+use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
-pub use machine::{Machine, MachineCommand, MachineNew};
+pub use machine::{MachineArguments, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
-pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
-pub use profile::Profile;
+pub use port::{
+    HomeArguments, Jog, PeerArguments, PortArguments, RunArguments, StatusArguments, Stop,
+};
+pub use profile::ProfileArguments;
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
-pub use table::{Table, TableKind};
+pub use table::{TableArguments, TableKind};
 
 /// Every carry is a step: plan stepper moves for an FPGA that only adds, simulate its gateware
 /// cycle by cycle, and check every pulse.
@@ -41,30 +44,30 @@ pub enum Subcommand {
     /// plot.
     Demo(Demo),
     /// Step times, delays and speeds of the curves of the literature: figures, CSV, JSON, plot.
-    Profile(Profile),
+    Profile(ProfileArguments),
     /// Make a C header with a timer compare table for a microcontroller, and the player for it.
-    Table(Table),
+    Table(TableArguments),
     /// Show the integer segments of a move file, the limits reached and the times.
-    Plan(Plan),
+    Plan(PlanArguments),
     /// Run a move file through the gateware, cycle by cycle, and check every pulse.
     Simulate(Simulate),
     /// Check a VCD from any simulator or logic analyser against a move file.
-    Check(Check),
+    Check(CheckArguments),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
     /// Run many machines and moves on all processors of this computer and report the worst of each figure.
     Sweep(Sweep),
     /// Execute the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C ramps the
     /// axes down.
-    Run(Run),
+    Run(RunArguments),
     /// Move one axis of a board.
     Jog(Jog),
     /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.
     /// If one wire serves both ends of an axis, or all axes, a switch that is still closed after
     /// moving off is not detected (docs/homing.md).
-    Home(Home),
+    Home(HomeArguments),
     /// Show the state of a board, the positions of its axes, and the cause of a stop.
-    Status(Status),
+    Status(StatusArguments),
     /// Stop all axes of a board, also while `run`, `jog` or `home` in another terminal drives it;
     /// resume after a stop (--clear), switch the drivers off (--off).
     Stop(Stop),
@@ -74,9 +77,9 @@ pub enum Subcommand {
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
     /// Write a new machine file.
-    Machine(Machine),
+    Machine(MachineArguments),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
-    Build(Build),
+    Build(BuildArguments),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the cause of each problem.
@@ -124,7 +127,7 @@ pub struct Demo {
 
 /// The arguments of `carrystep plan`.
 #[derive(Debug, Args)]
-pub struct Plan {
+pub struct PlanArguments {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
@@ -179,7 +182,7 @@ pub struct Simulate {
 
 /// The arguments of `carrystep check`.
 #[derive(Debug, Args)]
-pub struct Check {
+pub struct CheckArguments {
     /// The capture: a VCD.
     #[arg(value_name = "CAPTURE.vcd")]
     pub capture: PathBuf,
@@ -225,6 +228,10 @@ pub struct Verilog {
     /// the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
+    /// The beginning of the names of all modules and files: two configurations with different
+    /// prefixes can be in one design.
+    #[arg(long, default_value_t = Prefix::default(), value_name = "NAME")]
+    pub prefix: Prefix,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -265,7 +272,7 @@ pub struct Sweep {
 
 /// The arguments of `carrystep build`.
 #[derive(Debug, Args)]
-pub struct Build {
+pub struct BuildArguments {
     /// The board, by its name or by the file of your own board.
     #[arg(long, value_name = "BOARD")]
     pub board: String,
@@ -339,5 +346,6 @@ fn named<T>() -> impl TypedValueParser<Value = T>
 where
     T: VariantArray + Copy + Into<&'static str> + FromStr<Err = strum::ParseError> + Send + Sync,
 {
-    PossibleValuesParser::new(T::VARIANTS.iter().map(|&variant| variant.into())).try_map(|name| name.parse::<T>())
+    PossibleValuesParser::new(T::VARIANTS.iter().map(|&variant| variant.into()))
+        .try_map(|name| name.parse::<T>())
 }

@@ -31,9 +31,12 @@ pub fn painted(text: &str) -> String {
 
 fn line(line: &str) -> String {
     let (body, end) = line.strip_suffix('\n').map_or((line, ""), |body| (body, "\n"));
-    let paint = |style: &Style, word: &str| format!("{}{word}{}", style.render(), style.render_reset());
+    let paint =
+        |style: &Style, word: &str| format!("{}{word}{}", style.render(), style.render_reset());
     for (word, style) in &VERDICTS {
-        if let Some(rest) = body.strip_prefix(word).filter(|rest| !rest.starts_with(char::is_alphanumeric)) {
+        if let Some(rest) =
+            body.strip_prefix(word).filter(|rest| !rest.starts_with(char::is_alphanumeric))
+        {
             return format!("{}{rest}{end}", paint(style, word));
         }
         if let Some(rest) = body.strip_suffix(word).filter(|rest| rest.ends_with(' ')) {
@@ -55,7 +58,11 @@ mod tests {
         let green = red("ALL HOLDS").replace("[31m", "[32m");
         assert_eq!(
             shown,
-            format!("x  1/1  {}\n{} axis x: late\nwrote FAILED.vcd\n{green}\nDONEL\n", red("FAILED"), red("FAILED"))
+            format!(
+                "x  1/1  {}\n{} axis x: late\nwrote FAILED.vcd\n{green}\nDONEL\n",
+                red("FAILED"),
+                red("FAILED")
+            )
         );
     }
 }

@@ -1,17 +1,17 @@
 //! The connection to a board: opening the port, identifying the board, and the messages when
 //! something fails.
 
-use crate::arguments::{Peer, Port};
-use crate::control::{self, Control, Holder, Request};
+use crate::arguments::{PeerArguments, PortArguments};
+use crate::control::{self, Control, Holder, SocketRequest};
 use crate::failure::Failure;
 use crate::found::{Known, names};
 use crate::interrupt;
 use carrystep_core::engine::CAUSES;
-use carrystep_core::link::{BuildId, Line, Uart};
+use carrystep_core::link::{BuildId, LineKind, Uart};
 use carrystep_files::{Axis, Machine, decimal};
 use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
-use carrystep_link::{Facts, Host, HostError, Patience};
+use carrystep_link::{BuildFacts, Host, HostError, Patience};
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -21,15 +21,15 @@ use std::time::{Duration, Instant};
 const SOON: Duration = Duration::from_secs(2);
 
 /// A board on a serial port.
-pub type Board = Host<SerialLine, SystemClock>;
+pub type ConnectedBoard = Host<SerialLine, SystemClock>;
 
 /// The errors of a board on a serial port.
-pub type BoardError = HostError<io::Error>;
+pub type ConnectedBoardError = HostError<io::Error>;
 
 /// A connected board, the names of its axes, and the claim on its port.
 pub struct Connection {
     /// The board.
-    pub board: Board,
+    pub board: ConnectedBoard,
     /// The names of the axes of the build, in order.
     pub axes: Vec<String>,
     /// Steps per unit of each axis; empty if no machine file is known.
@@ -63,21 +63,32 @@ pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure
     let engine = machine.engine();
     engine.check().map_err(|error| refused(error.to_string()))?;
     match machine.line().map_err(|error| refused(error.to_string()))? {
-        Line::Uart(uart) => Ok((uart, uart.build_id(&engine))),
-        Line::Spi => Err(refused("its host link is an SPI: no serial port leads there".to_owned())),
+        LineKind::Uart(uart) => Ok((uart, uart.build_id(&engine))),
+        LineKind::Spi => {
+            Err(refused("its host link is an SPI: no serial port leads there".to_owned()))
+        }
     }
 }
 
 /// Connects to the board of a machine in order to drive it; `command` is the name of the
 /// subcommand. A board that was built from a different machine is refused. Nothing is written to
 /// the board. From now on `carrystep stop` reaches this command through [`Connection::control`].
-pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static str) -> Result<Connection, Failure> {
+pub fn to_machine(
+    port: &PortArguments,
+    machine: &Machine,
+    name: &Path,
+    command: &'static str,
+) -> Result<Connection, Failure> {
     Ok(machines(port, machine, name, command, true)?)
 }
 
 /// Connects in order to read or to stop: to the board of the machine if `peer` names one, otherwise
 /// to any carrystep board at this baud rate.
-pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connection, Refused> {
+pub fn to_peer(
+    peer: &PeerArguments,
+    baud: u32,
+    command: &'static str,
+) -> Result<Connection, Refused> {
     let fine = |failure| Refused { busy: false, failure };
     if let Some(path) = &peer.machine {
         let machine = Machine::load(path).map_err(|error| fine(error.into()))?;
@@ -85,11 +96,17 @@ pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connecti
     }
     let (board, control) = connect(&peer.port.name, baud, None, command, false)?;
     let axes = (0..board.facts().axes).map(|axis| axis.to_string()).collect();
-    Ok(known(Connection { board, axes, steps_per_unit: Vec::new(), port: peer.port.name.clone(), control }))
+    Ok(known(Connection {
+        board,
+        axes,
+        steps_per_unit: Vec::new(),
+        port: peer.port.name.clone(),
+        control,
+    }))
 }
 
 fn machines(
-    port: &Port,
+    port: &PortArguments,
     machine: &Machine,
     name: &Path,
     command: &'static str,
@@ -108,7 +125,12 @@ fn machines(
 fn known(mut connection: Connection) -> Connection {
     let Connection { board, axes, steps_per_unit, port, control } = &mut connection;
     let facts = *board.facts();
-    let known = Known { port: port.clone(), facts, axes: axes.clone(), steps_per_unit: steps_per_unit.clone() };
+    let known = Known {
+        port: port.clone(),
+        facts,
+        axes: axes.clone(),
+        steps_per_unit: steps_per_unit.clone(),
+    };
     control.connected(&facts, known);
     connection
 }
@@ -119,12 +141,13 @@ fn connect(
     id: Option<BuildId>,
     command: &'static str,
     drives: bool,
-) -> Result<(Board, Control), Refused> {
+) -> Result<(ConnectedBoard, Control), Refused> {
     let fine = |message: String| Refused { busy: false, failure: Failure::input(message) };
     let busy = |message: String| Refused { busy: true, failure: Failure::input(message) };
     // From here on Ctrl-C requests a stop and does not end the process.
     interrupt::watch();
-    let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
+    let unclaimed =
+        |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
     let begin = Instant::now();
     let claim = loop {
         if let Some(claim) = control::claim(port, baud, command, drives).map_err(unclaimed)? {
@@ -145,8 +168,13 @@ fn connect(
     })?;
     let control = Control::new(claim, drives).map_err(unclaimed)?;
     // A wrong board is an input error: nothing was moved.
-    let board = Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
-        .map_err(|error| fine(format!("{port}: {error}")))?;
+    let board = ConnectedBoard::connect(
+        line,
+        SystemClock::default(),
+        id.map(|id| id.0),
+        Patience::default(),
+    )
+    .map_err(|error| fine(format!("{port}: {error}")))?;
     Ok((board, control))
 }
 
@@ -154,22 +182,33 @@ fn connect(
 /// error.
 fn opening(port: &str, error: &OpenError) -> String {
     let access = match error {
-        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_tools::doctor::obstacle(Path::new(port)),
+        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => {
+            carrystep_tools::doctor::obstacle(Path::new(port))
+        }
         OpenError::Absent { .. } | OpenError::NoPort { .. } | OpenError::Unusable { .. } => None,
     };
     access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))
 }
 
 /// The failure for an error of a board that is being driven; `axes` are the names of its axes.
-pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
+pub fn broken(error: &ConnectedBoardError, axes: &[String]) -> Failure {
     match *error {
         HostError::Program(error) => Failure::input(error.to_string()),
-        HostError::Line(ref why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
+        HostError::Line(ref why) => {
+            Failure::Run(format!("{error}: {why}; what moves stops by its watchdog"))
+        }
         HostError::NotIdle => Failure::Run(format!("{error}: `carrystep stop --clear` does that")),
         HostError::Fault { cause, culprits } => {
-            let remedy = CAUSES.get(usize::from(cause)).map_or("`carrystep stop --clear`", |cause| cause.remedy());
-            let name = CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
-            let from = if culprits == 0 { String::new() } else { format!(", from {}", names(axes, culprits)) };
+            let remedy = CAUSES
+                .get(usize::from(cause))
+                .map_or("`carrystep stop --clear`", |cause| cause.remedy());
+            let name =
+                CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
+            let from = if culprits == 0 {
+                String::new()
+            } else {
+                format!(", from {}", names(axes, culprits))
+            };
             Failure::Run(format!("the machine has stopped: {name}{from}; {remedy}"))
         }
         _ => Failure::Run(error.to_string()),
@@ -177,10 +216,12 @@ pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
 }
 
 /// The same during a run. If the line is lost, the message says what the axes do now.
-pub fn lost(error: &BoardError, axes: &[String], facts: &Facts) -> Failure {
+pub fn lost(error: &ConnectedBoardError, axes: &[String], facts: &BuildFacts) -> Failure {
     let why = match error {
         HostError::Line(why) => format!("{error}: {why}"),
-        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => error.to_string(),
+        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => {
+            error.to_string()
+        }
         _ => return broken(error, axes),
     };
     let watchdog = watchdog((facts.watchdog_ticks, facts.tick_ns));
@@ -202,19 +243,27 @@ fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
 
 /// The message if the driving command was asked for something and does not respond; `what` is the
 /// missing response (`answer` or `end`).
-pub fn hangs(port: &str, holder: &Holder, asked: Request, what: &str) -> String {
+pub fn hangs(port: &str, holder: &Holder, asked: SocketRequest, what: &str) -> String {
     let pid = holder.pid;
     let asleep = if suspended(pid) {
-        let then = if asked == Request::Stop { ": then it stops the axes, as it was asked to" } else { "" };
+        let then = if asked == SocketRequest::Stop {
+            ": then it stops the axes, as it was asked to"
+        } else {
+            ""
+        };
         format!("; it is suspended, and `kill -CONT {pid}` wakes it{then}")
     } else {
         String::new()
     };
     let now = match holder.watchdog {
-        Some(known) => format!("As the board said when that command connected: {}", watchdog(known)),
+        Some(known) => {
+            format!("As the board said when that command connected: {}", watchdog(known))
+        }
         None => "It had not connected to the board, so it has moved nothing".to_owned(),
     };
-    format!("{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop")
+    format!(
+        "{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop"
+    )
 }
 
 /// True if the system has suspended the process, for example by Ctrl-Z.

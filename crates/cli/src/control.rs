@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! claim    a lock file per device, named after its number; it contains the holder of the port
-//! door     the socket of the driving command, polled once per exchange with the board
+//! control_socket the socket of the driving command, polled once per exchange with the board
 //! caller   the other end of the socket, for `stop` and `status`
 //! folder   the folder of both files, which only this user can access
 //! ```
@@ -17,7 +17,7 @@ mod caller;
 #[cfg(unix)]
 mod claim;
 #[cfg(unix)]
-mod door;
+mod control_socket;
 #[cfg(unix)]
 mod folder;
 #[cfg(not(unix))]
@@ -26,36 +26,35 @@ mod none;
 #[cfg(unix)]
 pub use caller::{Caller, Reply, call};
 #[cfg(unix)]
-pub use claim::{Claim, claim, holder};
+pub use claim::{PortClaim, claim, holder};
 #[cfg(unix)]
-use door::Door;
+use control_socket::ControlSocket;
 #[cfg(not(unix))]
-pub use none::{Caller, Claim, Door, Reply, call, claim, holder};
+pub use none::{Caller, ControlSocket, PortClaim, Reply, call, claim, holder};
 
-use crate::found::{Found, Known};
+use crate::found::{FoundBoard, Known};
 pub use crate::holder::Holder;
 use crate::interrupt;
-use carrystep_link::{Facts, Status, Wish};
+use carrystep_link::{BuildFacts, Status, Wish};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::atomic::Ordering;
+use strum::{EnumString, IntoStaticStr};
 
 /// A request through the socket; each is one line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Request {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
+pub enum SocketRequest {
     /// Report the state of the board.
     Status,
     /// Ramp the axes down and end the command.
     Stop,
 }
 
-impl Request {
+impl SocketRequest {
     /// The word that is sent for the request, without the end of the line.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Status => "status",
-            Self::Stop => "stop",
-        }
+    pub fn word(self) -> &'static str {
+        self.into()
     }
 }
 
@@ -72,8 +71,8 @@ pub enum StoppedBy {
 /// The claim on a port and, for a command that drives, its socket.
 pub struct Control {
     // Fields are dropped in this order: the socket is removed before the claim ends.
-    door: Option<Door>,
-    claim: Claim,
+    control_socket: Option<ControlSocket>,
+    claim: PortClaim,
     known: Option<Known>,
     stopped_by: Option<StoppedBy>,
 }
@@ -82,14 +81,14 @@ impl Control {
     /// The control of a claimed port. If `drives`, it listens on the socket from now on.
     ///
     /// # Errors The system refuses to create the socket.
-    pub fn new(claim: Claim, drives: bool) -> std::io::Result<Self> {
-        let door = if drives { claim.listen()? } else { None };
-        Ok(Self { door, claim, known: None, stopped_by: None })
+    pub fn new(claim: PortClaim, drives: bool) -> std::io::Result<Self> {
+        let control_socket = if drives { claim.listen()? } else { None };
+        Ok(Self { control_socket, claim, known: None, stopped_by: None })
     }
 
     /// Stores the constants of the connected board. From now on requests for the status are
     /// answered, and the lock file holds the watchdog's time.
-    pub fn connected(&mut self, facts: &Facts, known: Known) {
+    pub fn connected(&mut self, facts: &BuildFacts, known: Known) {
         self.claim.connected(facts);
         self.known = Some(known);
     }
@@ -102,12 +101,15 @@ impl Control {
         if interrupt::watch().load(Ordering::Relaxed) {
             self.stopped_by.get_or_insert(StoppedBy::Interrupt);
         }
-        if let Some(door) = &mut self.door {
+        if let Some(control_socket) = &mut self.control_socket {
             let (known, holder) = (&self.known, self.claim.holder());
-            let stop = door.poll(&mut |request| match request {
-                Request::Stop => "taken".to_owned(),
-                Request::Status => known.as_ref().map_or_else(String::new, |known| {
-                    let found = Found { held_by: Some(holder.clone()), ..Found::new(status, known, None) };
+            let stop = control_socket.poll(&mut |request| match request {
+                SocketRequest::Stop => "taken".to_owned(),
+                SocketRequest::Status => known.as_ref().map_or_else(String::new, |known| {
+                    let found = FoundBoard {
+                        held_by: Some(holder.clone()),
+                        ..FoundBoard::new(status, known, None)
+                    };
                     serde_json::to_string(&found).unwrap_or_default()
                 }),
             });

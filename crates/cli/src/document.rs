@@ -30,13 +30,17 @@ struct Name {
 impl<'a, D: Document> Named<'a, D> {
     /// Adds name and version to a document.
     pub fn new(document: &'a D) -> Self {
-        Self { schema: Name { name: format!("carrystep.{}", D::NAME), version: D::VERSION }, document }
+        Self {
+            schema: Name { name: format!("carrystep.{}", D::NAME), version: D::VERSION },
+            document,
+        }
     }
 }
 
 /// The schema of a [`Named`] document.
 pub fn schema<D: Document>() -> Schema {
-    let mut schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<D>();
+    let mut schema =
+        SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<D>();
     let name = json_schema!({
         "description": "What document this is, and which version of it.",
         "type": "object",
@@ -48,10 +52,14 @@ pub fn schema<D: Document>() -> Schema {
     });
     let fields = schema.ensure_object();
     fields.insert("title".to_owned(), format!("carrystep.{}", D::NAME).into());
-    if let Some(properties) = fields.entry("properties").or_insert_with(|| serde_json::json!({})).as_object_mut() {
+    if let Some(properties) =
+        fields.entry("properties").or_insert_with(|| serde_json::json!({})).as_object_mut()
+    {
         properties.insert("schema".to_owned(), name.to_value());
     }
-    if let Some(required) = fields.entry("required").or_insert_with(|| serde_json::json!([])).as_array_mut() {
+    if let Some(required) =
+        fields.entry("required").or_insert_with(|| serde_json::json!([])).as_array_mut()
+    {
         required.insert(0, "schema".into());
     }
     schema

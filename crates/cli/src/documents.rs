@@ -25,21 +25,21 @@ macro_rules! documents {
 }
 
 documents! {
-    "boards", 1: boards::Shown<'_>;
-    "build", 1: build::Report;
+    "boards", 1: boards::ShownBoards<'_>;
+    "build", 1: build::BuildReport;
     "check", 1: check::Checked<'_>;
     "doctor", 1: doctor::Examined;
     "drive", 1: drive::Driven;
-    "failure", 1: ending::Failed;
-    "home", 1: home::Report;
-    "machine-new", 1: machine::Written<'_>;
+    "failure", 1: ending::FailedRun;
+    "home", 1: home::HomeReport;
+    "machine-new", 1: machine::WrittenMachine<'_>;
     "plan", 1: plan::Planned<'_>;
     "profile", 1: profile::Profiles<'_>;
-    "simulate", 1: job::Done;
-    "status", 1: found::Found;
-    "sweep", 1: carrystep_sweep::Report;
+    "simulate", 1: job::RunResult;
+    "status", 1: found::FoundBoard;
+    "sweep", 1: carrystep_sweep::SweepReport;
     "table", 1: table::Tabled<'_>;
-    "verilog", 1: verilog::Written;
+    "verilog", 1: verilog::WrittenVerilog;
     "verilog-board", 1: verilog::WrittenForBoard<'_>;
     #[cfg(unix)]
     "virtual-board", 1: crate::commands::virtual_board::Served;

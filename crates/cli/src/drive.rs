@@ -6,7 +6,7 @@ use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::failure::Failure;
 use crate::found;
-use crate::memory::{self, Limit, Memory};
+use crate::memory::{self, BoardMemory, MetLimit};
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_files::{Axis, MoveFile, Unit};
 use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
@@ -87,18 +87,31 @@ pub struct AxisDriven {
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
-        let head = ["before", "planned", "position", "distance", "at"].map(|head| format!("  {head:>11}")).concat();
+        let head = ["before", "planned", "position", "distance", "at"]
+            .map(|head| format!("  {head:>11}"))
+            .concat();
         writeln!(f, "{:<6}{head}", "axis")?;
-        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit } in &self.axes {
+        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit } in &self.axes
+        {
             let unit = Unit { name: unit.clone(), steps: *steps_per_unit };
-            let [planned, at] = [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
-            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}")?;
+            let [planned, at] =
+                [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
+            writeln!(
+                f,
+                "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}"
+            )?;
         }
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
-            (How::Done, false) => f.write_str("FAILED: the positions are not where the moves end\n"),
+            (How::Done, false) => {
+                f.write_str("FAILED: the positions are not where the moves end\n")
+            }
             (How::Stopped, _) => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                let by = if self.stopped_by == Some(StoppedBy::Stop) {
+                    "`carrystep stop`"
+                } else {
+                    "Ctrl-C"
+                };
                 writeln!(f, "STOPPED by {by}; the positions are valid")
             }
             (How::Fault, _) => {
@@ -114,7 +127,9 @@ impl fmt::Display for Driven {
                 }
                 f.write_str("; the positions are valid\n")?;
                 let words = self.meaning.zip(self.remedy);
-                words.map_or(Ok(()), |(meaning, remedy)| writeln!(f, "why:   {meaning}\nto do: {remedy}"))
+                words.map_or(Ok(()), |(meaning, remedy)| {
+                    writeln!(f, "why:   {meaning}\nto do: {remedy}")
+                })
             }
         }
     }
@@ -147,7 +162,9 @@ impl Streamed {
         let axes = file.machine.axes.len();
         supply::check(&commands, axes as u8, plan.build.timebase.tick_ns(), baud)
             .map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
-        let steps = (0..axes).map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum()).collect();
+        let steps = (0..axes)
+            .map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum())
+            .collect();
         let near = |(number, axis): (usize, &Axis)| {
             let mut steps = plan.moves.iter().map(|planned| planned.axes[number].steps);
             Near {
@@ -163,9 +180,16 @@ impl Streamed {
 
     /// Refuses a program whose first motion takes an axis further toward a limit that it has met
     /// and not left.
-    fn check_limits(&self, memory: &Memory, status: &Status, axes: &[String]) -> Result<(), Failure> {
+    fn check_limits(
+        &self,
+        memory: &BoardMemory,
+        status: &Status,
+        axes: &[String],
+    ) -> Result<(), Failure> {
         for (number, Near { first, .. }) in self.near.iter().enumerate() {
-            let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else { continue };
+            let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else {
+                continue;
+            };
             let (axis, steps) = (&axes[number], limit.to_go(status.positions[number]));
             let (way, back) = if *first > 0 { ("forward", "back") } else { ("back", "forward") };
             return Err(Failure::input(format!(
@@ -201,8 +225,12 @@ impl Ways {
 ///
 /// # Errors The board has stopped already, a limit forbids the motion, or the line to the board is
 /// lost.
-pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> Result<Driven, Failure> {
-    let mut memory = Memory::recall(&connection);
+pub fn drive(
+    connection: Connection,
+    streamed: &Streamed,
+    into_limit: bool,
+) -> Result<Driven, Failure> {
+    let mut memory = BoardMemory::recall(&connection);
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -211,12 +239,16 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
     if start.answer.fault {
-        return Err(told(HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits }));
+        return Err(told(HostError::Fault {
+            cause: start.answer.cause,
+            culprits: start.answer.culprits,
+        }));
     }
     if !into_limit {
         streamed.check_limits(&memory, &start, &axes)?;
     }
-    let program = Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
+    let program =
+        Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
     let line = Line::new(&axes, streamed.seconds);
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
@@ -247,17 +279,27 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
-        for (number, near) in
-            streamed.near.iter().enumerate().filter(|(number, _)| end.answer.culprits >> number & 1 == 1)
+        for (number, near) in streamed
+            .near
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| end.answer.culprits >> number & 1 == 1)
         {
             let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
-            memory.set_limit(number, Some(Limit { direction, at: end.positions[number], clear: near.clear }));
+            memory.set_limit(
+                number,
+                Some(MetLimit { direction, at: end.positions[number], clear: near.clear }),
+            );
         }
     }
     // If the file cannot be written, the old one no longer matches the board and is ignored.
     let _ = memory.keep(&mut board);
-    let culprit = |(number, axis): (usize, &String)| Culprit { axis: axis.clone(), direction: ways.last[number] };
-    let is_culprit = |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
+    let culprit = |(number, axis): (usize, &String)| Culprit {
+        axis: axis.clone(),
+        direction: ways.last[number],
+    };
+    let is_culprit =
+        |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
@@ -268,7 +310,9 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
         steps_per_unit: streamed.units[number].steps,
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
-    let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;
+    let moved = |axis: &AxisDriven| {
+        i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned
+    };
     Ok(Driven {
         passed: ended == How::Done && axes.iter().all(moved),
         port,
@@ -297,7 +341,8 @@ impl<'a> Line<'a> {
     fn new(axes: &'a [String], seconds: f64) -> Self {
         // The bar hides itself if standard error is not a terminal.
         let total = (seconds * 1000.0) as u64;
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
+        let bar =
+            ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
         let style = ProgressStyle::with_template("{bar:20} {percent:>3} % {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         Self { bar, axes, begun: Instant::now() }
@@ -308,7 +353,8 @@ impl<'a> Line<'a> {
             return;
         }
         let elapsed = self.begun.elapsed().as_millis() as u64;
-        let places = self.axes.iter().zip(status.positions).map(|(axis, steps)| format!("{axis} {steps}"));
+        let places =
+            self.axes.iter().zip(status.positions).map(|(axis, steps)| format!("{axis} {steps}"));
         self.bar.set_message(places.collect::<Vec<_>>().join("  "));
         self.bar.set_position(elapsed.min(self.bar.length().unwrap_or(0)));
     }

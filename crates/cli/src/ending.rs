@@ -16,7 +16,7 @@ use std::process::ExitCode;
 /// Prints the failure to standard error and returns the exit status. If `--json` is wanted and
 /// no report was printed, it prints the failure as the document.
 pub fn tell(failure: Failure) -> ExitCode {
-    if let (true, Some(document)) = (output::lacks_json(), Failed::of(&failure)) {
+    if let (true, Some(document)) = (output::lacks_json(), FailedRun::of(&failure)) {
         // If printing fails, standard error still reports the failure.
         let _ = output::print_json(&document);
     }
@@ -35,7 +35,7 @@ pub fn tell(failure: Failure) -> ExitCode {
 
 /// What `--json` prints of a failure.
 #[derive(Debug, JsonSchema, Serialize)]
-pub struct Failed {
+pub struct FailedRun {
     /// Always false.
     passed: bool,
     error: ErrorJson,
@@ -70,9 +70,16 @@ enum Kind {
     Tool,
 }
 
-impl Failed {
+impl FailedRun {
     fn new(kind: Kind, message: impl Into<String>) -> Self {
-        let error = ErrorJson { kind, message: message.into(), file: None, line: None, column: None, help: None };
+        let error = ErrorJson {
+            kind,
+            message: message.into(),
+            file: None,
+            line: None,
+            column: None,
+            help: None,
+        };
         Self { passed: false, error }
     }
 
@@ -102,7 +109,7 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && output::lacks_json() {
         let text = error.render().to_string();
         let (message, help) = text.trim().split_once("\n\n").unwrap_or((text.trim(), ""));
-        let mut document = Failed::new(Kind::Usage, message.trim_start_matches("error: "));
+        let mut document = FailedRun::new(Kind::Usage, message.trim_start_matches("error: "));
         document.error.help = Some(help.trim().to_owned()).filter(|help| !help.is_empty());
         // If printing fails, standard error still reports the failure.
         let _ = output::print_json(&document);
@@ -115,7 +122,8 @@ pub fn usage(error: &clap::Error) -> ExitCode {
 /// Formats an input error: the message, then file, line and column, then the line with the wrong
 /// part marked.
 fn render(error: &InputError, terminal: bool) -> String {
-    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
+    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty())
+    else {
         return format!("error: {}", harmless(&error.to_string()));
     };
     let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
@@ -159,7 +167,7 @@ fn harmless(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use carrystep_files::Source;
+    use carrystep_files::SourceText;
 
     #[test]
     fn control_characters_are_replaced_in_messages() {
@@ -168,7 +176,7 @@ mod tests {
 
     #[test]
     fn error_over_several_lines_shows_only_the_first() {
-        let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
+        let source = SourceText { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
         let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
         let lines = [
             "error: too far",

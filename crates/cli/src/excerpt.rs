@@ -28,9 +28,13 @@ impl Excerpt {
         let line = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
         let column = text[line..start].chars().count();
-        let before = text[..line].strip_suffix('\n').map(|above| above.rsplit('\n').next().unwrap_or_default());
-        let after =
-            text.get(end + 1..).filter(|below| !below.is_empty()).map(|below| below.lines().next().unwrap_or_default());
+        let before = text[..line]
+            .strip_suffix('\n')
+            .map(|above| above.rsplit('\n').next().unwrap_or_default());
+        let after = text
+            .get(end + 1..)
+            .filter(|below| !below.is_empty())
+            .map(|below| below.lines().next().unwrap_or_default());
         let mut shown = before.map_or_else(String::new, |above| head(above) + "\n");
         let bad = text[line..end].trim_end_matches('\r');
         let (cut, at) = window(bad, column);
@@ -42,7 +46,13 @@ impl Excerpt {
             shown = shown + "\n" + &head(below);
         }
         let first_line = text[..line].matches('\n').count() - usize::from(before.is_some());
-        Self { name, text: shown, span: from..(from + length).min(longest.max(from)), first_line, column }
+        Self {
+            name,
+            text: shown,
+            span: from..(from + length).min(longest.max(from)),
+            first_line,
+            column,
+        }
     }
 
     /// The position of the error in the excerpt, in bytes.
@@ -82,9 +92,17 @@ impl SourceCode for Excerpt {
         let line = self.first_line + inner.line();
         // In the line with the error, the column is that of the file; neighbouring lines are shown
         // from their beginning.
-        let column = if inner.span().offset() == self.span.start { self.column } else { inner.column() };
+        let column =
+            if inner.span().offset() == self.span.start { self.column } else { inner.column() };
         let (data, shown, count) = (inner.data(), *inner.span(), inner.line_count());
-        Ok(Box::new(MietteSpanContents::new_named(self.name.clone(), data, shown, line, column, count)))
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            data,
+            shown,
+            line,
+            column,
+            count,
+        )))
     }
 }
 
@@ -111,14 +129,26 @@ mod tests {
         let text = "\u{17c}".repeat(500);
         let excerpt = Excerpt::new("m.toml".into(), &text, &(text.len()..text.len()));
         assert_eq!((excerpt.column, excerpt.span()), (500, excerpt.text.len()..excerpt.text.len()));
-        assert!(excerpt.text.starts_with("...\u{17c}") && excerpt.text.ends_with('\u{17c}'), "{}", excerpt.text);
+        assert!(
+            excerpt.text.starts_with("...\u{17c}") && excerpt.text.ends_with('\u{17c}'),
+            "{}",
+            excerpt.text
+        );
     }
 
     #[test]
     fn excerpt_exists_for_every_span_of_every_text() {
-        for text in
-            ["", "\n", "a", "a\n", "\n\n", "\r\n\r\n", "a\r\nb\r\n", &"ab\u{e9}\n".repeat(3), &"\u{e9}".repeat(300)]
-        {
+        for text in [
+            "",
+            "\n",
+            "a",
+            "a\n",
+            "\n\n",
+            "\r\n\r\n",
+            "a\r\nb\r\n",
+            &"ab\u{e9}\n".repeat(3),
+            &"\u{e9}".repeat(300),
+        ] {
             for start in (0..=text.len()).filter(|&at| text.is_char_boundary(at)) {
                 for end in (start..=text.len()).filter(|&at| text.is_char_boundary(at)) {
                     let excerpt = Excerpt::new("m.toml".into(), text, &(start..end));

@@ -51,17 +51,24 @@ type Line<'a> = (String, Box<dyn Fn(&Reference, &FiguresJson) -> String + 'a>);
 
 /// The table with one column per curve; if the drive has a travel per turn, also in millimetres.
 pub fn table(references: &[Reference], drive: &Drive) -> String {
-    let measured: Vec<(&Reference, FiguresJson)> = references.iter().map(|r| (r, FiguresJson::new(r))).collect();
+    let measured: Vec<(&Reference, FiguresJson)> =
+        references.iter().map(|r| (r, FiguresJson::new(r))).collect();
     let mut lines = lines();
     lines.extend(in_unit("steps", 1.0));
     if let Some(travel) = drive.travel_per_rev_mm {
         let steps = drive.steps_in(Length::Millimetre).unwrap_or(f64::NAN);
-        lines.push((format!("length, mm ({travel} mm a turn)"), Box::new(move |_, f| number(f.steps / steps))));
+        lines.push((
+            format!("length, mm ({travel} mm a turn)"),
+            Box::new(move |_, f| number(f.steps / steps)),
+        ));
         lines.extend(in_unit("mm", steps));
     }
-    let head = std::iter::once(String::new()).chain(references.iter().map(|r| r.kind().to_string()));
+    let head =
+        std::iter::once(String::new()).chain(references.iter().map(|r| r.kind().to_string()));
     let body = lines.iter().map(|(name, value)| {
-        std::iter::once(name.clone()).chain(measured.iter().map(|(r, f)| value(r, f))).collect::<Vec<_>>()
+        std::iter::once(name.clone())
+            .chain(measured.iter().map(|(r, f)| value(r, f)))
+            .collect::<Vec<_>>()
     });
     let mut text = String::new();
     for row in std::iter::once(head.collect::<Vec<_>>()).chain(body) {
@@ -76,8 +83,9 @@ pub fn table(references: &[Reference], drive: &Drive) -> String {
 }
 
 fn lines<'a>() -> Vec<Line<'a>> {
-    let line =
-        |name: &str, value: fn(&Reference, &FiguresJson) -> String| -> Line<'a> { (name.to_owned(), Box::new(value)) };
+    let line = |name: &str, value: fn(&Reference, &FiguresJson) -> String| -> Line<'a> {
+        (name.to_owned(), Box::new(value))
+    };
     vec![
         line("length, steps", |_, f| number(f.steps)),
         line("time, s", |_, f| format!("{:.6}", f.seconds)),
@@ -118,5 +126,9 @@ fn number(value: f64) -> String {
         return format!("{value:.5e}");
     }
     let text = format!("{value:.after$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

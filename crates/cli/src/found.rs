@@ -3,7 +3,7 @@
 
 use crate::holder::Holder;
 use carrystep_core::engine::{CAUSES, Cause};
-use carrystep_link::{Answer, Facts, Status};
+use carrystep_link::{Answer, BuildFacts, Status};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -14,7 +14,7 @@ pub struct Known {
     /// The name of the port.
     pub port: String,
     /// The constants that the gateware reported.
-    pub facts: Facts,
+    pub facts: BuildFacts,
     /// The names of the axes of the build, in order.
     pub axes: Vec<String>,
     /// Steps per unit of each axis; empty if no machine file is known.
@@ -23,7 +23,7 @@ pub struct Known {
 
 /// What `--json` prints.
 #[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
-pub struct Found {
+pub struct FoundBoard {
     /// True if the board has answered.
     pub passed: bool,
     /// The port.
@@ -97,11 +97,12 @@ pub fn by_number(cause: u8) -> Option<Cause> {
 /// The names of the axes in a mask of one bit per axis, separated by commas.
 pub fn names(axes: &[String], mask: u8) -> String {
     let is_of = |number: usize| mask.checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1);
-    let names: Vec<&str> = (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
+    let names: Vec<&str> =
+        (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
     names.join(", ")
 }
 
-impl Found {
+impl FoundBoard {
     /// Builds the report from a board's status. `discarded` are the discarded steps of each axis,
     /// if they were read.
     pub fn new(status: &Status, known: &Known, discarded: Option<&[u32]>) -> Self {
@@ -143,18 +144,26 @@ impl Found {
     }
 }
 
-impl fmt::Display for Found {
+impl fmt::Display for FoundBoard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { port, build, clock_hz, tick_ns, phases, .. } = self;
-        writeln!(f, "{port}: build {build}, clock {clock_hz} Hz, tick {tick_ns} ns, {phases} phases")?;
+        writeln!(
+            f,
+            "{port}: build {build}, clock {clock_hz} Hz, tick {tick_ns} ns, {phases} phases"
+        )?;
         if let Some(holder) = &self.stopped {
             writeln!(f, "{holder} was stopped")?;
         }
         if let Some(holder) = &self.held_by {
             writeln!(f, "{holder} drives it")?;
         }
-        let culprits: Vec<&str> = self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();
-        let from = if culprits.is_empty() { String::new() } else { format!(", from {}", culprits.join(", ")) };
+        let culprits: Vec<&str> =
+            self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();
+        let from = if culprits.is_empty() {
+            String::new()
+        } else {
+            format!(", from {}", culprits.join(", "))
+        };
         let power = if self.ready { "drivers powered" } else { "drivers without power" };
         match (&self.cause, self.halted, self.idle) {
             (Some(cause), true, _) => writeln!(f, "STOPPED: {cause}{from}; {power}")?,
@@ -169,13 +178,17 @@ impl fmt::Display for Found {
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
         for AxisFound { axis, position, place, machine, discarded, homing, culprit } in &self.axes {
-            let machine =
-                machine.map_or_else(String::new, |machine| format!("  homed: at {machine:.4} of the machine"));
+            let machine = machine.map_or_else(String::new, |machine| {
+                format!("  homed: at {machine:.4} of the machine")
+            });
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };
             let culprit = if *culprit { "  it caused the stop" } else { "" };
-            writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}")?;
+            writeln!(
+                f,
+                "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}"
+            )?;
         }
         Ok(())
     }

@@ -10,13 +10,13 @@ use carrystep_simulators::{Job, Level, LevelError};
 
 /// A plan on one of the cores.
 #[derive(Clone, Copy)]
-pub enum Gateware<'a> {
+pub enum CorePlan<'a> {
     Parallel(Job<'a>),
     Engine(EngineJob<'a>),
 }
 
 /// The end of a run.
-pub struct Ended {
+pub struct RunEnd {
     pub clocks: u64,
     /// Position registers in steps, at least of the machine's axes.
     pub positions: Vec<i32>,
@@ -24,7 +24,7 @@ pub struct Ended {
     pub fault: Option<String>,
 }
 
-impl Gateware<'_> {
+impl CorePlan<'_> {
     /// The cycle in which the first segments are loaded.
     pub fn origin(&self) -> Result<u64, LevelError> {
         match self {
@@ -35,18 +35,31 @@ impl Gateware<'_> {
 
     /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
     /// which any output has changed.
-    pub fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<Ended, LevelError> {
+    pub fn run(
+        &self,
+        level: Level,
+        watch: &mut dyn FnMut(u64, u8, u8),
+    ) -> Result<RunEnd, LevelError> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
                     watch(cycle, outputs.step, outputs.dir);
                 })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
-                Ok(Ended { clocks: outcome.clocks, positions, fault: faults.any().then(|| faults.to_string()) })
+                Ok(RunEnd {
+                    clocks: outcome.clocks,
+                    positions,
+                    fault: faults.any().then(|| faults.to_string()),
+                })
             }
             Self::Engine(job) => {
-                let outcome = job.run(level, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
-                Ok(Ended { clocks: outcome.clocks, positions: outcome.positions, fault: outcome.fault.map(told) })
+                let outcome =
+                    job.run(level, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
+                Ok(RunEnd {
+                    clocks: outcome.clocks,
+                    positions: outcome.positions,
+                    fault: outcome.fault.map(told),
+                })
             }
         }
     }
@@ -64,14 +77,20 @@ pub fn engine(machine: &Machine, name: &str) -> Result<EngineBuild, Failure> {
     }
 }
 
-/// What is said of the parallel core where only the engine's turns do not fit.
+/// What is said of the parallel core where only the engine's time slots do not fit.
 fn sibling(machine: &Machine, error: &EngineError) -> &'static str {
-    let by_turns = matches!(error, EngineError::Schedule { .. } | EngineError::ShortPhase { .. });
-    if by_turns && machine.build().is_ok() { "; the parallel core holds it as it is: `--core parallel`" } else { "" }
+    let by_time_slots =
+        matches!(error, EngineError::Schedule { .. } | EngineError::ShortPhase { .. });
+    if by_time_slots && machine.build().is_ok() {
+        "; the parallel core holds it as it is: `--core parallel`"
+    } else {
+        ""
+    }
 }
 
 /// A cause, and the axes that it came from.
 pub fn told((cause, culprits): (Cause, u8)) -> String {
-    let axes: Vec<String> = (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
+    let axes: Vec<String> =
+        (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
     if axes.is_empty() { cause.to_string() } else { format!("{cause} on axis {}", axes.join(", ")) }
 }

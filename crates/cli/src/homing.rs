@@ -2,8 +2,8 @@
 //! the axes' units.
 
 use crate::failure::Failure;
-use crate::memory::Memory;
-use carrystep_core::engine::Limits;
+use crate::memory::BoardMemory;
+use carrystep_core::engine::LimitWiring;
 use carrystep_files::machine::{End, Home as AxisHome};
 use carrystep_files::{Axis, Machine};
 use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
@@ -16,7 +16,10 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     let mut wanted = 0_u8;
     for name in names {
         let number = machine.axis_index(name).ok_or_else(|| {
-            Failure::input(format!("no axis is called '{name}': the axes are {}", machine.axis_names()))
+            Failure::input(format!(
+                "no axis is called '{name}': the axes are {}",
+                machine.axis_names()
+            ))
         })?;
         if machine.axes[number].home.is_none() {
             return Err(Failure::input(format!(
@@ -27,8 +30,12 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     }
     let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
     let wanted = if names.is_empty() { u8::MAX } else { wanted };
-    let groups: Vec<u8> =
-        machine.home_order.iter().map(|group| mask(group) & wanted).filter(|&mask| mask != 0).collect();
+    let groups: Vec<u8> = machine
+        .home_order
+        .iter()
+        .map(|group| mask(group) & wanted)
+        .filter(|&mask| mask != 0)
+        .collect();
     if groups.is_empty() {
         return Err(Failure::input(
             "no axis of the machine has a home table: home = { toward = \"min\", ... }, as in docs/homing.md",
@@ -41,15 +48,27 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (place, axis) in axes.iter_mut().zip(&machine.axes) {
-        *place =
-            axis.home.map(|AxisHome { toward, start, accel, seek, slow, move_off, max_travel, pull_off, .. }| {
-                AxisHoming { toward_max: toward == End::Max, start, accel, seek, slow, move_off, max_travel, pull_off }
-            });
+        *place = axis.home.map(
+            |AxisHome {
+                 toward, start, accel, seek, slow, move_off, max_travel, pull_off, ..
+             }| {
+                AxisHoming {
+                    toward_max: toward == End::Max,
+                    start,
+                    accel,
+                    seek,
+                    slow,
+                    move_off,
+                    max_travel,
+                    pull_off,
+                }
+            },
+        );
     }
     let wiring = match machine.guard.limits {
-        Limits::Each => Wiring::Each,
-        Limits::One => Wiring::One,
-        Limits::Pair | Limits::None => Wiring::Pair,
+        LimitWiring::Each => Wiring::Each,
+        LimitWiring::One => Wiring::One,
+        LimitWiring::Pair | LimitWiring::None => Wiring::Pair,
     };
     let (round, debounce) = (machine.guard.round, machine.guard.debounce);
     Homing { wiring, axes, groups, others: 0, round, debounce }
@@ -58,8 +77,8 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
 /// If all switches share one wire: the other axes that may stand on their switches, one bit each. A
 /// homed axis that is at least as far from its switch as homing leaves it does not stand on its
 /// switch. In all other wirings the result is 0.
-pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -> u8 {
-    if machine.guard.limits != Limits::One {
+pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &BoardMemory) -> u8 {
+    if machine.guard.limits != LimitWiring::One {
         return 0;
     }
     let clear = |number: usize, home: &AxisHome| {
@@ -92,8 +111,8 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
     match why {
         HomingFault::NotFound => {
             let unseen = match machine.guard.limits {
-                Limits::Pair | Limits::None => "",
-                Limits::Each | Limits::One => {
+                LimitWiring::Pair | LimitWiring::None => "",
+                LimitWiring::Each | LimitWiring::One => {
                     ". A switch that is still closed after moving off is not seen in this wiring"
                 }
             };

@@ -18,5 +18,9 @@ pub fn watch() -> &'static AtomicBool {
 
 /// Fails if the flag is set.
 pub fn check() -> Result<(), Failure> {
-    if ASKED.load(Ordering::Relaxed) { Err(Failure::Run("interrupted: nothing is kept".into())) } else { Ok(()) }
+    if ASKED.load(Ordering::Relaxed) {
+        Err(Failure::Run("interrupted: nothing is kept".into()))
+    } else {
+        Ok(())
+    }
 }

@@ -3,14 +3,14 @@
 
 use crate::arguments::Core;
 use crate::failure::Failure;
-use crate::gateware::{self, Gateware};
+use crate::gateware::{self, CorePlan};
 use crate::interrupt;
-use crate::progress::Progress;
-use crate::table::{self, Limits};
+use crate::progress::RunProgress;
+use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
-    AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
-    VcdWriter, Waves, save_file,
+    AxisSetup, AxisWaves, CheckReport, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis,
+    PlotSetup, Setup, Tee, VcdWriter, Waves, save_file,
 };
 use carrystep_files::MoveFile;
 use carrystep_plan::Plan;
@@ -30,7 +30,7 @@ const LONGEST_S: u64 = 4_000_000;
 
 /// The result of a run; `--json` prints it as it is.
 #[derive(Debug, JsonSchema, Serialize)]
-pub struct Done {
+pub struct RunResult {
     /// True if everything below holds.
     pub passed: bool,
     /// The gateware.
@@ -46,27 +46,31 @@ pub struct Done {
     /// Position registers at the end, steps.
     pub positions: Vec<i32>,
     /// Speeds and accelerations of the plan against the machine's limits.
-    pub limits: Limits,
+    pub limits: LimitsJson,
     /// The pulses against the profile.
-    pub check: Report,
+    pub check: CheckReport,
     /// The files that were written.
     pub files: Vec<PathBuf>,
 }
 
-impl Done {
+impl RunResult {
     /// Returns the failure if anything does not hold; the report has been printed already.
     pub fn verdict(&self) -> Result<(), Failure> {
         if self.passed { Ok(()) } else { Err(Failure::Check) }
     }
 }
 
-impl fmt::Display for Done {
+impl fmt::Display for RunResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n{}", self.limits, self.check)?;
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
-        writeln!(f, "{}, {}: {} clocks, faults: {}", self.core, self.level, self.clocks, self.faults)?;
+        writeln!(
+            f,
+            "{}, {}: {} clocks, faults: {}",
+            self.core, self.level, self.clocks, self.faults
+        )?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -81,7 +85,12 @@ pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
 }
 
 /// The setup of the checker for a capture of this plan.
-pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], origin: Origin) -> Setup<'a> {
+pub fn check_setup<'a>(
+    file: &'a MoveFile,
+    plan: &Plan,
+    timelines: &'a [Timeline],
+    origin: Origin,
+) -> Setup<'a> {
     let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {
         let steps = plan.moves.iter().map(|m| m.axes[i].steps);
         AxisSetup {
@@ -110,13 +119,23 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
         return Ok(());
     }
     let seconds = ns / 1_000_000_000;
-    Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
+    Err(Failure::input(format!(
+        "the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file"
+    )))
 }
 
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
-pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
+pub fn run(
+    file: &MoveFile,
+    plan: &Plan,
+    core: Core,
+    level: Level,
+    wanted: &Wanted,
+) -> Result<RunResult, Failure> {
     let engine = match core {
-        Core::Engine => Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?),
+        Core::Engine => {
+            Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?)
+        }
         Core::Parallel => None,
     };
     carrystep_simulators::available(level)?;
@@ -127,19 +146,27 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
     let timebase = plan.build.timebase;
-    let progress = Progress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
+    let progress =
+        RunProgress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
     let how_far = Some(progress.how_far());
     let on = match &engine {
-        None => Gateware::Parallel(Job { halt, how_far, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
-        Some(engine) => {
-            Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) })
-        }
+        None => CorePlan::Parallel(Job {
+            halt,
+            how_far,
+            ..Job::new(&plan.build, &program, plan.total_ticks())
+        }),
+        Some(engine) => CorePlan::Engine(EngineJob {
+            halt,
+            how_far,
+            ..EngineJob::new(engine, &program, plan.total_ticks())
+        }),
     };
     let load = on.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
 
-    let mut checker = Checker::new(check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps }));
+    let mut checker =
+        Checker::new(check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps }));
     let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
     let waves = || Waves {
         timebase,
@@ -148,12 +175,19 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         total_ticks: plan.total_ticks(),
         axes: named()
             .enumerate()
-            .map(|(i, (name, timeline))| AxisWaves { name, timeline, segments: Box::new(plan.axis_segments(i)) })
+            .map(|(i, (name, timeline))| AxisWaves {
+                name,
+                timeline,
+                segments: Box::new(plan.axis_segments(i)),
+            })
             .collect(),
     };
     let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()));
     let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()));
-    let mut csv = files.csv.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
+    let mut csv = files
+        .csv
+        .as_mut()
+        .map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
     let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
         let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
@@ -210,8 +244,11 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
 
     let limits = table::limits(file, plan);
     let positions: Vec<i32> = outcome.positions.into_iter().take(file.machine.axes.len()).collect();
-    let landed = positions.iter().zip(&check.axes).all(|(&found, axis)| i64::from(found) == axis.position_expected);
-    Ok(Done {
+    let landed = positions
+        .iter()
+        .zip(&check.axes)
+        .all(|(&found, axis)| i64::from(found) == axis.position_expected);
+    Ok(RunResult {
         passed: check.passed() && limits.landed() && outcome.fault.is_none() && landed,
         core: core.name(),
         level: level.name(),

@@ -35,7 +35,9 @@ impl JunitFile {
     pub fn keep(mut self) -> Result<(), Failure> {
         let mut report = Report::new("carrystep");
         report.add_test_suite(self.suite);
-        let text = report.to_string().map_err(|error| Failure::Run(format!("no JUnit report: {error}")))?;
+        let text = report
+            .to_string()
+            .map_err(|error| Failure::Run(format!("no JUnit report: {error}")))?;
         self.file.text(&text)?;
         self.file.keep().map(|_| ())
     }

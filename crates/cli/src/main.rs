@@ -6,8 +6,6 @@ mod colour;
 mod commands;
 mod connection;
 mod control;
-#[cfg(unix)]
-mod desk;
 mod document;
 mod documents;
 mod drive;
@@ -23,6 +21,8 @@ mod interrupt;
 mod job;
 mod junit;
 mod memory;
+#[cfg(unix)]
+mod operated;
 mod output;
 mod progress;
 #[cfg(unix)]

@@ -7,16 +7,16 @@
 //! and its drivers have kept their power. Three values detect a change:
 //!
 //! ```text
-//! next        the number of the next write: any command of another host changes it
+//! next        the number of the next write: any write of another host changes it
 //! positions   of all axes: any move changes them
 //! ready       0 after a configuration until a host switches the drivers on: detects a restart
 //! ```
 //!
 //! If one of them differs from the stored value, the content is discarded. One case is not
-//! detected: a restart, after which another host makes a multiple of 256 writes and leaves every
-//! register at its old position.
+//! detected: a restart, after which another host switches the drivers on, makes as many writes as
+//! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
 
-use crate::connection::{Board, Connection};
+use crate::connection::{ConnectedBoard, Connection};
 use crate::found;
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
@@ -48,12 +48,12 @@ struct AxisRecord {
     steps_per_unit: f64,
     /// The machine coordinate of the register's zero in steps, if the axis is homed.
     offset: Option<i64>,
-    limit: Option<Limit>,
+    limit: Option<MetLimit>,
 }
 
 /// A limit that an axis has met and not yet left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct MetLimit {
     /// The direction in which the axis moved: 1 or -1.
     pub direction: i8,
     /// The position at which it came to rest, in steps of the register.
@@ -62,7 +62,7 @@ pub struct Limit {
     pub clear: u32,
 }
 
-impl Limit {
+impl MetLimit {
     /// The distance that an axis at this position must still move away, in steps; 0 if it is far
     /// enough.
     pub fn to_go(self, position: i32) -> u32 {
@@ -73,28 +73,39 @@ impl Limit {
 
 /// What is known about a board.
 #[derive(Debug)]
-pub struct Memory {
+pub struct BoardMemory {
     path: Option<PathBuf>,
     record: Record,
 }
 
-impl Memory {
+impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
     /// discarded.
     pub fn recall(connection: &Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
         // The canonical path, so that every link to the port gives the same name.
-        let port = Path::new(port).canonicalize().map_or_else(|_| port.clone(), |path| path.display().to_string());
+        let port = Path::new(port)
+            .canonicalize()
+            .map_or_else(|_| port.clone(), |path| path.display().to_string());
         let build = format!("{:016x}", board.facts().build);
-        let name: String = port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let name: String =
+            port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
         let blank = vec![AxisRecord::default(); axes.len()];
         let Status { answer, positions } = *board.status();
-        let mut record = Record { schema: SCHEMA, port, build, next: answer.next, ready: answer.ready, axes: blank };
+        let mut record = Record {
+            schema: SCHEMA,
+            port,
+            build,
+            next: answer.next,
+            ready: answer.ready,
+            axes: blank,
+        };
         let stored = path.as_ref().and_then(|path| std::fs::read(path).ok());
         if let Some(stored) = stored.and_then(|text| serde_json::from_slice::<Record>(&text).ok())
             && (stored.schema, &stored.port, &stored.build) == (SCHEMA, &record.port, &record.build)
-            && (stored.next, stored.ready, stored.axes.len()) == (record.next, record.ready, record.axes.len())
+            && (stored.next, stored.ready, stored.axes.len())
+                == (record.next, record.ready, record.axes.len())
             && stored.axes.iter().zip(positions).all(|(axis, position)| axis.position == position)
         {
             record.axes = stored.axes;
@@ -121,7 +132,7 @@ impl Memory {
     }
 
     /// The limit that an axis has met and not yet left.
-    pub fn limit(&self, axis: usize) -> Option<Limit> {
+    pub fn limit(&self, axis: usize) -> Option<MetLimit> {
         self.record.axes.get(axis)?.limit
     }
 
@@ -136,7 +147,7 @@ impl Memory {
     }
 
     /// Sets the limit that an axis has met; `None` means that it is clear of limits.
-    pub fn set_limit(&mut self, axis: usize, limit: Option<Limit>) {
+    pub fn set_limit(&mut self, axis: usize, limit: Option<MetLimit>) {
         self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.limit = limit);
     }
 
@@ -145,8 +156,8 @@ impl Memory {
     ///
     /// # Errors The board does not answer, or the system refuses the file. The old file then no
     /// longer matches the board and is ignored.
-    pub fn keep(&mut self, board: &mut Board) -> io::Result<()> {
-        let Status { answer, positions } = board.look().map_err(io::Error::other)?;
+    pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
+        let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;
         (self.record.next, self.record.ready) = (answer.next, answer.ready);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
@@ -154,7 +165,10 @@ impl Memory {
             // A motor without power does not keep its position.
             axis.offset = axis.offset.filter(|_| answer.ready);
         }
-        let path = self.path.as_ref().ok_or_else(|| io::Error::other("the system names no folder for it"))?;
+        let path = self
+            .path
+            .as_ref()
+            .ok_or_else(|| io::Error::other("the system names no folder for it"))?;
         let folder = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
         let mut file = tempfile::NamedTempFile::new_in(folder)?;
@@ -181,7 +195,9 @@ pub const fn always_freezes(cause: Cause) -> bool {
 fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(folder.into()),
-        None => Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("carrystep").join("boards")),
+        None => {
+            Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("carrystep").join("boards"))
+        }
     }
 }
 
@@ -191,9 +207,12 @@ mod tests {
 
     #[test]
     fn axis_is_clear_of_its_limit_after_moving_back_the_clear_distance() {
-        let back = Limit { direction: -1, at: -105, clear: 20 };
-        assert_eq!([-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)), [20, 19, 1, 0, 0, 25]);
-        let forth = Limit { direction: 1, at: 105, clear: 20 };
+        let back = MetLimit { direction: -1, at: -105, clear: 20 };
+        assert_eq!(
+            [-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)),
+            [20, 19, 1, 0, 0, 25]
+        );
+        let forth = MetLimit { direction: 1, at: 105, clear: 20 };
         assert_eq!([105, 86, 85, -300].map(|position| forth.to_go(position)), [20, 1, 0, 0]);
     }
 }

@@ -5,7 +5,7 @@ use crate::colour;
 use crate::document::{Document, Named};
 use crate::failure::Failure;
 use crate::interrupt;
-use carrystep_files::{Claim, NewFile, OutputFailure};
+use carrystep_files::{NewFile, OutputClaim, OutputFailure};
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
@@ -18,10 +18,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// fails otherwise.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let painted = if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
-    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
-        ErrorKind::BrokenPipe => Failure::ReaderGone,
-        _ => Failure::input(format!("cannot write to standard output: {error}")),
+    let painted =
+        if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
+    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| {
+        match error.kind() {
+            ErrorKind::BrokenPipe => Failure::ReaderGone,
+            _ => Failure::input(format!("cannot write to standard output: {error}")),
+        }
     })
 }
 
@@ -45,7 +48,8 @@ pub fn lacks_json() -> bool {
 /// Prints one JSON document, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
-    let text = serde_json::to_string_pretty(&Named::new(document)).map_err(|error| Failure::Run(error.to_string()))?;
+    let text = serde_json::to_string_pretty(&Named::new(document))
+        .map_err(|error| Failure::Run(error.to_string()))?;
     print(&format!("{text}\n"))
 }
 
@@ -64,12 +68,12 @@ impl OutputFile {
 
     /// The first half of [`OutputFile::create`]: checks the path and creates nothing. A command
     /// with several outputs claims all of them before it begins the first one.
-    pub fn claim(path: &Path) -> Result<Claim, Failure> {
-        Ok(Claim::new(path)?)
+    pub fn claim(path: &Path) -> Result<OutputClaim, Failure> {
+        Ok(OutputClaim::new(path)?)
     }
 
     /// The second half of [`OutputFile::create`]: begins the file.
-    pub fn begin(claim: Claim) -> Result<Self, Failure> {
+    pub fn begin(claim: OutputClaim) -> Result<Self, Failure> {
         interrupt::watch();
         Ok(Self { writer: BufWriter::with_capacity(1 << 18, claim.begin(false)?) })
     }

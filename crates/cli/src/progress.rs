@@ -1,6 +1,6 @@
 //! Progress displays for runs of more than a second, on a terminal only.
 
-use carrystep_simulators::{HowFar, Level, Stage};
+use carrystep_simulators::{HowFar, Level, RunStage};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal as _;
 use std::sync::Arc;
@@ -16,13 +16,13 @@ const SHORT: Duration = Duration::from_secs(1);
 
 /// The progress of one run, in clocks. A separate thread polls it, so the display does not depend
 /// on how often edges occur.
-pub struct Progress {
+pub struct RunProgress {
     how_far: Arc<HowFar>,
     over: Arc<AtomicBool>,
     watcher: Option<JoinHandle<()>>,
 }
 
-impl Progress {
+impl RunProgress {
     /// The progress of a run of about `total` clocks at this level.
     pub fn new(level: Level, total: u64) -> Self {
         let (how_far, over) = (Arc::new(HowFar::default()), Arc::new(AtomicBool::new(false)));
@@ -38,7 +38,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for RunProgress {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Relaxed);
         if let Some(watcher) = self.watcher.take() {
@@ -66,9 +66,9 @@ fn watch(level: Level, total: u64, how_far: &HowFar, over: &AtomicBool) {
         let clock = how_far.clock().min(total);
         bar.set_position(clock);
         bar.set_prefix(match stage.0 {
-            Stage::Runs => level.name().to_owned(),
-            Stage::ModelRuns => format!("model, then {level}"),
-            Stage::VerilogRuns => format!("{level} against the model"),
+            RunStage::Runs => level.name().to_owned(),
+            RunStage::ModelRuns => format!("model, then {level}"),
+            RunStage::VerilogRuns => format!("{level} against the model"),
         });
         bar.set_message(told(stage.1.elapsed(), clock, total));
     }

@@ -1,7 +1,7 @@
 //! The machine that is shipped with the command, `sim/six-axis.toml`.
 
 use crate::failure::Failure;
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 
 /// The text of the machine file.
 pub const MACHINE: &str = include_str!("../../../sim/six-axis.toml");
@@ -13,6 +13,6 @@ pub const MACHINE_FILE: &str = "six-axis.toml";
 /// # Errors
 /// None, as long as the shipped file is a machine file; a test of the crate `files` reads it.
 pub fn machine() -> Result<Machine, Failure> {
-    let source = Source { path: MACHINE_FILE.into(), text: MACHINE.into() };
+    let source = SourceText { path: MACHINE_FILE.into(), text: MACHINE.into() };
     Ok(Machine::from_source(&source)?)
 }

@@ -7,7 +7,7 @@
 //! ```
 
 use crate::failure::Failure;
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_files::Machine;
 use carrystep_virtual_board::Switches;
 use std::io::BufRead as _;
@@ -30,12 +30,12 @@ struct Limit {
 
 /// All switches of a board.
 #[derive(Debug)]
-pub struct Panel {
+pub struct SwitchPanel {
     limits: Vec<Limit>,
     axes: Vec<String>,
     /// The switches that the user has pressed.
     hand: Switches,
-    wiring: Limits,
+    wiring: LimitWiring,
     lines: Receiver<String>,
 }
 
@@ -49,12 +49,12 @@ pub struct Look {
     pub unknown: Vec<String>,
 }
 
-impl Panel {
+impl SwitchPanel {
     /// The panel of a machine with the given limit switches, each `AXIS=STEPS`.
     ///
     /// # Errors An option is malformed, names no axis, or the machine has no inputs for limits.
     pub fn new(machine: &Machine, min: &[String], max: &[String]) -> Result<Self, Failure> {
-        if machine.guard.limits == Limits::None && !(min.is_empty() && max.is_empty()) {
+        if machine.guard.limits == LimitWiring::None && !(min.is_empty() && max.is_empty()) {
             return Err(Failure::input(
                 "--min and --max are limit switches, and the machine has no input for them: [machine.guard] limits is \"none\"",
             ));
@@ -76,7 +76,13 @@ impl Panel {
                 limits.push(read.ok_or_else(wrong)?);
             }
         }
-        Ok(Self { limits, axes, hand: Switches::default(), wiring: machine.guard.limits, lines: lines() })
+        Ok(Self {
+            limits,
+            axes,
+            hand: Switches::default(),
+            wiring: machine.guard.limits,
+            lines: lines(),
+        })
     }
 
     /// Reads pending commands and returns the state of the inputs for these positions (steps).
@@ -127,12 +133,12 @@ impl Panel {
 
 /// The levels of the inputs in this wiring. If several switches share a wire, each of them closes
 /// it.
-fn wired(switches: Switches, wiring: Limits) -> Switches {
+fn wired(switches: Switches, wiring: LimitWiring) -> Switches {
     let any = switches.limit_min | switches.limit_max;
     let limit_min = match wiring {
-        Limits::Pair | Limits::None => return switches,
-        Limits::Each => any,
-        Limits::One => u8::from(any != 0),
+        LimitWiring::Pair | LimitWiring::None => return switches,
+        LimitWiring::Each => any,
+        LimitWiring::One => u8::from(any != 0),
     };
     Switches { limit_min, limit_max: 0, ..switches }
 }
@@ -161,9 +167,9 @@ mod tests {
             let Switches { estop, limit_min, limit_max } = wired(pressed, wiring);
             (estop, limit_min, limit_max)
         };
-        assert_eq!(wires(Limits::Pair), (true, 0b0010, 0b0100));
-        assert_eq!(wires(Limits::Each), (true, 0b0110, 0));
-        assert_eq!(wires(Limits::One), (true, 1, 0));
-        assert_eq!(wired(Switches::default(), Limits::One), Switches::default());
+        assert_eq!(wires(LimitWiring::Pair), (true, 0b0010, 0b0100));
+        assert_eq!(wires(LimitWiring::Each), (true, 0b0110, 0));
+        assert_eq!(wires(LimitWiring::One), (true, 1, 0));
+        assert_eq!(wired(Switches::default(), LimitWiring::One), Switches::default());
     }
 }

@@ -13,7 +13,7 @@ use std::fmt;
 
 /// The limits of all axes.
 #[derive(Debug, JsonSchema, Serialize)]
-pub struct Limits {
+pub struct LimitsJson {
     /// Whole ticks of all moves, rests included.
     pub total_ticks: u64,
     /// The same in seconds.
@@ -49,11 +49,11 @@ pub struct AxisLimits {
 }
 
 /// Measures a plan against the limits of its machine.
-pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
+pub fn limits(file: &MoveFile, plan: &Plan) -> LimitsJson {
     let axes: Vec<AxisLimits> =
         file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
     let (total_ticks, timebase) = (plan.total_ticks(), &plan.build.timebase);
-    Limits {
+    LimitsJson {
         total_ticks,
         total_s: total_ticks as f64 * timebase.tick_seconds(),
         tick_ns: timebase.tick_ns(),
@@ -65,12 +65,15 @@ pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
 fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
     let timebase = &plan.build.timebase;
     let planned = || plan.moves.iter().map(|m| &m.axes[index]);
-    let greatest = |of: fn(&carrystep_plan::Peaks) -> u64| planned().map(|a| of(&a.peaks)).max().unwrap_or(0);
-    let (v, a, start) = (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
+    let greatest =
+        |of: fn(&carrystep_plan::Peaks) -> u64| planned().map(|a| of(&a.peaks)).max().unwrap_or(0);
+    let (v, a, start) =
+        (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
     let steps: i64 = planned().map(|a| a.steps).sum();
     let travelled: i128 = plan.axis_segments(index).map(|(_, segment)| distance(&segment)).sum();
-    let per_second =
-        |units: u64, power: u32| units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed());
+    let per_second = |units: u64, power: u32| {
+        units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed())
+    };
     AxisLimits {
         axis: axis.name.clone(),
         unit: axis.unit.name.clone(),
@@ -94,7 +97,7 @@ fn distance(segment: &Segment) -> i128 {
     n * v + n * (n - 1) / 2 * a + n * (n - 1) * (n - 2) / 6 * j
 }
 
-impl Limits {
+impl LimitsJson {
     /// True if every axis ends exactly at its target, including P.
     pub fn landed(&self) -> bool {
         self.axes.iter().all(|axis| axis.residue == 0)
@@ -137,7 +140,7 @@ impl AxisLimits {
     }
 }
 
-impl fmt::Display for Limits {
+impl fmt::Display for LimitsJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} ticks of {} ns, {:.6} s", self.total_ticks, self.tick_ns, self.total_s)?;
         if let Some(note) = &self.tick_note {
@@ -163,7 +166,11 @@ pub fn columns<const N: usize>(
     table.load_style(NOTHING).set_header(head).add_rows(rows);
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
-        column.set_cell_alignment(if left(index) { CellAlignment::Left } else { CellAlignment::Right });
+        column.set_cell_alignment(if left(index) {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        });
     }
     writeln!(out, "{}", table.trim_fmt())
 }

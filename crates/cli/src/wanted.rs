@@ -29,8 +29,15 @@ impl Wanted {
     /// none is begun.
     pub fn begin(&self) -> Result<Files, Failure> {
         let claim = |path: &Option<PathBuf>| path.as_deref().map(OutputFile::claim).transpose();
-        let claims = [claim(&self.vcd)?, claim(&self.fst)?, claim(&self.save)?, claim(&self.csv)?, claim(&self.plot)?];
-        let [vcd, fst, save, csv, plot] = claims.map(|claim| claim.map(OutputFile::begin).transpose());
+        let claims = [
+            claim(&self.vcd)?,
+            claim(&self.fst)?,
+            claim(&self.save)?,
+            claim(&self.csv)?,
+            claim(&self.plot)?,
+        ];
+        let [vcd, fst, save, csv, plot] =
+            claims.map(|claim| claim.map(OutputFile::begin).transpose());
         Ok(Files { vcd: vcd?, fst: fst?, save: save?, csv: csv?, plot: plot? })
     }
 }

@@ -19,7 +19,8 @@ fn transcripts_equal_the_output_of_the_command() {
 /// The first transcript must show the move file that it runs.
 #[test]
 fn first_transcript_shows_the_move_file_that_it_runs() {
-    let read = |name: &str| std::fs::read_to_string(format!("{FOLDER}/{name}")).expect("a transcript");
+    let read =
+        |name: &str| std::fs::read_to_string(format!("{FOLDER}/{name}")).expect("a transcript");
     let shown = format!("```toml\n{}```\n", read("first-move.in/move.toml"));
     assert!(read("first-move.md").contains(&shown));
 }

@@ -153,29 +153,44 @@ impl Timebase {
     }
 }
 
-/// Minimum times that a driver requires at STEP and DIR, in clocks, each at least 1.
+/// Minimum times that a driver requires at STEP and DIR, in clocks, each at least 1. [`PinTimes`]
+/// has them in ns.
 ///
 /// ```text
 /// DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
-///          :<-setup->:<-- hold ->:
+///          :dir_setup:<-dir_hold>:
 /// STEP ______________/^^^^^^^\________/^^^^^^\__________
-///                    :<width>:<-gap ->:
+///           step_high:<----->:<----->:step_low
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PinTiming {
-    /// W: STEP high time, clocks.
-    pub width: u32,
-    /// S: STEP low time, clocks.
-    pub gap: u32,
-    /// D, set-up: DIR is stable before a rising edge of STEP, clocks.
-    pub setup: u32,
-    /// H, hold: DIR is stable after a rising edge of STEP, clocks.
-    pub hold: u32,
+    /// STEP is high for at least this time, clocks.
+    pub step_high: u32,
+    /// STEP is low for at least this time, clocks.
+    pub step_low: u32,
+    /// Set-up: DIR is stable for this time before a rising edge of STEP, clocks.
+    pub dir_setup: u32,
+    /// Hold: DIR is stable for this time after a rising edge of STEP, clocks.
+    pub dir_hold: u32,
 }
 
 impl PinTiming {
     /// The shortest timing that the gateware supports: one clock each.
-    pub const SHORTEST: Self = Self { width: 1, gap: 1, setup: 1, hold: 1 };
+    pub const SHORTEST: Self = Self { step_high: 1, step_low: 1, dir_setup: 1, dir_hold: 1 };
+}
+
+/// Minimum times that a driver requires at STEP and DIR, in ns, as its data sheet gives them.
+/// [`PinTiming`] has the same times in clocks, and draws them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PinTimes {
+    /// STEP high time, ns.
+    pub step_high: u64,
+    /// STEP low time, ns.
+    pub step_low: u64,
+    /// Set-up: DIR is stable before a rising edge of STEP, ns.
+    pub dir_setup: u64,
+    /// Hold: DIR is stable after a rising edge of STEP, ns.
+    pub dir_hold: u64,
 }
 
 /// All parameters of a build of the six-axis core.

@@ -1,12 +1,12 @@
 //! The definitions that the engine's gateware and its model share: schedule, ports and queue sizes.
 //!
-//! The engine computes its axes one after the other. Each axis has one time slot of [`TURN`] clocks
-//! per tick, called its *turn*. The last clock of a tick, the strobe, commits the results of all
-//! turns:
+//! The engine computes its axes one after the other. Each axis has one time slot of
+//! [`TIME_SLOT_CLOCKS`] clocks per tick. The last clock of a tick, the strobe, commits the results
+//! of all time slots:
 //!
 //! ```text
 //! tick     |<------------------------------ C clocks ------------------------------>|
-//! turns    | axis 0 | axis 1 | axis 2 | axis 3 | axis 4 | axis 5 |   (nothing)    | |
+//! slots    | axis 0 | axis 1 | axis 2 | axis 3 | axis 4 | axis 5 |   (nothing)    | |
 //! strobe   ________________________________________________________________________/^
 //! ```
 
@@ -17,18 +17,22 @@ mod build;
 mod cause;
 mod error;
 mod figures;
+mod ports;
 
-pub use build::{EngineBuild, Guard, Limits};
+pub use build::{EngineBuild, Guard, LimitWiring};
 pub use cause::{CAUSES, Cause};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
+pub use ports::{ENGINE_PORTS, recorded_ports};
 
-pub use crate::schedule::{MIN_CLOCKS_PER_PHASE, TURN, clocks_of_turns, least_clocks};
+pub use crate::schedule::{
+    MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS, clocks_of_time_slots, least_clocks,
+};
 
 /// Greatest number of axes of an engine.
 pub const MAX_AXES: usize = 8;
 
-/// The clock within a turn, from 0, in which the axis samples the `put` port.
+/// The clock within a time slot, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
 
 /// Segments that an axis' queue holds, not counting the one that runs.
@@ -46,16 +50,17 @@ pub const MAX_ROUND: u32 = 1024;
 /// Greatest time, in rounds, that the guard's counters hold.
 pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
 
-/// Greatest number of consecutive samples (looks) that the debounce of a limit can require.
-pub const MAX_LOOKS: u32 = 127;
+/// Greatest number of consecutive samples that the debounce of a limit can require.
+pub const MAX_DEBOUNCE_SAMPLES: u32 = 127;
 
-/// Checks that the turns of all axes fit into a tick, and that each phase has room for its events.
+/// Checks that the time slots of all axes fit into a tick, and that each phase has room for its
+/// events.
 ///
 /// # Errors
 /// [`EngineError::Schedule`] says what is needed and what there is, [`EngineError::ShortPhase`] that phases are too many;
 /// both the shortest tick and the slowest clock that would do.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
-    let needed = clocks_of_turns(axes);
+    let needed = clocks_of_time_slots(axes);
     let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());
     let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
     let least_tick_ns = Ticks::for_engine(clock_hz, phases, axes);
@@ -74,8 +79,13 @@ pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineErro
 /// # Errors
 /// [`EngineError::PinTiming`] names the first time that they cannot.
 pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
-    for (axis, &PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
-        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+    for (axis, &PinTiming { step_high, step_low, dir_setup, dir_hold }) in pins.iter().enumerate() {
+        for (name, clocks) in [
+            ("step_high", step_high),
+            ("step_low", step_low),
+            ("dir_setup", dir_setup),
+            ("dir_hold", dir_hold),
+        ] {
             if !(1..=MAX_CLOCKS).contains(&clocks) {
                 return Err(EngineError::PinTiming { axis, name, clocks });
             }
@@ -106,6 +116,8 @@ pub struct EngineInputs {
     pub start: Option<u8>,
     /// Resume after a stop.
     pub clear: bool,
+    /// Stop the engine and return it to its state at configuration.
+    pub reset: bool,
     /// The host requests a controlled stop.
     pub stop: bool,
     /// The host has violated the segment protocol.
@@ -142,16 +154,19 @@ pub struct EngineOutputs {
     /// The latched stop cause and the mask of the axes that caused it; `None` while no stop is in
     /// force.
     pub fault: Option<(Cause, u8)>,
-    /// The stop is over: no axis moves any more.
+    /// The stop is complete: no axis moves any more.
     pub halted: bool,
+    /// The engine is returning to its state at configuration, after `reset`.
+    pub resetting: bool,
     /// A start is armed.
     pub armed: bool,
     /// The drivers have had power for the guard's `enable` time, and the host still requests it.
     pub ready: bool,
     /// Mask of the axes that wait for their limit.
     pub homing: u8,
-    /// The axis whose position is latched in this cycle, because the limit that it waits for was
-    /// reached.
+    /// The axis whose position `get_data` shows in this cycle: an axis that waits for its limit
+    /// shows its position once in every tick. The last position that it shows is that of the tick
+    /// in which the limit was found.
     pub latch: Option<u8>,
     /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in
     /// which that axis reports it.
@@ -166,7 +181,7 @@ mod tests {
     use alloc::string::ToString as _;
 
     #[test]
-    fn tick_too_short_for_the_turns_is_refused_with_the_arithmetic() {
+    fn tick_too_short_for_the_time_slots_is_refused_with_the_arithmetic() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         assert_eq!(
             check_schedule(6, &timebase).unwrap_err().to_string(),

@@ -31,7 +31,9 @@ impl fmt::Display for Faults {
             return f.write_str("none");
         }
         let mut separator = "";
-        for (name, bits) in [("overrun", self.overrun), ("overspeed", self.overspeed), ("underrun", self.underrun)] {
+        for (name, bits) in
+            [("overrun", self.overrun), ("overspeed", self.overspeed), ("underrun", self.underrun)]
+        {
             for axis in (0..AXES).filter(|axis| bits >> axis & 1 == 1) {
                 write!(f, "{separator}{name} on axis {axis}")?;
                 separator = ", ";

@@ -15,8 +15,8 @@ mod assembler;
 mod build_id;
 mod facts;
 mod line;
-pub mod machine;
 mod ports;
+pub mod processor;
 mod program;
 pub mod registers;
 mod uart;
@@ -24,8 +24,8 @@ mod uart;
 pub use assembler::Image;
 pub use build_id::BuildId;
 pub use facts::facts;
-pub use line::Line;
-pub use ports::{LinkInputs, LinkOutputs};
+pub use line::LineKind;
+pub use ports::{BYTE_PORTS, LinkInputs, LinkOutputs, line_pins, line_ports, link_ports};
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
@@ -33,7 +33,7 @@ use crate::engine::{CAUSES, Cause};
 
 /// A number that both sides of the link use; it is generated into the clients' languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Constant {
+pub struct LinkConstant {
     /// Name of the constant.
     pub name: &'static str,
     /// Its type in Rust: `u8`, `u32` or `usize`.
@@ -50,7 +50,7 @@ macro_rules! constants {
         $(#[doc = $what] pub const $name: $kind = $value;)*
 
         /// The constants above as a table, for the generator.
-        pub const CONSTANTS: &[$crate::link::Constant] = &[$($crate::link::Constant {
+        pub const CONSTANTS: &[$crate::link::LinkConstant] = &[$($crate::link::LinkConstant {
             name: stringify!($name),
             kind: stringify!($kind),
             value: $name as u64,
@@ -61,20 +61,23 @@ macro_rules! constants {
 pub(crate) use constants;
 
 constants! {
-    END: u8 = 0xc0, "Ends a frame, and begins one.";
-    ESC: u8 = 0xdb, "Says that the next byte stands for another.";
-    ESC_END: u8 = 0xdc, "After ESC: END.";
-    ESC_ESC: u8 = 0xdd, "After ESC: ESC.";
-    CRC_POLYNOMIAL: u32 = 0xedb8_8320, "CRC-32 of Ethernet and zlib, reflected: polynomial.";
-    CRC_RESIDUE: u32 = 0xdebb_20e3, "What its register holds, not yet inverted, after a frame and its CRC.";
-    CRC_BYTES: usize = 4, "Bytes of a CRC.";
-    WRITE: u8 = 0x80, "Set in an address: the frame writes.";
-    REQUEST_HEAD: usize = 2, "Sequence and address.";
-    SEGMENT_FRAME_WORDS: usize = 8, "Words of a segment, the commit included.";
-    LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES, "The longest request, without END and ESC.";
-    ANSWER_BYTES: usize = 15, "An answer, without END and ESC.";
-    ANSWER_DATA: usize = 7, "First byte of an answer's data.";
-    WINDOW: u8 = 127, "Frames by which a repeated one may lie behind the next; so many may be on their way.";
+    END: u8 = 0xc0, "Byte that begins and ends a frame.";
+    ESC: u8 = 0xdb, "Escape byte: with the next byte it stands for END or ESC in a frame.";
+    ESC_END: u8 = 0xdc, "After ESC: the pair stands for END.";
+    ESC_ESC: u8 = 0xdd, "After ESC: the pair stands for ESC.";
+    CRC_POLYNOMIAL: u32 = 0xedb8_8320, "Polynomial of the CRC-32 of Ethernet and zlib, reflected.";
+    CRC_RESIDUE: u32 = 0xdebb_20e3,
+        "Value of the CRC register, before its inversion, after a frame and its CRC.";
+    CRC_BYTES: usize = 4, "Length of a CRC in bytes.";
+    WRITE: u8 = 0x80, "Bit of the address that makes a request a write.";
+    REQUEST_HEAD: usize = 2, "Length of the sequence number and the address of a request in bytes.";
+    SEGMENT_FRAME_WORDS: usize = 8, "Number of words of a segment, the commit included.";
+    LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES,
+        "Length of the longest request in bytes, without END and ESC.";
+    ANSWER_BYTES: usize = 15, "Length of an answer in bytes, without END and ESC.";
+    ANSWER_DATA: usize = 7, "Number of the first data byte in an answer.";
+    WINDOW: u8 = 127,
+        "Number of writes that may be unacknowledged, and by which a repeated one may lie behind.";
 }
 
 /// A field in the bytes of an answer.
@@ -98,19 +101,37 @@ const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'stati
 
 /// The fields of an answer, byte by byte. The data (low byte first) and the CRC follow them.
 pub const ANSWER: [Field; 13] = [
-    field("sequence", 0, 0, 8, "the request's sequence number"),
-    field("address", 1, 0, 8, "the request's address"),
-    field("next", 2, 0, 8, "the sequence number that the next write must have: all before it have been executed"),
-    field("fault", 3, 0, 1, "a stop has been called; segments and starts are dropped until a clear"),
-    field("halted", 3, 1, 1, "the stop is over: no axis moves any more"),
-    field("idle", 3, 2, 1, "all axes are done, and no start is armed"),
-    field("ready", 3, 3, 1, "the drivers have had power for long enough: starts are taken"),
-    field("armed", 3, 4, 1, "a start waits; another is refused as busy"),
-    field("cause", 3, 5, 3, "why, where there is a fault"),
-    field("free", 4, 0, 3, "segments that the addressed axis still takes"),
+    field("sequence", 0, 0, 8, "the sequence number of the request"),
+    field("address", 1, 0, 8, "the address of the request"),
+    field(
+        "next",
+        2,
+        0,
+        8,
+        "number of the next write; all before it were executed, or dropped during a fault",
+    ),
+    field(
+        "fault",
+        3,
+        0,
+        1,
+        "a stop has been triggered; segments and starts are dropped until a clear",
+    ),
+    field("halted", 3, 1, 1, "the stop is complete: no axis moves any more"),
+    field("idle", 3, 2, 1, "no axis moves, no queue holds a segment, and no start is armed"),
+    field("ready", 3, 3, 1, "the drivers have had power for the enable time, as a start requires"),
+    field("armed", 3, 4, 1, "a start is armed; another start is refused as busy"),
+    field("cause", 3, 5, 3, "the cause of the stop, if `fault` is set"),
+    field("free", 4, 0, 3, "number of segments for which the queue of the addressed axis has room"),
     field("refused", 4, 3, 1, "this write was not executed: out of sequence, or busy"),
-    field("culprits", 5, 0, 8, "where there is a fault: the axes that it came from"),
-    field("homing", 6, 0, 8, "axes that still wait for their limit"),
+    field(
+        "culprits",
+        5,
+        0,
+        8,
+        "the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0",
+    ),
+    field("homing", 6, 0, 8, "the axes that still wait for their limit, one bit each"),
 ];
 
 /// The names of the causes, in documentation and messages, by number.

@@ -2,16 +2,25 @@
 //!
 //! A new kind is added here, in `kinds.rs` of the crate `profile`, and on the page docs/profiles.md.
 
-use alloc::string::String;
-use alloc::{format, vec::Vec};
-use core::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use strum::{Display, IntoStaticStr, VariantArray};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 /// A profile of the literature: how the speed of a move changes over time.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, Display, IntoStaticStr, VariantArray, JsonSchema, Serialize, Deserialize,
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    Display,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+    JsonSchema,
+    Serialize,
+    Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
@@ -44,15 +53,5 @@ impl ProfileKind {
     /// exactly.
     pub const fn is_fitted(self) -> bool {
         matches!(self, Self::Logistic | Self::Sine)
-    }
-}
-
-impl FromStr for ProfileKind {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.iter().copied().find(|kind| kind.name() == name);
-        let known = || Self::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-        found.ok_or_else(|| format!("{name:?} is no profile: {}", known()))
     }
 }

@@ -1,5 +1,6 @@
 //! What the host sends to the gateware: segments, and the commands that carry them.
 
+#[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
 /// A run of whole ticks during which one axis follows a cubic.
@@ -8,7 +9,7 @@ use alloc::vec::Vec;
 /// axis has moved by exactly `n V + n(n-1)/2 A + n(n-1)(n-2)/6 J` units of 2^-64 step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Segment {
-    /// Length in ticks, at least 1.
+    /// Length in ticks, at least 1. The engine receives `ticks` - 1 in word 0 of the segment.
     pub ticks: u32,
     /// Speed in 2^-64 step per tick, always greater than -2^63.
     pub v: i64,
@@ -16,7 +17,9 @@ pub struct Segment {
     pub a: i64,
     /// Jerk in 2^-64 step per tick^3.
     pub j: i64,
-    /// Whether the axis stops (V = A = J = 0) at the end of this segment.
+    /// Whether the axis stops (V = A = J = 0) at the end of this segment. A segment that follows in
+    /// the queue then waits for the next [`Command::Start`] of the axis. A segment that is not the
+    /// last needs a successor in the queue at its end; without one there is an underrun.
     pub last: bool,
 }
 
@@ -45,4 +48,5 @@ pub enum Command {
 }
 
 /// Everything a host sends for one or more moves, in order.
+#[cfg(feature = "alloc")]
 pub type Program = Vec<Command>;

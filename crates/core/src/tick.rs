@@ -66,7 +66,8 @@ impl Ticks {
         let Some(shortest) = self.shortest(clocks) else { return (None, None) };
         let longest = self.most() * self.grain_ns;
         let below = (tick_ns.saturating_sub(1) / self.grain_ns * self.grain_ns).min(longest);
-        let above = (tick_ns / self.grain_ns).saturating_add(1).saturating_mul(self.grain_ns).max(shortest);
+        let above =
+            (tick_ns / self.grain_ns).saturating_add(1).saturating_mul(self.grain_ns).max(shortest);
         ((below >= shortest).then_some(below), (above <= longest).then_some(above))
     }
 
@@ -132,8 +133,9 @@ impl ChosenTick {
     /// A sentence that proposes fewer phases, if they would shorten a long tick.
     pub fn proposal(&self) -> Option<String> {
         let Self { fewer_phases_ns, tick_ns, .. } = self;
-        fewer_phases_ns
-            .map(|shorter| format!("{tick_ns} ns is long: `phases = {FEWER_PHASES}` would allow {shorter} ns"))
+        fewer_phases_ns.map(|shorter| {
+            format!("{tick_ns} ns is long: `phases = {FEWER_PHASES}` would allow {shorter} ns")
+        })
     }
 }
 
@@ -141,13 +143,17 @@ impl fmt::Display for ChosenTick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { clock_hz, tick_ns, phases, axes, .. } = self;
         let axes = counted(*axes);
-        write!(f, "tick_ns = {tick_ns}, the shortest at {} MHz in {phases} phases with {axes}", mhz(*clock_hz))?;
+        write!(
+            f,
+            "tick_ns = {tick_ns}, the shortest at {} MHz in {phases} phases with {axes}",
+            mhz(*clock_hz)
+        )?;
         self.proposal().map_or(Ok(()), |proposal| write!(f, "; {proposal}"))
     }
 }
 
-/// The tick of a clock whose machine file gives none: fixed at the default clock, as long as its turns hold the axes,
-/// otherwise the one that is chosen.
+/// The tick of a clock whose machine file gives none: fixed at the default clock, as long as its
+/// time slots hold the axes, otherwise the one that is chosen.
 pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Option<ChosenTick>)> {
     let chosen = ChosenTick::new(clock_hz, phases, axes);
     if clock_hz == FIXED_CLOCK_HZ && chosen.is_none_or(|chosen| chosen.tick_ns <= FIXED_TICK_NS) {
@@ -161,7 +167,9 @@ pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Opt
 pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> String {
     let at = format!("at {} MHz in {phases} phases", mhz(clock_hz));
     let Some(ticks) = Ticks::of(clock_hz, phases) else {
-        return format!("{at} no tick of whole ns is a whole number of clocks; a multiple of 1 MHz has ticks");
+        return format!(
+            "{at} no tick of whole ns is a whole number of clocks; a multiple of 1 MHz has ticks"
+        );
     };
     let nearest = match ticks.beside(tick_ns, MIN_CLOCKS_PER_TICK) {
         (Some(below), Some(above)) => format!("{below} ns and {above} ns are the nearest ticks"),
@@ -169,10 +177,11 @@ pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> S
         (None, None) => "there is no tick".to_owned(),
     };
     let engine = ticks.shortest(least_clocks(axes, phases));
-    let engine =
-        engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
-    let finer =
-        Ticks::of(clock_hz, FEWER_PHASES).filter(|finer| phases > FEWER_PHASES && finer.grain_ns < ticks.grain_ns);
+    let engine = engine.map_or_else(String::new, |ns| {
+        format!("; an engine of {} takes {ns} ns or more", counted(axes))
+    });
+    let finer = Ticks::of(clock_hz, FEWER_PHASES)
+        .filter(|finer| phases > FEWER_PHASES && finer.grain_ns < ticks.grain_ns);
     let finer = finer.map_or_else(String::new, |finer| {
         format!("; `phases = {FEWER_PHASES}` allows multiples of {} ns", finer.grain_ns)
     });
@@ -216,9 +225,16 @@ mod tests {
 
     #[test]
     fn chosen_tick_is_the_shortest_that_passes_all_checks() {
-        for clock_hz in
-            [1_000_000, 12_000_000, 12_288_000, 25_000_000, 27_000_000, 33_300_000, 125_000_000, 999_000_000]
-        {
+        for clock_hz in [
+            1_000_000,
+            12_000_000,
+            12_288_000,
+            25_000_000,
+            27_000_000,
+            33_300_000,
+            125_000_000,
+            999_000_000,
+        ] {
             for phases in [1, 4, 16] {
                 for axes in 1..=8 {
                     let fits = |ns: &u64| {
@@ -226,7 +242,11 @@ mod tests {
                             .is_ok_and(|time| crate::engine::check_schedule(axes, &time).is_ok())
                     };
                     let searched = (1..=200_000_u64).find(fits);
-                    assert_eq!(Ticks::for_engine(clock_hz, phases, axes), searched, "{clock_hz} Hz, {phases}, {axes}");
+                    assert_eq!(
+                        Ticks::for_engine(clock_hz, phases, axes),
+                        searched,
+                        "{clock_hz} Hz, {phases}, {axes}"
+                    );
                 }
             }
         }
@@ -234,7 +254,9 @@ mod tests {
 
     #[test]
     fn the_clock_for_a_tick_is_the_slowest_of_all_that_fit() {
-        for tick_ns in [0, 1, 7, 333, 640, 1000, 1200, 1500, 2000, 2560, 3000, 16_000, 1_000_000, u64::MAX] {
+        for tick_ns in
+            [0, 1, 7, 333, 640, 1000, 1200, 1500, 2000, 2560, 3000, 16_000, 1_000_000, u64::MAX]
+        {
             for phases in [1, 4, 16] {
                 for axes in 1..=8 {
                     let fits = |hz: &u64| {
@@ -242,12 +264,16 @@ mod tests {
                             .is_ok_and(|time| crate::engine::check_schedule(axes, &time).is_ok())
                     };
                     let found = Ticks::clock_for_engine(tick_ns, phases, axes);
-                    assert!(found.is_none_or(|hz| fits(&hz)), "{tick_ns} ns, {phases}, {axes}: {found:?}");
+                    assert!(
+                        found.is_none_or(|hz| fits(&hz)),
+                        "{tick_ns} ns, {phases}, {axes}: {found:?}"
+                    );
                     // Any that fits has a whole number of clocks in the tick: all of them can be tried.
                     let of = |clocks: u64| {
                         let hz = u128::from(clocks) * 1_000_000_000;
                         let tick = u128::from(tick_ns).max(1);
-                        hz.is_multiple_of(tick).then(|| u64::try_from(hz / tick).unwrap_or(u64::MAX))
+                        hz.is_multiple_of(tick)
+                            .then(|| u64::try_from(hz / tick).unwrap_or(u64::MAX))
                     };
                     let searched = (1..=u64::from(MAX_CLOCKS)).filter_map(of).find(fits);
                     assert_eq!(found, searched, "{tick_ns} ns, {phases} phases, {axes} axes");
@@ -276,11 +302,18 @@ mod tests {
             for tick in [1, 100, 640, 1000, 1001, 15_999, 16_000, 100_000] {
                 let (below, above) = ticks.beside(tick, MIN_CLOCKS_PER_TICK);
                 assert_eq!(below, (1..tick).rev().find(|&ns| fits(hz, ns)), "{hz} Hz, {tick} ns");
-                assert_eq!(above, (tick + 1..tick + 100_000).find(|&ns| fits(hz, ns)), "{hz} Hz, {tick} ns");
+                assert_eq!(
+                    above,
+                    (tick + 1..tick + 100_000).find(|&ns| fits(hz, ns)),
+                    "{hz} Hz, {tick} ns"
+                );
             }
         }
         // The longest tick of 1 GHz has 65536 clocks.
-        assert_eq!(Ticks::of(1_000_000_000, 16).unwrap().beside(1_000_000, 16), (Some(65_536), None));
+        assert_eq!(
+            Ticks::of(1_000_000_000, 16).unwrap().beside(1_000_000, 16),
+            (Some(65_536), None)
+        );
     }
 
     #[test]

@@ -38,7 +38,8 @@ pub enum CacheFailure {
 pub fn cache_folder() -> Result<PathBuf, CacheFailure> {
     let chosen = std::env::var_os(VARIABLE).filter(|path| !path.is_empty()).map(PathBuf::from);
     let folder = chosen.or_else(|| Some(dirs::cache_dir()?.join("carrystep")));
-    let folder = folder.ok_or_else(|| refused(Path::new("~/.cache/carrystep"), "the user has no home folder"))?;
+    let folder = folder
+        .ok_or_else(|| refused(Path::new("~/.cache/carrystep"), "the user has no home folder"))?;
     make(&folder)?;
     Ok(folder)
 }

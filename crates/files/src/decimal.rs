@@ -49,7 +49,9 @@ mod tests {
 
     #[test]
     fn halves_are_rounded_away_from_zero() {
-        for (text, whole) in [("0.5", 1), ("-0.5", -1), ("1.5", 2), ("2.5", 3), ("-2.5", -3), ("0.4999999", 0)] {
+        for (text, whole) in
+            [("0.5", 1), ("-0.5", -1), ("1.5", 2), ("2.5", 3), ("-2.5", -3), ("0.4999999", 0)]
+        {
             assert_eq!(round_half_away(&parse(text).unwrap()), Some(whole), "{text}");
         }
     }

@@ -11,21 +11,22 @@ const DATA: &str = include_str!("../data/drivers.toml");
 #[serde(deny_unknown_fields)]
 pub struct Driver {
     /// STEP high time, ns.
-    pub step_ns: u64,
+    pub step_high_ns: u64,
     /// STEP low time, ns.
-    pub gap_ns: u64,
+    pub step_low_ns: u64,
     /// Set-up time: DIR is stable before a rising edge of STEP, ns.
-    pub setup_ns: u64,
+    pub dir_setup_ns: u64,
     /// Hold time: DIR is stable after a rising edge of STEP, ns.
-    pub hold_ns: u64,
+    pub dir_hold_ns: u64,
     /// The source of the figures, or how they were measured.
     pub evidence: String,
 }
 
 /// All presets, by lower-case name.
 pub fn drivers() -> &'static BTreeMap<String, Driver> {
-    static DRIVERS: LazyLock<BTreeMap<String, Driver>> =
-        LazyLock::new(|| toml::from_str(DATA).unwrap_or_else(|error| unreachable!("data/drivers.toml: {error}")));
+    static DRIVERS: LazyLock<BTreeMap<String, Driver>> = LazyLock::new(|| {
+        toml::from_str(DATA).unwrap_or_else(|error| unreachable!("data/drivers.toml: {error}"))
+    });
     &DRIVERS
 }
 
@@ -38,8 +39,8 @@ mod tests {
         assert_eq!(drivers().len(), 8);
         for (name, driver) in drivers() {
             assert_eq!(name, &name.to_lowercase());
-            assert!(driver.step_ns > 0 && driver.gap_ns > 0, "{name}");
-            assert!(driver.setup_ns > 0 && driver.hold_ns > 0, "{name}");
+            assert!(driver.step_high_ns > 0 && driver.step_low_ns > 0, "{name}");
+            assert!(driver.dir_setup_ns > 0 && driver.dir_hold_ns > 0, "{name}");
         }
     }
 }

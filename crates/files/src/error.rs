@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// A text file that was read. Its text is kept so that an error can quote the line.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub struct SourceText {
     /// Path of the file, as the user gave it.
     pub path: PathBuf,
     /// Its whole text.
@@ -24,7 +24,7 @@ pub struct InputError {
     /// The remedy, if there is one.
     pub help: Option<String>,
     /// The file and the range of bytes in it that is wrong, if the error belongs to one.
-    pub place: Option<(Source, Range<usize>)>,
+    pub place: Option<(SourceText, Range<usize>)>,
 }
 
 impl InputError {
@@ -34,7 +34,7 @@ impl InputError {
     }
 
     /// Makes an error at a range of bytes in a file.
-    pub fn at(source: &Source, span: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn at(source: &SourceText, span: Range<usize>, message: impl Into<String>) -> Self {
         Self { place: Some((source.clone(), span)), ..Self::new(message) }
     }
 
@@ -67,7 +67,7 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-impl Source {
+impl SourceText {
     /// Reads a text file, and registers it as an input, so that no later output of this process
     /// replaces it.
     ///
@@ -79,7 +79,8 @@ impl Source {
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let (line, column) = line_column(&String::from_utf8_lossy(good));
-            InputError::new(format!("{shown}:{line}:{column}: not UTF-8")).help("a text file in TOML is expected")
+            InputError::new(format!("{shown}:{line}:{column}: not UTF-8"))
+                .help("a text file in TOML is expected")
         })?;
         Ok(Self { path: path.to_owned(), text: text.into() })
     }
@@ -149,7 +150,10 @@ fn in_plain_words(message: &str) -> String {
             "expected tables in double brackets, as in [[move]] and [[machine.axis]], or a list in brackets, as in [0, 300]",
         ),
         ("expected a map", "expected distances, as in { x = 1.5 }"),
-        ("integer number overflowed", "a number of too many digits: at most 38, or 60 with a point, are expected"),
+        (
+            "integer number overflowed",
+            "a number of too many digits: at most 38, or 60 with a point, are expected",
+        ),
         ("floating-point number overflowed", "the number is too great: it must be under 10^30"),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))

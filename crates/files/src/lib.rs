@@ -26,10 +26,10 @@ pub mod unit;
 
 pub use bigdecimal::BigDecimal;
 pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};
-pub use error::{InputError, Source};
+pub use error::{InputError, SourceText};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
 pub use machine::{Axis, Machine, TooManyAxes};
 pub use move_file::{Move, MoveFile, PathKind};
 pub use names::{did_you_mean, nearest};
-pub use output::{Claim, NewFile, OutputFailure};
+pub use output::{NewFile, OutputClaim, OutputFailure};
 pub use unit::Unit;

@@ -2,15 +2,15 @@
 //!
 //! Raw structures mirror the TOML. A [`Machine`] holds the values after all checks.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::unit::Unit;
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use carrystep_core::EngineBuild;
-use carrystep_core::build::{AXES, Build, PinTiming, Timebase, TimebaseError};
+use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, TimebaseError};
 use carrystep_core::engine::{Guard, MAX_AXES};
 use carrystep_core::fixed::StartPhase;
-use carrystep_core::link::{BaudError, Line, Uart};
+use carrystep_core::link::{BaudError, LineKind, Uart};
 use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
 use guard::RawGuard;
 use home::{RawOrder, RawPlace};
@@ -54,7 +54,9 @@ pub struct Machine {
 
 /// Error: the six-axis core cannot drive this machine, because it has more than six axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}")]
+#[error(
+    "{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}"
+)]
 pub struct TooManyAxes(pub usize);
 
 /// One axis. Its speeds and accelerations are exact products of the file's numbers.
@@ -78,8 +80,8 @@ pub struct Axis {
     /// Acceleration with which the engine's guard ramps the axis down, 2^-64 step per tick^2, from
     /// 1 to 2^62.
     pub stop: u64,
-    /// Minimum times of the driver, ns: STEP width, gap, set-up, hold.
-    pub pins_ns: [u64; 4],
+    /// Minimum times of the driver, ns.
+    pub pins_ns: PinTimes,
     /// The same times in clocks, rounded up.
     pub pins: PinTiming,
     /// Lowest and highest machine coordinate, steps, if the file gives them.
@@ -100,14 +102,14 @@ impl Machine {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::from_source(&Source::read(path)?)
+        Self::from_source(&SourceText::read(path)?)
     }
 
     /// Checks the text of a machine file.
     ///
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
-    pub fn from_source(source: &Source) -> Result<Self, InputError> {
+    pub fn from_source(source: &SourceText) -> Result<Self, InputError> {
         let file: RawMachineFile = source.parse()?;
         file.machine.check(source)
     }
@@ -131,8 +133,12 @@ impl Machine {
     ///
     /// # Errors
     /// [`BaudError`] if the file gives no baud rate and its clock cannot make the default.
-    pub fn line(&self) -> Result<Line, BaudError> {
-        if self.spi { Ok(Line::Spi) } else { Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart) }
+    pub fn line(&self) -> Result<LineKind, BaudError> {
+        if self.spi {
+            Ok(LineKind::Spi)
+        } else {
+            Uart::new(self.timebase.clock_hz(), self.baud).map(LineKind::Uart)
+        }
     }
 
     /// The number of the axis of this name, from 0.
@@ -176,7 +182,7 @@ impl RawMachine {
         self.axis.as_ref().get(AXES).map(Spanned::span)
     }
 
-    pub(crate) fn check(self, source: &Source) -> Result<Machine, InputError> {
+    pub(crate) fn check(self, source: &SourceText) -> Result<Machine, InputError> {
         let (timebase, chosen_tick) = self.timebase(source)?;
         let span = self.axis.span();
         let raw = self.axis.into_inner();
@@ -186,9 +192,8 @@ impl RawMachine {
         }
         if raw.len() > MAX_AXES {
             let message = format!("{} axes: an engine drives at most {MAX_AXES}", raw.len());
-            return Err(
-                InputError::at(source, raw[MAX_AXES].span(), message).help("leave out axes, or build two engines")
-            );
+            return Err(InputError::at(source, raw[MAX_AXES].span(), message)
+                .help("leave out axes, or build two engines"));
         }
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
         let mut places: Vec<RawPlace> = Vec::with_capacity(raw.len());
@@ -199,26 +204,33 @@ impl RawMachine {
             let axis = axis.check(source, table, &timebase);
             let axis = axis.map_err(|error| with_proposal(error, chosen_tick.as_ref()))?;
             if axes.iter().any(|other| other.name == axis.name) {
-                return Err(InputError::at(source, name_span, format!("two axes are called '{}'", axis.name))
-                    .help("give each axis a name of its own"));
+                return Err(InputError::at(
+                    source,
+                    name_span,
+                    format!("two axes are called '{}'", axis.name),
+                )
+                .help("give each axis a name of its own"));
             }
             axes.push(axis);
         }
-        let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
-        let home_order = home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
+        let guard =
+            self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
+        let home_order =
+            home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
         Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.
-    fn timebase(&self, source: &Source) -> Result<(Timebase, Option<ChosenTick>), InputError> {
+    fn timebase(&self, source: &SourceText) -> Result<(Timebase, Option<ChosenTick>), InputError> {
         let clock_hz = self.clock_hz.as_ref().map_or(FIXED_CLOCK_HZ, |v| *v.as_ref());
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
         let axes = self.axis.as_ref().len().clamp(1, MAX_AXES);
         let given = self.tick_ns.as_ref().map(|v| (*v.as_ref(), None));
         // If the clock allows no tick, the tick of 1 ns makes the check below fail with the
         // matching error.
-        let (tick_ns, chosen) = given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
+        let (tick_ns, chosen) =
+            given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
         let timebase = Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
             let tick = self.tick_ns.as_ref().map(Spanned::span);
             let clock = self.clock_hz.as_ref().map(Spanned::span);

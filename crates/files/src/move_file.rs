@@ -5,7 +5,7 @@
 
 use crate::decimal;
 use crate::did_you_mean;
-use crate::error::{InputError, Source, quoted};
+use crate::error::{InputError, SourceText, quoted};
 use crate::machine::{Machine, RawMachine};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, Zero};
@@ -37,7 +37,7 @@ pub struct MoveFile {
     /// The moves, in order.
     pub moves: Vec<Move>,
     /// Text of the move file, for errors that are found later.
-    pub source: Source,
+    pub source: SourceText,
 }
 
 /// One move of all axes.
@@ -93,7 +93,7 @@ impl MoveFile {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::from_source(Source::read(path)?)
+        Self::from_source(SourceText::read(path)?)
     }
 
     /// Checks the text of a move file. A relative `machine_file` is resolved from the directory of
@@ -101,7 +101,7 @@ impl MoveFile {
     ///
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
-    pub fn from_source(source: Source) -> Result<Self, InputError> {
+    pub fn from_source(source: SourceText) -> Result<Self, InputError> {
         let raw: RawMoveFile = source.parse()?;
         let machine_file = raw.machine_file.as_ref().map(Spanned::span);
         let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
@@ -119,12 +119,16 @@ impl MoveFile {
                 // If the machine file cannot be read, the error points at its name in the move
                 // file.
                 let named = |error: InputError| InputError::at(&source, file.span(), error.message);
-                Machine::from_source(&Source::read(&path).map_err(named)?)?
+                Machine::from_source(&SourceText::read(&path).map_err(named)?)?
             }
             (None, Some(machine)) => machine.check(&source)?,
             (Some(file), Some(_)) => {
-                return Err(InputError::at(&source, file.span(), "both machine_file and [machine] are given")
-                    .help("keep one of them"));
+                return Err(InputError::at(
+                    &source,
+                    file.span(),
+                    "both machine_file and [machine] are given",
+                )
+                .help("keep one of them"));
             }
             (None, None) => {
                 return Err(InputError::at(&source, 0..0, "no machine")
@@ -138,19 +142,20 @@ impl MoveFile {
     ///
     /// # Errors
     /// [`InputError`] with line and column of the first mistake.
-    pub fn of_moves(machine: Machine, source: Source) -> Result<Self, InputError> {
+    pub fn of_moves(machine: Machine, source: SourceText) -> Result<Self, InputError> {
         let raw: RawMoves = source.parse()?;
         Self::on(machine, source, raw.moves, None)
     }
 
     fn on(
         machine: Machine,
-        source: Source,
+        source: SourceText,
         raw: Vec<Spanned<RawMove>>,
         too_many: Option<Range<usize>>,
     ) -> Result<Self, InputError> {
         if machine.axes.len() > AXES {
-            let message = format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
+            let message =
+                format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
             return Err(InputError::at(&source, too_many.unwrap_or(0..0), message));
         }
         if raw.is_empty() {
@@ -169,7 +174,11 @@ impl MoveFile {
     }
 }
 
-fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -> Result<Vec<Move>, InputError> {
+fn check_moves(
+    source: &SourceText,
+    machine: &Machine,
+    raw: Vec<Spanned<RawMove>>,
+) -> Result<Vec<Move>, InputError> {
     let mut targets = vec![BigDecimal::zero(); machine.axes.len()];
     let mut positions = vec![0_i64; machine.axes.len()];
     let mut moves = Vec::with_capacity(raw.len());
@@ -177,16 +186,20 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         let span = entry.span();
         let RawMove { profile, path, time, fit_ns, to } = entry.into_inner();
         let time = time.map(|value| check_time(source, &value)).transpose()?;
-        let fit_ns = fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
+        let fit_ns =
+            fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
         let before = positions.clone();
         for (name, distance) in &to {
             let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
-                let meant = did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.name));
+                let meant =
+                    did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.name));
                 let message = format!("the machine has no axis {:?}{meant}", quoted(name.as_ref()));
-                InputError::at(source, name.span(), message).help(format!("its axes are {}", machine.axis_names()))
+                InputError::at(source, name.span(), message)
+                    .help(format!("its axes are {}", machine.axis_names()))
             })?;
             if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
-                let message = format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
+                let message =
+                    format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
                 return Err(InputError::at(source, profile.span(), message)
                     .help("give the axis a jerk_limit in units/s^3, or take another profile"));
             }
@@ -195,7 +208,8 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
             positions[axis] = register(&target).ok_or_else(|| {
                 let unit = &machine.axes[axis].unit;
                 let at = unit.both(decimal::to_f64(&target), 0);
-                let message = format!("axis '{}' would stand at {at}, beyond its register", name.as_ref());
+                let message =
+                    format!("axis '{}' would stand at {at}, beyond its register", name.as_ref());
                 let most = unit.at_most(i32::MAX.into(), 0);
                 InputError::at(source, distance.span(), message)
                     .help(format!("the sum of all moves must stay within +-{most} of the start"))
@@ -222,7 +236,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
 }
 
 /// Checks a duration: greater than zero, and short enough to be counted in clocks.
-fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
+fn check_time(source: &SourceText, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
     let time = positive(source, value, "time")?;
     if time <= 1_000_000 {
         return Ok(time);
@@ -231,7 +245,7 @@ fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, Input
     Err(InputError::at(source, value.span(), message).help("split it into shorter moves"))
 }
 
-fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
+fn check_fit(source: &SourceText, value: &Spanned<u64>) -> Result<u64, InputError> {
     let ns = *value.as_ref();
     if ns > 0 {
         return Ok(ns);
@@ -242,5 +256,6 @@ fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
 
 /// The nearest whole step, if the position register can hold it and its negative.
 fn register(target: &BigDecimal) -> Option<i64> {
-    decimal::round_half_away(target).filter(|steps| steps.unsigned_abs() <= u64::from(i32::MAX.unsigned_abs()))
+    decimal::round_half_away(target)
+        .filter(|steps| steps.unsigned_abs() <= u64::from(i32::MAX.unsigned_abs()))
 }

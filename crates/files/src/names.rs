@@ -11,8 +11,14 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     let apart = |name: &'a str| (strsim::damerau_levenshtein(&wrong, &name.to_lowercase()), name);
     // A name must differ in fewer letters than it has; otherwise every name of one letter would
     // match.
-    let close = |(distance, name): &(usize, &str)| *distance <= most && *distance < name.chars().count();
-    known.into_iter().map(apart).filter(close).min_by_key(|&(distance, _)| distance).map(|(_, name)| name)
+    let close =
+        |(distance, name): &(usize, &str)| *distance <= most && *distance < name.chars().count();
+    known
+        .into_iter()
+        .map(apart)
+        .filter(close)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, name)| name)
 }
 
 /// The text " (did you mean 'x'?)" if a known name is similar, otherwise an empty text.
@@ -28,7 +34,9 @@ mod tests {
 
     #[test]
     fn similar_name_is_found() {
-        for (wrong, name) in [("a4989", "a4988"), ("A4988", "a4988"), ("drv8285", "drv8825"), ("tmc220", "tmc2209")] {
+        for (wrong, name) in
+            [("a4989", "a4988"), ("A4988", "a4988"), ("drv8285", "drv8825"), ("tmc220", "tmc2209")]
+        {
             assert_eq!(nearest(wrong, DRIVERS), Some(name), "{wrong}");
         }
         assert_eq!(did_you_mean("a498", DRIVERS), " (did you mean 'a4988'?)");

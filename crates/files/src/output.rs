@@ -31,7 +31,7 @@ pub struct OutputFailure {
 /// A claim on a path: it leads to no input and to no other output of this process. The file does
 /// not exist yet.
 #[derive(Debug)]
-pub struct Claim {
+pub struct OutputClaim {
     shown: PathBuf,
     at: At,
     /// Number in the registry. A device has none, because several outputs may go to it.
@@ -49,7 +49,7 @@ enum At {
     Stdout,
 }
 
-impl Claim {
+impl OutputClaim {
     /// Resolves a path. Symbolic links are followed: their target is replaced or created, and the
     /// links remain.
     ///
@@ -72,7 +72,8 @@ impl Claim {
         // what was meant for the pipe.
         #[cfg(unix)]
         if path == Path::new("/dev/stdout") && !path.exists() {
-            let number = Identity::of_stdout().map(|identity| Self::register(path, identity)).transpose()?;
+            let number =
+                Identity::of_stdout().map(|identity| Self::register(path, identity)).transpose()?;
             return Ok(Self { shown, at: At::Stdout, number });
         }
         let (at, there) = match follow(path)? {
@@ -104,8 +105,12 @@ impl Claim {
     /// Claims a file for this output: no input and no other output of the process may be the same.
     fn register(path: &Path, identity: Identity) -> io::Result<u64> {
         registry::add_output(path, identity).map_err(|collision| match collision {
-            Collision::Input(input) => io::Error::other(format!("it is the input {}", input.display())),
-            Collision::Output(other) => io::Error::other(format!("it is also the output {}", other.display())),
+            Collision::Input(input) => {
+                io::Error::other(format!("it is the input {}", input.display()))
+            }
+            Collision::Output(other) => {
+                io::Error::other(format!("it is also the output {}", other.display()))
+            }
         })
     }
 
@@ -157,7 +162,7 @@ impl Claim {
     }
 }
 
-impl Drop for Claim {
+impl Drop for OutputClaim {
     fn drop(&mut self) {
         if let Some(number) = self.number {
             registry::drop_output(number);
@@ -168,7 +173,7 @@ impl Drop for Claim {
 /// An output that has its name only after [`NewFile::appear`] has succeeded.
 #[derive(Debug)]
 pub struct NewFile {
-    claim: Claim,
+    claim: OutputClaim,
     place: Place,
 }
 
@@ -186,9 +191,9 @@ impl NewFile {
     /// Claims a path and creates the file.
     ///
     /// # Errors
-    /// As [`Claim::new`] and [`Claim::begin`].
+    /// As [`OutputClaim::new`] and [`OutputClaim::begin`].
     pub fn create(path: &Path) -> Result<Self, OutputFailure> {
-        Claim::new(path)?.begin(false)
+        OutputClaim::new(path)?.begin(false)
     }
 
     /// Path of the file, as the user gave it.
@@ -204,7 +209,9 @@ impl NewFile {
         let Self { claim, place } = self;
         let appeared = match (place, &claim.at) {
             (Place::Nameless(file), At::Name(target)) => name(file, target),
-            (Place::Beside(file), At::Name(target)) => file.persist(target).map(drop).map_err(|error| error.error),
+            (Place::Beside(file), At::Name(target)) => {
+                file.persist(target).map(drop).map_err(|error| error.error)
+            }
             (Place::Nameless(_) | Place::Beside(_) | Place::Itself(_), _) => Ok(()),
         };
         appeared.map_err(|source| OutputFailure { path: claim.shown.clone(), source })?;
@@ -253,7 +260,9 @@ fn nameless(folder: &Path, executable: bool) -> io::Result<Option<File>> {
         Ok(file) => Ok(Some(file.into())),
         // Which of these errors a file system without this function reports depends on its age and
         // on the kernel's.
-        Err(Errno::OPNOTSUPP | Errno::ISDIR | Errno::NOENT | Errno::INVAL | Errno::NOSYS) => Ok(None),
+        Err(Errno::OPNOTSUPP | Errno::ISDIR | Errno::NOENT | Errno::INVAL | Errno::NOSYS) => {
+            Ok(None)
+        }
         Err(error) => Err(error.into()),
     }
 }
@@ -286,7 +295,8 @@ fn name(file: File, target: &Path) -> io::Result<()> {
         Err(_) => return copied(file, target),
     }
     for attempt in 0..1000 {
-        let temporary = folder(target).join(format!(".carrystep-{}-{attempt}.tmp", std::process::id()));
+        let temporary =
+            folder(target).join(format!(".carrystep-{}-{attempt}.tmp", std::process::id()));
         match link(&temporary) {
             Ok(()) => {
                 return fs::rename(&temporary, target).inspect_err(|_| {
@@ -310,7 +320,8 @@ fn name(file: File, target: &Path) -> io::Result<()> {
 /// without a name but no link to one.
 fn copied(mut file: File, target: &Path) -> io::Result<()> {
     #[cfg(unix)]
-    let executable = std::os::unix::fs::PermissionsExt::mode(&file.metadata()?.permissions()) & 0o100 != 0;
+    let executable =
+        std::os::unix::fs::PermissionsExt::mode(&file.metadata()?.permissions()) & 0o100 != 0;
     #[cfg(not(unix))]
     let executable = false;
     let mut new = beside(folder(target), executable)?;

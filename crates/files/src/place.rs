@@ -45,7 +45,8 @@ impl Identity {
     pub(crate) fn of_stdout() -> Option<Self> {
         use std::os::fd::AsFd as _;
         use std::os::unix::fs::MetadataExt as _;
-        let there = fs::File::from(io::stdout().as_fd().try_clone_to_owned().ok()?).metadata().ok()?;
+        let there =
+            fs::File::from(io::stdout().as_fd().try_clone_to_owned().ok()?).metadata().ok()?;
         Some(Self { existing: (there.dev(), there.ino()), rest: PathBuf::new() })
     }
 }

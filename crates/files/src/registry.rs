@@ -4,7 +4,8 @@ use crate::place::Identity;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-static REGISTRY: Mutex<Registry> = Mutex::new(Registry { inputs: Vec::new(), outputs: Vec::new(), next: 0 });
+static REGISTRY: Mutex<Registry> =
+    Mutex::new(Registry { inputs: Vec::new(), outputs: Vec::new(), next: 0 });
 
 struct Registry {
     inputs: Vec<Input>,
@@ -42,7 +43,9 @@ fn registry() -> MutexGuard<'static, Registry> {
 pub(crate) fn add_input(path: &Path) -> Result<(), PathBuf> {
     // A file that has just been opened has an identity. If it has lost it meanwhile, it cannot be
     // replaced.
-    let (Ok(identity), Ok(absolute)) = (Identity::of(path), std::path::absolute(path)) else { return Ok(()) };
+    let (Ok(identity), Ok(absolute)) = (Identity::of(path), std::path::absolute(path)) else {
+        return Ok(());
+    };
     let mut registry = registry();
     if let Some(output) = registry.outputs.iter().find(|output| output.identity == identity) {
         return Err(output.shown.clone());

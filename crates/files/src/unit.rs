@@ -99,7 +99,11 @@ fn shown(value: f64, round: fn(f64) -> f64) -> String {
     let after = usize::try_from(DIGITS - before).unwrap_or(0);
     let scale = 10_f64.powi(after as i32);
     let text = format!("{:.after$}", round(value * scale) / scale);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -108,9 +112,16 @@ mod tests {
 
     #[test]
     fn figures_have_six_digits_and_no_trailing_zeros() {
-        let shown = [0.0, 0.95, 2_061.855_67, 1_234_567.0, 12.5, -0.05, 320_000_000.0, 1e-9, 1e30].map(digits);
-        assert_eq!(shown, ["0", "0.95", "2061.86", "1234567", "12.5", "-0.05", "320000000", "1e-9", "1e30"]);
-        assert_eq!([2061.859, 500.0, 499.999_999_999_999_9, 0.3].map(digits_below), ["2061.85", "500", "500", "0.3"]);
+        let shown = [0.0, 0.95, 2_061.855_67, 1_234_567.0, 12.5, -0.05, 320_000_000.0, 1e-9, 1e30]
+            .map(digits);
+        assert_eq!(
+            shown,
+            ["0", "0.95", "2061.86", "1234567", "12.5", "-0.05", "320000000", "1e-9", "1e30"]
+        );
+        assert_eq!(
+            [2061.859, 500.0, 499.999_999_999_999_9, 0.3].map(digits_below),
+            ["2061.85", "500", "500", "0.3"]
+        );
     }
 
     #[test]
@@ -119,6 +130,9 @@ mod tests {
         assert_eq!(Unit::new(None, 80.0).both(76.0, 0), "0.95 units (76 steps)");
         assert_eq!(Unit::new(None, 1.0).both(76.0, 2), "76 steps/s^2");
         assert_eq!(Unit::new(Some("um"), 1.0).both(7.0, 3), "7 um/s^3 (7 steps/s^3)");
-        assert_eq!(Unit::new(Some("mm"), 80.0).at_most(164_948.45, 1), "2061.85 mm/s (164948 steps/s)");
+        assert_eq!(
+            Unit::new(Some("mm"), 80.0).at_most(164_948.45, 1),
+            "2061.85 mm/s (164948 steps/s)"
+        );
     }
 }

@@ -3,14 +3,14 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::engine::{Between, Guard, Limits, MAX_LOOKS, MAX_ROUNDS};
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_core::engine::{Between, Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUNDS};
+use carrystep_files::{InputError, Machine, SourceText};
 
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n\
                     driver = \"a4988\"\n";
 
 fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 fn guard(keys: &str) -> Guard {
@@ -30,7 +30,7 @@ fn missing_keys_have_their_defaults() {
         watchdog: 3126,
         enable: 33,
         debounce: 17,
-        limits: Limits::Pair,
+        limits: LimitWiring::Pair,
         limit_freezes: false,
         estop_low: false,
         limits_low: false,
@@ -51,11 +51,12 @@ fn given_times_are_counted_in_rounds() {
     assert_eq!((found.round, found.watchdog, found.enable, found.debounce), (2, 4001, 126, 51));
     assert_eq!(
         (found.estop_low, found.limits, found.limits_low, found.limit_freezes),
-        (true, Limits::Each, true, true)
+        (true, LimitWiring::Each, true, true)
     );
-    assert_eq!(guard("limits = \"none\"").limits, Limits::None);
-    assert_eq!(guard("limits = \"one\"").limits, Limits::One);
-    let other = guard("estop = \"high\"\nlimits = \"pair\"\nlimit_level = \"high\"\nlimit_stop = \"ramp\"");
+    assert_eq!(guard("limits = \"none\"").limits, LimitWiring::None);
+    assert_eq!(guard("limits = \"one\"").limits, LimitWiring::One);
+    let other =
+        guard("estop = \"high\"\nlimits = \"pair\"\nlimit_level = \"high\"\nlimit_stop = \"ramp\"");
     assert_eq!(other, guard(""), "these are the defaults");
 }
 
@@ -67,7 +68,18 @@ fn zero_times_turn_the_functions_off() {
 
 #[test]
 fn times_are_rounded_up_and_the_shortest_round_is_chosen() {
-    let times = ["0.001", "0.0010001", "1", "7.77", "8.188", "8.1880001", "1e2", "333.333", "1000", "4192.256"];
+    let times = [
+        "0.001",
+        "0.0010001",
+        "1",
+        "7.77",
+        "8.188",
+        "8.1880001",
+        "1e2",
+        "333.333",
+        "1000",
+        "4192.256",
+    ];
     for (tick_ns, tick) in [(1000, 1e-3), (2000, 2e-3), (62_000, 62e-3)] {
         for ms in times {
             let found = with_tick(tick_ns, &format!("watchdog_ms = {ms}"));
@@ -75,12 +87,20 @@ fn times_are_rounded_up_and_the_shortest_round_is_chosen() {
             let whole = f64::from(found.watchdog - 1);
             // Only exact products at the very boundary may differ from a float.
             assert!(whole * round >= asked * (1.0 - 1e-12), "{ms} ms of {tick_ns} ns: {found:?}");
-            assert!((whole - 1.0) * round < asked * (1.0 - 1e-12), "{ms} ms of {tick_ns} ns: {found:?}");
-            assert!(found.watchdog <= MAX_ROUNDS && found.debounce <= MAX_LOOKS);
+            assert!(
+                (whole - 1.0) * round < asked * (1.0 - 1e-12),
+                "{ms} ms of {tick_ns} ns: {found:?}"
+            );
+            assert!(found.watchdog <= MAX_ROUNDS && found.debounce <= MAX_DEBOUNCE_SAMPLES);
             let shorter = round / 2.0;
-            let fits = |ms: f64, most: u32| (ms / shorter * (1.0 - 1e-12)).ceil() + 1.0 <= f64::from(most);
-            let all = fits(asked, MAX_ROUNDS) && fits(1.0, MAX_ROUNDS) && fits(0.5, MAX_LOOKS);
-            assert!(found.round == 2 || !all, "{ms} ms of {tick_ns} ns: a shorter round would do: {found:?}");
+            let fits =
+                |ms: f64, most: u32| (ms / shorter * (1.0 - 1e-12)).ceil() + 1.0 <= f64::from(most);
+            let all =
+                fits(asked, MAX_ROUNDS) && fits(1.0, MAX_ROUNDS) && fits(0.5, MAX_DEBOUNCE_SAMPLES);
+            assert!(
+                found.round == 2 || !all,
+                "{ms} ms of {tick_ns} ns: a shorter round would do: {found:?}"
+            );
         }
     }
     // Decimals are exact: this time exceeds whole rounds in its last digit, which a float would
@@ -92,7 +112,9 @@ fn times_are_rounded_up_and_the_shortest_round_is_chosen() {
 
 #[test]
 fn figures_are_the_counted_times() {
-    let machine = read(&format!("[machine]\n[machine.guard]\nwatchdog_ms = 99.99\nenable_ms = 0\n{AXIS}")).unwrap();
+    let machine =
+        read(&format!("[machine]\n[machine.guard]\nwatchdog_ms = 99.99\nenable_ms = 0\n{AXIS}"))
+            .unwrap();
     let figures = machine.engine().guard_figures();
     assert!((figures.round_us - 32.0).abs() < 1e-9);
     assert_eq!(figures.watchdog_ms, Some(Between { least: 100.0, most: 100.033 }));
@@ -103,17 +125,29 @@ fn figures_are_the_counted_times() {
 
 #[test]
 fn stop_accel_sets_the_ramp() {
-    let stop = |line: &str| read(&format!("[machine]\n{AXIS}{line}\n")).map(|machine| machine.axes[0].stop);
+    let stop = |line: &str| {
+        read(&format!("[machine]\n{AXIS}{line}\n")).map(|machine| machine.axes[0].stop)
+    };
     assert_eq!(stop("stop_accel = 10_000").unwrap(), 922_337_203_685);
     // A quarter of a step per tick^2 is 5e10 units/s^2 in this machine.
     assert_eq!(stop("stop_accel = 5e10").unwrap(), 1 << 62);
     let refused = |line: &str| stop(line).unwrap_err();
     let error = refused("stop_accel = 5.0000001e10");
-    assert!(error.message.contains("stop_accel is 50000001000 units/s^2 (250000005000 steps/s^2)"), "{error}");
+    assert!(
+        error.message.contains("stop_accel is 50000001000 units/s^2 (250000005000 steps/s^2)"),
+        "{error}"
+    );
     assert_eq!(error.line_column(), Some((8, 14)));
-    assert!(error.help.unwrap().ends_with("to 50000000000 units/s^2 (250000000000 steps/s^2) can be counted"));
+    assert!(
+        error
+            .help
+            .unwrap()
+            .ends_with("to 50000000000 units/s^2 (250000000000 steps/s^2) can be counted")
+    );
     assert!(refused("stop_accel = 1e-9").message.contains("not from 2^-64"));
-    for (value, says) in [("0", "must be over zero"), ("-3", "must be over zero"), ("nan", "not a usable number")] {
+    for (value, says) in
+        [("0", "must be over zero"), ("-3", "must be over zero"), ("nan", "not a usable number")]
+    {
         assert!(refused(&format!("stop_accel = {value}")).message.contains(says), "{value}");
     }
     // An acceleration limit of up to half a step is valid for planning; a ramp uses a quarter at
@@ -130,8 +164,16 @@ fn mistake_in_the_guard_is_refused_at_its_place() {
             15,
             "watchdog_ms = 4192.2561: with ticks of 1000 ns at most 4192.256 can be counted",
         ),
-        ("enable_ms = 5000", 13, "enable_ms = 5000: with ticks of 1000 ns at most 4192.256 can be counted"),
-        ("debounce_us = 129_025", 15, "debounce_us = 129025: with ticks of 1000 ns at most 129024 can be counted"),
+        (
+            "enable_ms = 5000",
+            13,
+            "enable_ms = 5000: with ticks of 1000 ns at most 4192.256 can be counted",
+        ),
+        (
+            "debounce_us = 129_025",
+            15,
+            "debounce_us = 129025: with ticks of 1000 ns at most 129024 can be counted",
+        ),
         ("watchdog_ms = 1e29", 15, "at most 4192.256 can be counted"),
         ("watchdog_ms = -1", 15, "must be zero or more"),
         ("enable_ms = -0.001", 13, "must be zero or more"),
@@ -147,7 +189,11 @@ fn mistake_in_the_guard_is_refused_at_its_place() {
         ("debounce_us = [1]", 15, "expected a number"),
         ("estop = \"none\"", 9, "unknown variant `none`, expected `high` or `low`"),
         ("estop = 1", 9, "expected a word in quotes"),
-        ("limits = \"both\"", 10, "unknown variant `both`, expected one of `none`, `pair`, `each`, `one`"),
+        (
+            "limits = \"both\"",
+            10,
+            "unknown variant `both`, expected one of `none`, `pair`, `each`, `one`",
+        ),
         ("limit_level = \"High\"", 15, "unknown variant `High`, expected `high` or `low`"),
         ("limit_stop = \"stop\"", 14, "unknown variant `stop`, expected `ramp` or `freeze`"),
         ("round = 64", 1, "unknown field `round`, expected one of `watchdog_ms`, `enable_ms`"),
@@ -175,7 +221,9 @@ fn default_that_cannot_be_counted_is_shortened() {
 
 #[test]
 fn machine_has_at_most_eight_axes() {
-    let axes = |count: usize| (0..count).map(|i| AXIS.replace("\"x\"", &format!("\"x{i}\""))).collect::<String>();
+    let axes = |count: usize| {
+        (0..count).map(|i| AXIS.replace("\"x\"", &format!("\"x{i}\""))).collect::<String>()
+    };
     for count in 1..=8 {
         let machine = read(&format!("[machine]\n{}", axes(count))).unwrap();
         assert_eq!(machine.build().is_ok(), count <= 6, "{count}");
@@ -187,5 +235,8 @@ fn machine_has_at_most_eight_axes() {
     assert_eq!(error.message, "9 axes: an engine drives at most 8");
     assert_eq!(error.line_column(), Some((2 + 8 * 6, 1)));
     let refused = read(&format!("[machine]\n{}", axes(7))).unwrap().build().unwrap_err();
-    assert_eq!(refused.to_string(), "7 axes: the parallel gateware drives at most 6; an engine may have up to 8");
+    assert_eq!(
+        refused.to_string(),
+        "7 axes: the parallel gateware drives at most 6; an engine may have up to 8"
+    );
 }

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_files::machine::{End, overrun};
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_files::{InputError, Machine, SourceText};
 
 const HOME: &str = "home = { toward = \"min\", seek_speed = 20, slow_speed = 2, move_off = 5, max_travel = 330, pull_off = 2, position = 0 }";
 
@@ -18,7 +18,7 @@ fn text(order: &str, travel: &str, home: &str) -> String {
 }
 
 fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 #[test]
@@ -29,7 +29,10 @@ fn missing_home_keys_follow_from_the_travel() {
     assert_eq!((home.toward, home.position), (End::Min, 0));
     assert_eq!((home.move_off, home.max_travel, home.pull_off), (400, 26_400, 160));
     // 1600 and 160 steps/s, and 80000 steps/s^2, in 2^-64 step per us and per us^2.
-    assert_eq!((home.start, home.seek, home.slow), (0, 29_514_790_517_935_282, 2_951_479_051_793_528));
+    assert_eq!(
+        (home.start, home.seek, home.slow),
+        (0, 29_514_790_517_935_282, 2_951_479_051_793_528)
+    );
     assert_eq!(home.accel, 1_475_739_525_896);
     let short = HOME.replace("move_off = 5, max_travel = 330, ", "");
     let machine = read(&text("", "travel = [-1, 300]", &short)).unwrap();
@@ -48,11 +51,15 @@ fn z_homes_first_by_default() {
         text("", "", home).split_once("\n\n").unwrap().1.replace("\"x\"", &format!("\"{name}\""))
     };
     let with = |order: &str| {
-        let axes: Vec<String> = ["x", "y", "Z", "a"].map(|name| axis(name, if name == "a" { "" } else { HOME })).into();
+        let axes: Vec<String> =
+            ["x", "y", "Z", "a"].map(|name| axis(name, if name == "a" { "" } else { HOME })).into();
         read(&format!("[machine]\n{order}\n{}", axes.concat()))
     };
     assert_eq!(with("").unwrap().home_order, [vec![2], vec![0, 1]]);
-    assert_eq!(with("home_order = [[\"y\"], [], [\"x\", \"Z\"]]").unwrap().home_order, [vec![1], vec![0, 2]]);
+    assert_eq!(
+        with("home_order = [[\"y\"], [], [\"x\", \"Z\"]]").unwrap().home_order,
+        [vec![1], vec![0, 2]]
+    );
     for (order, column, says) in [
         ("home_order = [[\"y\"], [\"x\"]]", 14, "home_order leaves out axis 'Z'"),
         ("home_order = [[\"y\", \"x\"], [\"y\", \"Z\"]]", 28, "home_order names axis 'y' twice"),
@@ -94,7 +101,11 @@ fn mistake_in_homing_is_refused_at_its_place() {
             "max_travel is 5 units (400 steps): not over move_off, which is 5 units (400 steps)",
         ),
         ("max_travel = 330", "max_travel = ^1e9", "max_travel is over 2147483647 steps"),
-        ("pull_off = 2", "pull_off = ^0.0125", "pull_off is 0.0125 units (1 steps): the axis would rest on its switch"),
+        (
+            "pull_off = 2",
+            "pull_off = ^0.0125",
+            "pull_off is 0.0125 units (1 steps): the axis would rest on its switch",
+        ),
         ("pull_off = 2", "pull_off = ^301", "pull_off ends outside of travel"),
         ("position = 0", "position = ^-0.1", "position is outside of travel"),
         ("position = 0", "position = ^1e20", "position is over 2147483647 steps from zero"),
@@ -147,9 +158,12 @@ fn approach_is_at_most_a_step_per_sample_of_the_limit() {
     // possible.
     assert!(with("watchdog_ms = 4000").is_ok());
     let fast = HOME.replace("slow_speed = 2", "slow_speed = 15");
-    let slow_looks = format!("{}[machine.guard]\nwatchdog_ms = 4000\n", text("", "", &fast));
-    let error = read(&slow_looks).unwrap_err();
-    assert!(error.message.contains("slow_speed is over a step between two looks at the switch"), "{error}");
+    let slow_samples = format!("{}[machine.guard]\nwatchdog_ms = 4000\n", text("", "", &fast));
+    let error = read(&slow_samples).unwrap_err();
+    assert!(
+        error.message.contains("slow_speed is over a step between two samples of the switch"),
+        "{error}"
+    );
     assert_eq!(error.line_column(), Some((11, fast.find("15").unwrap() + 1)));
     assert!(read(&text("", "", &fast)).is_ok(), "the usual round is 32 us");
 }

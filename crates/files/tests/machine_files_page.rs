@@ -4,15 +4,15 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::ChosenTick;
-use carrystep_files::{Machine, MoveFile, Source};
+use carrystep_files::{Machine, MoveFile, SourceText};
 
 const PAGE: &str = include_str!("../../../docs/machine-files.md");
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n\
                     driver = \"a4988\"\n";
 const MOVE: &str = "[[move]]\nprofile = \"ranade\"\nto = { x = 1 }\n";
 
-fn source(text: &str) -> Source {
-    Source { path: "page.toml".into(), text: text.into() }
+fn source(text: &str) -> SourceText {
+    SourceText { path: "page.toml".into(), text: text.into() }
 }
 
 fn machine(text: &str) -> Machine {
@@ -64,12 +64,15 @@ fn page_lists_the_keys_of_the_reader() {
 fn page_gives_the_defaults_of_the_reader() {
     // A default in backticks alone is a literal value.
     let given = |heading| {
-        let literal = |cell: &str| cell.starts_with('`') && cell.ends_with('`') && cell.matches('`').count() == 2;
+        let literal = |cell: &str| {
+            cell.starts_with('`') && cell.ends_with('`') && cell.matches('`').count() == 2
+        };
         let rows = rows(heading).into_iter().filter(|row| row.len() > 2 && literal(row[2]));
         rows.map(|row| format!("{} = {}\n", quoted(row[0]), quoted(row[2]))).collect::<Vec<_>>()
     };
     let [top, axis, guard, link] =
-        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"].map(given);
+        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
+            .map(given);
     assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (4, 1, 7, 2));
     let bare = format!("{:?}", machine(&format!("[machine]\n{AXIS}")));
     let full = format!(
@@ -81,7 +84,12 @@ fn page_gives_the_defaults_of_the_reader() {
     );
     assert_eq!(format!("{:?}", machine(&full)), bare);
     let moved = |more: &str| {
-        format!("{:?}", MoveFile::from_source(source(&format!("{MOVE}{more}[machine]\n{AXIS}"))).unwrap().moves[0].path)
+        format!(
+            "{:?}",
+            MoveFile::from_source(source(&format!("{MOVE}{more}[machine]\n{AXIS}"))).unwrap().moves
+                [0]
+            .path
+        )
     };
     assert_eq!(moved(&given("### `[[move]]`").concat()), moved(""));
 }
@@ -96,7 +104,9 @@ fn page_gives_the_ticks_that_are_chosen() {
             .split(" | ")
             .map(|cell| cell.trim_end_matches(" ns").parse().unwrap())
             .collect();
-        let chosen = |phases| ChosenTick::new(mhz.parse::<u64>().unwrap() * 1_000_000, phases, 6).unwrap().tick_ns;
+        let chosen = |phases| {
+            ChosenTick::new(mhz.parse::<u64>().unwrap() * 1_000_000, phases, 6).unwrap().tick_ns
+        };
         assert_eq!(ticks, [chosen(16), chosen(4)], "{mhz} MHz");
         seen += 1;
     }
@@ -131,13 +141,20 @@ fn page_gives_the_ranges_of_the_guard() {
 
 #[test]
 fn examples_are_valid_and_the_first_has_every_key() {
-    let blocks: Vec<&str> = PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let blocks: Vec<&str> =
+        PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     machine(blocks[0]);
-    for heading in ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"] {
+    for heading in
+        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
+    {
         for row in rows(heading) {
             let key = quoted(row[0]);
             let table = ["guard", "link", "axis"].contains(&key);
-            let there = blocks[0].contains(&if table { format!("machine.{key}]") } else { format!("\n{key} = ") });
+            let there = blocks[0].contains(&if table {
+                format!("machine.{key}]")
+            } else {
+                format!("\n{key} = ")
+            });
             assert!(there, "{key}");
         }
     }
@@ -148,5 +165,8 @@ fn examples_are_valid_and_the_first_has_every_key() {
     let two = format!("{AXIS}{}", AXIS.replace("\"x\"", "\"y\""));
     let (first, moves) = blocks[1].split_once("\n\n").unwrap();
     assert!(first.starts_with("machine_file = "));
-    assert_eq!(MoveFile::from_source(source(&format!("{moves}[machine]\n{two}"))).unwrap().moves.len(), 1);
+    assert_eq!(
+        MoveFile::from_source(source(&format!("{moves}[machine]\n{two}"))).unwrap().moves.len(),
+        1
+    );
 }

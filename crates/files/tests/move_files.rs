@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::ProfileKind;
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 
 const MACHINE: &str = "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\n\
     accel_limit = 5000\ndriver = \"a4988\"\n[[machine.axis]]\nname = \"y\"\nsteps_per_unit = 1\nspeed_limit = 1000\n\
@@ -11,12 +11,13 @@ const MACHINE: &str = "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit
 
 fn file(moves: &str) -> MoveFile {
     let text = format!("{MACHINE}{moves}");
-    MoveFile::from_source(Source { path: "move.toml".into(), text: text.into() }).unwrap()
+    MoveFile::from_source(SourceText { path: "move.toml".into(), text: text.into() }).unwrap()
 }
 
 /// A file of moves of the axis x alone, one for each distance.
 fn along_x(distances: &[&str]) -> MoveFile {
-    let to = |distance: &&str| format!("[[move]]\nprofile = \"ranade\"\nto = {{ x = {distance} }}\n");
+    let to =
+        |distance: &&str| format!("[[move]]\nprofile = \"ranade\"\nto = {{ x = {distance} }}\n");
     file(&distances.iter().map(to).collect::<String>())
 }
 
@@ -53,7 +54,10 @@ fn axis_without_a_distance_does_not_move() {
     assert_eq!(file.moves[1].steps, [0, 0]);
     assert_eq!(file.moves[0].time, Some("0.5".parse().unwrap()));
     assert_eq!(file.moves[1].time, None);
-    assert_eq!((file.moves[0].profile, file.moves[1].profile), (ProfileKind::Constant, ProfileKind::Trapezoid));
+    assert_eq!(
+        (file.moves[0].profile, file.moves[1].profile),
+        (ProfileKind::Constant, ProfileKind::Trapezoid)
+    );
 }
 
 #[test]

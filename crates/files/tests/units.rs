@@ -3,17 +3,19 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::link::{BuildId, Line};
-use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, Source};
+use carrystep_core::link::{BuildId, LineKind};
+use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, SourceText};
 
 /// A machine with one axis that has these lines.
 fn read(lines: &str) -> Result<Machine, InputError> {
-    let text = format!("[machine]\n[[machine.axis]]\nname = \"x\"\naccel_limit = 4000\ndriver = \"tmc2209\"\n{lines}");
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    let text = format!(
+        "[machine]\n[[machine.axis]]\nname = \"x\"\naccel_limit = 4000\ndriver = \"tmc2209\"\n{lines}"
+    );
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 fn build_id(machine: &Machine) -> BuildId {
-    Line::Spi.build_id(&machine.engine())
+    LineKind::Spi.build_id(&machine.engine())
 }
 
 fn number(text: &str) -> BigDecimal {
@@ -36,9 +38,17 @@ fn mechanics_give_the_same_build_as_steps_and_seconds() {
         assert_eq!(build_id(&machine), build_id(&plain), "{lines}");
         let (axis, same) = (&machine.axes[0], &plain.axes[0]);
         assert_eq!(axis.steps_per_unit, same.steps_per_unit, "{lines}");
-        assert_eq!((&axis.speed_limit, &axis.start_speed), (&same.speed_limit, &same.start_speed), "{lines}");
+        assert_eq!(
+            (&axis.speed_limit, &axis.start_speed),
+            (&same.speed_limit, &same.start_speed),
+            "{lines}"
+        );
     }
-    assert_ne!(build_id(&read(&PLAIN.replace("80", "90")).unwrap()), build_id(&plain), "a stop ramp that differs");
+    assert_ne!(
+        build_id(&read(&PLAIN.replace("80", "90")).unwrap()),
+        build_id(&plain),
+        "a stop ramp that differs"
+    );
 }
 
 #[test]
@@ -53,7 +63,8 @@ fn periodic_steps_per_unit_round_as_the_fraction_does() {
         )
     };
     let moved = |to: &str| {
-        let file = MoveFile::from_source(Source { path: "m".into(), text: text(to).into() }).unwrap();
+        let file =
+            MoveFile::from_source(SourceText { path: "m".into(), text: text(to).into() }).unwrap();
         (file.moves[0].steps[0], file.moves[0].rounding[0])
     };
     assert_eq!(moved("45"), (400, 0.0));
@@ -64,14 +75,25 @@ fn periodic_steps_per_unit_round_as_the_fraction_does() {
     let machine = read(axis).unwrap();
     // 1000 / 60 x 3200 / 360 = 148.148148... steps/s.
     let speed = &machine.axes[0].speed_limit;
-    assert!(*speed > number("148.148148148148148148148148148") && *speed < number("148.148148148148148148148148149"));
+    assert!(
+        *speed > number("148.148148148148148148148148148")
+            && *speed < number("148.148148148148148148148148149")
+    );
 }
 
 #[test]
 fn contradictory_or_incomplete_mechanics_are_refused_at_their_place() {
     let rows = [
-        ("steps_per_unit = 80\nlead = 40\nspeed_limit = 1\n", 7, "both steps_per_unit and lead are given"),
-        ("steps_per_unit = 80\nmicrosteps = 4\nspeed_limit = 1\n", 7, "both steps_per_unit and microsteps are given"),
+        (
+            "steps_per_unit = 80\nlead = 40\nspeed_limit = 1\n",
+            7,
+            "both steps_per_unit and lead are given",
+        ),
+        (
+            "steps_per_unit = 80\nmicrosteps = 4\nspeed_limit = 1\n",
+            7,
+            "both steps_per_unit and microsteps are given",
+        ),
         ("lead = 40\nspeed_limit = 1\n", 6, "missing field: steps_per_rev and microsteps"),
         ("steps_per_rev = 200\nmicrosteps = 4\nspeed_limit = 1\n", 6, "missing field: lead"),
         ("speed_limit = 1\n", 2, "missing field `steps_per_unit`"),
@@ -86,9 +108,21 @@ fn contradictory_or_incomplete_mechanics_are_refused_at_their_place() {
             8,
             "start_speed_per_min is over speed_limit_per_min",
         ),
-        ("lead = 0\nsteps_per_rev = 200\nmicrosteps = 4\nspeed_limit = 1\n", 6, "lead = 0: must be over zero"),
-        ("lead = 4\nsteps_per_rev = 0\nmicrosteps = 4\nspeed_limit = 1\n", 7, "steps_per_rev = 0: must be over zero"),
-        ("unit = \"mm per turn\"\nsteps_per_unit = 80\nspeed_limit = 1\n", 6, "\"mm per turn\" cannot name a unit"),
+        (
+            "lead = 0\nsteps_per_rev = 200\nmicrosteps = 4\nspeed_limit = 1\n",
+            6,
+            "lead = 0: must be over zero",
+        ),
+        (
+            "lead = 4\nsteps_per_rev = 0\nmicrosteps = 4\nspeed_limit = 1\n",
+            7,
+            "steps_per_rev = 0: must be over zero",
+        ),
+        (
+            "unit = \"mm per turn\"\nsteps_per_unit = 80\nspeed_limit = 1\n",
+            6,
+            "\"mm per turn\" cannot name a unit",
+        ),
         ("unit = \"\"\nsteps_per_unit = 80\nspeed_limit = 1\n", 6, "\"\" cannot name a unit"),
     ];
     for (lines, line, says) in rows {
@@ -101,8 +135,12 @@ fn contradictory_or_incomplete_mechanics_are_refused_at_their_place() {
 
 #[test]
 fn errors_give_the_axis_unit_and_steps() {
-    let fast = read("unit = \"mm\"\nsteps_per_unit = 80\nspeed_limit_per_min = 600_000\n").unwrap_err();
-    assert_eq!(fast.message, "speed_limit is 10000 mm/s (800000 steps/s): half a step per tick or more");
+    let fast =
+        read("unit = \"mm\"\nsteps_per_unit = 80\nspeed_limit_per_min = 600_000\n").unwrap_err();
+    assert_eq!(
+        fast.message,
+        "speed_limit is 10000 mm/s (800000 steps/s): half a step per tick or more"
+    );
     assert_eq!(fast.help.unwrap(), "with ticks of 1000 ns stay under 6250 mm/s (500000 steps/s)");
     let steps = read("steps_per_unit = 1\nspeed_limit = 800_000\n").unwrap_err();
     assert_eq!(steps.message, "speed_limit is 800000 steps/s: half a step per tick or more");
@@ -112,11 +150,14 @@ fn errors_give_the_axis_unit_and_steps() {
 fn fewer_phases_are_proposed_where_a_long_tick_forbids_a_speed() {
     let text = "[machine]\nclock_hz = 27_000_000\n[[machine.axis]]\nname = \"x\"\nunit = \"mm\"\nsteps_per_unit = 80\n\
                 speed_limit = 500\naccel_limit = 100\ndriver = \"tmc2209\"\n";
-    let at = |text: &str| Machine::from_source(&Source { path: "m".into(), text: text.into() });
+    let at = |text: &str| Machine::from_source(&SourceText { path: "m".into(), text: text.into() });
     let help = at(text).unwrap_err().help.unwrap();
     assert!(help.ends_with("16000 ns is long: `phases = 4` would allow 4000 ns"), "{help}");
     let quick = at(&text.replace("27_000_000", "27_000_000\nphases = 4")).unwrap();
-    assert_eq!((quick.timebase.tick_ns(), quick.chosen_tick.unwrap().fewer_phases_ns), (4000, None));
+    assert_eq!(
+        (quick.timebase.tick_ns(), quick.chosen_tick.unwrap().fewer_phases_ns),
+        (4000, None)
+    );
 }
 
 #[test]
@@ -128,14 +169,18 @@ fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
             )
         };
         let text = format!("[machine]\n{head}\n{}", (0..axes).map(axis).collect::<String>());
-        Machine::from_source(&Source { path: "m".into(), text: text.into() })
+        Machine::from_source(&SourceText { path: "m".into(), text: text.into() })
     };
-    for (mhz, tick_ns) in [(25, 3200), (27, 16_000), (50, 1600), (80, 1000), (100, 800), (125, 640)] {
+    for (mhz, tick_ns) in [(25, 3200), (27, 16_000), (50, 1600), (80, 1000), (100, 800), (125, 640)]
+    {
         let machine = at(&format!("clock_hz = {mhz}_000_000"), 6).unwrap();
         assert_eq!(machine.timebase.tick_ns(), tick_ns, "{mhz} MHz");
         machine.engine().check().unwrap();
         // At the default clock the tick is not chosen.
-        assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), (mhz != 80).then_some(tick_ns));
+        assert_eq!(
+            machine.chosen_tick.map(|chosen| chosen.tick_ns),
+            (mhz != 80).then_some(tick_ns)
+        );
         // With the same tick given explicitly the machine is equal, and no tick was chosen.
         let given = at(&format!("clock_hz = {mhz}_000_000\ntick_ns = {tick_ns}"), 6).unwrap();
         assert_eq!((given.timebase, given.chosen_tick), (machine.timebase, None));
@@ -144,7 +189,7 @@ fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
         let machine = at(head, 6).unwrap();
         assert_eq!((machine.timebase.tick_ns(), machine.chosen_tick), (1000, None), "{head}");
     }
-    // Seven turns do not fit into its tick.
+    // Seven time slots do not fit into its tick.
     for (axes, tick_ns) in [(7, 1200), (8, 1400)] {
         let machine = at("", axes).unwrap();
         assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(tick_ns));

@@ -3,10 +3,10 @@
 //!
 //! ```text
 //!             .------.  beat, axis                                    estop, kick, enable
-//!             | turn |-----+----------+-----------+                         v
-//!             '------'     v          v           v                     .-------.
-//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | watch |
-//!                        | queue |->| store |==>| adder |-------.       '-------'
+//!             | slot |-----+----------+-----------+                         v
+//!             '------'     v          v           v                     .------------.
+//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | supervisor |
+//!                        | queue |->| store |==>| adder |-------.       '------------'
 //!                        '-------'  '-------'<==|       |       v           v
 //!                          ^ pulses, losses     '-------'   .-------.   .-------.
 //!                          |                        v V     | wheel |   | stops |
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! In each tick every axis has a time slot of 13 clocks, in which the adder advances its P, V and
-//! A. The code calls the slot `turn` and the clocks of a slot `beats`. Results of all time slots
+//! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
 //! Interface: the host writes segments word by word (`put`) into a queue of seven segments per
@@ -29,61 +29,71 @@
 //! clocks per axis and one more.
 //!
 //! This file contains the ports and the parts; `wiring` connects them. Further terms of the code:
-//! `wheel` is the event wheel, in which pending steps wait for their phase; `owed` is a step that
+//! `event_wheel` holds pending steps, which wait for their phase; `held_back` is a step that
 //! the pin timing holds back; `late` means that a second step arrived while one was held back;
 //! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
-use crate::primitives::constant::{Literal, Parameter};
-use crate::primitives::lanes::Lanes;
+use crate::parameters::CLOCKS_PER_TICK;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
+use carrystep_core::engine::least_clocks;
 use rust_hdl::prelude::*;
 
 pub mod adder;
-pub mod homes;
+pub mod event_wheel;
+pub mod homing_control;
+pub mod layout;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
+pub mod resets;
 mod sim;
 pub mod stops;
 pub mod store;
-pub mod turn;
-pub mod watch;
-pub mod wheel;
+pub mod supervisor;
+pub mod time_slot;
 mod wiring;
 
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
-use homes::Homes;
-use limits::Limits;
+use event_wheel::EventWheel;
+use homing_control::HomingControl;
+use limits::LimitSwitches;
 use pulser::Pulser;
 use queue::Queue;
+use resets::Resets;
 use stops::Stops;
 use store::Store;
-use turn::Turn;
-use watch::Watch;
-use wheel::Wheel;
+use supervisor::Supervisor;
+use time_slot::TimeSlot;
 
 /// The engine of N axes, 1 to 8.
 #[derive(LogicBlock, Default)]
 pub struct Engine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host offers a word of a segment and holds it until the engine accepts it.
+    /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
+    /// to a tick while the queue has space.
     pub put_valid: Input<Bit>,
-    /// The axis of the offered word. Also the axis whose free queue space `room` reports.
+    /// The axis of the offered word, as a number from 0. Also the axis whose free queue space `room`
+    /// reports.
     pub put_axis: Input<Word<3>>,
-    /// The number of the word: 0 is ticks - 1, 1 and 2 V, 3 and 4 A, 5 and 6 J, low half first; 7
-    /// commits the segment.
+    /// The number of the word. The words of a segment come in order: 0 is its duration in ticks less
+    /// 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
+    /// segment.
     pub put_word: Input<Word<3>>,
     /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     pub put_data: Input<Word<32>>,
     /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
-    /// The host offers a start and holds it until the engine accepts it.
+    /// The host offers a start and holds it until the engine accepts it, which it does in the last
+    /// clock of a tick.
     pub start_valid: Input<Bit>,
     /// The axes to start; bit i is axis i.
     pub start_mask: Input<Word<N>>,
@@ -91,28 +101,37 @@ pub struct Engine<const N: usize> {
     pub start_ready: Signal<Out, Bit>,
     /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
-    /// The host requests a controlled stop by a ramp.
+    /// Stops the engine and returns it to its state at configuration; the positions stay. It is
+    /// synchronous, unlike the pins, and begins in any clock. A host that does not need it ties it
+    /// to 0.
+    pub reset: Input<Bit>,
+    /// The host requests a controlled stop by a ramp; asserted for one clock or longer.
     pub stop: Input<Bit>,
-    /// The host has broken the segment protocol. The engine freezes all axes.
+    /// The host has broken the segment protocol; asserted for one clock or longer. The engine
+    /// freezes all axes.
     pub broken: Input<Bit>,
     /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Input<Bit>,
     /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
     /// axis i.
     pub home_mask: Input<Word<N>>,
-    /// A sign of life of the host: the watchdog restarts.
+    /// A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     pub kick: Input<Bit>,
-    /// The host requests power for the motor drivers.
+    /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Input<Bit>,
-    /// The e-stop pin; asynchronous.
+    /// The e-stop pin; asynchronous. The parameter `ESTOP_LOW` gives its active level. It stops the
+    /// axes if it is active for a whole tick.
     pub estop: Input<Bit>,
-    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous.
+    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS` tells
+    /// how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
     pub limit_min: Input<Word<N>>,
-    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous.
+    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
+    /// only if `LIMITS` is 1.
     pub limit_max: Input<Word<N>>,
     /// The axis that the host reads.
     pub get_axis: Input<Word<3>>,
-    /// The item that the host reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
+    /// The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
+    /// complement; 3 the number of discarded steps.
     pub get_item: Input<Word<2>>,
     /// The item that the engine returns.
     pub get_data: Signal<Out, Word<32>>,
@@ -126,10 +145,10 @@ pub struct Engine<const N: usize> {
     pub room: Signal<Out, Word<3>>,
     /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
-    /// The STEP pins.
-    pub step: Lanes<Signal<Out, Bit>, N>,
-    /// The DIR pins; 1 is backward.
-    pub dir: Lanes<Signal<Out, Bit>, N>,
+    /// The STEP pins; bit i is axis i. A rising edge is a step.
+    pub step: PerAxis<Signal<Out, Bit>, N>,
+    /// The DIR pins; bit i is axis i; 1 is backward.
+    pub dir: PerAxis<Signal<Out, Bit>, N>,
     /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
     /// All axes are at rest and no start is armed.
@@ -138,9 +157,14 @@ pub struct Engine<const N: usize> {
     pub fault: Signal<Out, Bit>,
     /// The stop is complete: no axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
+    /// The engine is returning to its state at configuration, after `reset`.
+    pub resetting: Signal<Out, Bit>,
+    /// The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog,
+    /// 4 overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
+    /// asserted.
     pub cause: Signal<Out, Word<3>>,
-    /// The axes that caused the stop; bit i is axis i.
+    /// The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
+    /// asserted.
     pub culprits: Signal<Out, Word<N>>,
     /// A start is armed.
     pub armed: Signal<Out, Bit>,
@@ -149,23 +173,25 @@ pub struct Engine<const N: usize> {
     pub ready: Signal<Out, Bit>,
     /// The axes that wait for their limit; bit i is axis i.
     pub homing: Signal<Out, Word<N>>,
-    /// Axes start at the end of this clock.
+    /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
-    turn: Turn<N>,
+    time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
     pub(crate) store: Store,
-    wheel: Wheel<N>,
-    limits: Limits<N>,
-    homes: Homes<N>,
+    event_wheel: EventWheel<N>,
+    limits: LimitSwitches<N>,
+    homing_control: HomingControl<N>,
     stops: Stops<N>,
-    watch: Watch,
-    pulser: Lanes<Pulser, N>,
+    resets: Resets,
+    supervisor: Supervisor,
+    pulser: PerAxis<Pulser, N>,
     waits: Register<Bit>, // `armed`
     // The axes of the start. The mask rotates with the time slots: bit 0 is the axis of the present
     // slot.
     mask: Register<Word<N>>,
     going: Register<Bit>,
+    // The word of the host was accepted in the present time slot, and is not a commit.
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
     unfed: Register<Bit>,  // an axis of the mask has no waiting segment
@@ -186,38 +212,44 @@ pub struct Engine<const N: usize> {
     rests: Signal<Local, Bit>,
     pins_busy: Signal<Local, Bit>,
     late: Signal<Local, Word<N>>,
-    late_bit: Lanes<Signal<Local, Word<N>>, N>,
-    counted: Lanes<Signal<Local, Word<6>>, N>,
+    late_bit: PerAxis<Signal<Local, Word<N>>, N>,
+    counted: PerAxis<Signal<Local, Word<6>>, N>,
     counts: Signal<Local, Word<6>>,
     none: Literal<6, 0>,
     no_axes: Literal<N, 0>,
-    one_axis: Lanes<Parameter<N>, N>,
+    one_axis: PerAxis<Parameter<N>, N>,
     commit: Literal<3, 7>,
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
+    clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
 impl<const N: usize> Engine<N> {
     /// Makes the engine of a build. The caller has checked the build and ensures that it has N
     /// axes.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
-        let mut pulser = Lanes::<Pulser, N>::default();
+        let mut pulser = PerAxis::<Pulser, N>::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
+        let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
+        let least = u64::from(least_clocks(N, build.timebase.phases()));
         Ok(Self {
-            turn: Turn::new(),
+            time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop),
-            wheel: Wheel::new(&build.timebase),
-            limits: Limits::new(&build.guard),
-            homes: Homes::new(),
+            event_wheel: EventWheel::new(&build.timebase),
+            limits: LimitSwitches::new(&build.guard),
+            homing_control: HomingControl::new(),
             stops: Stops::new(&build.guard),
-            watch: Watch::new(&build.guard),
+            supervisor: Supervisor::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
+            clocks_per_tick_too_few_for_the_axes: ParameterRefusal::of(
+                &clocks.whole().is_less(&Formula::number(least)),
+            ),
             to_top: Parameter::new(N as u64 - 1),
-            one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
+            one_axis: PerAxis::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),
             rest_2: Register::new(true),
             ..Self::default()

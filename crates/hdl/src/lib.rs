@@ -21,6 +21,7 @@ pub mod engine;
 pub mod line;
 pub mod link;
 pub mod parallel;
+pub mod parameters;
 pub mod parts;
 pub mod primitives;
 mod sim;
@@ -28,7 +29,7 @@ mod sim;
 pub use engine::{AnyEngine, EngineSim, engine};
 pub use line::{Spi, SpiSim, UartLine, UartSim};
 pub use link::{AnyLink, LinkSim, link};
-pub use parallel::{Axis, AxisSim, SixAxis, SixAxisSim};
+pub use parallel::{AxisSim, ParallelAxis, SixAxis, SixAxisSim};
 
 use carrystep_core::build::MAX_CLOCKS;
 use carrystep_core::engine::EngineError;
@@ -40,7 +41,7 @@ pub enum HdlError {
     /// A pin timing is outside the range of the timers, 1 to [`MAX_CLOCKS`] clocks.
     #[error("pin timing {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
     PinTiming {
-        /// The name of the timing: width, gap, setup or hold.
+        /// The name of the timing: step_high, step_low, dir_setup or dir_hold.
         name: &'static str,
         /// The requested time in clocks.
         clocks: u32,

@@ -3,17 +3,17 @@
 //! ```text
 //!          .------. received .---------. put, start, home, control
 //!  rx ---->|      |--------->|         |--------------------------------> engine
-//!          | line |          | machine | state, room, culprits, homing
+//!          | line |          |processor| state, room, culprits, homing
 //!          |      | answer   |         |<-------------------------------- engine
 //!  tx <----|      |<---------|         | facts  .-------. get, latch
 //!          '------'          '---------'<-------| facts |<--------------- engine
 //!                                               '-------'
 //! ```
 //!
-//! A small processor with its program ([`machine`]) handles the protocol. It stores a request in
+//! A small processor with its program ([`processor`]) handles the protocol. It stores a request in
 //! block RAM until the CRC has arrived and is correct; only then does a word of the request reach
-//! the engine. The module [`mod@facts`] stores what the host can read: the constants of the build
-//! and the state of each axis.
+//! the engine. The module [`register_mirror`] stores what the host can read: the constants of the
+//! build and the state of each axis.
 //!
 //! Interface: bytes on the side of the line, the ports of the engine on the other side. The link
 //! accepts any [`crate::line`].
@@ -22,21 +22,24 @@
 //! registers of the processor. The same protocol without a processor would need hundreds of logic
 //! cells.
 
+use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
+use carrystep_core::link::registers::{self, BUILD_HIGH, BUILD_LOW, WATCHDOG_TICKS};
 use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
-pub mod check;
-pub mod facts;
-pub mod machine;
+pub mod crc;
+pub mod processor;
+pub mod register_mirror;
 mod sim;
 
 pub use sim::{AnyLink, LinkSim, link};
 
-use self::facts::Facts;
-use machine::Machine;
+use processor::LinkProcessor;
+use register_mirror::RegisterMirror;
 
 /// The link for an engine of N axes. Its ports are those of the line and of the engine.
 #[derive(LogicBlock, Default)]
@@ -75,7 +78,7 @@ pub struct Link<const N: usize> {
     pub start_ready: Input<Bit>,
     /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The host requests a controlled stop.
+    /// The host requests a controlled stop, as long as it is asserted.
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
@@ -85,7 +88,7 @@ pub struct Link<const N: usize> {
     pub home_mask: Signal<Out, Word<N>>,
     /// The host has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
-    /// The host requests power for the motor drivers.
+    /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Signal<Out, Bit>,
     /// The axis whose state the link reads from the engine.
     pub get_axis: Signal<Out, Word<3>>,
@@ -110,69 +113,93 @@ pub struct Link<const N: usize> {
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
-    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
+    /// The first cause of the stop, numbered as at the port `cause` of the engine.
     pub cause: Input<Word<3>>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.
     pub homing: Input<Word<N>>,
-    machine: Machine<N>,
-    facts: Facts,
+    processor: LinkProcessor<N>,
+    register_mirror: RegisterMirror,
 }
 
 impl<const N: usize> Link<N> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
-        Self { machine: Machine::new(&image()), facts: Facts::new(&facts(build, id)), ..Self::default() }
+        Self {
+            processor: LinkProcessor::new(&image()),
+            register_mirror: RegisterMirror::new(&formulas(build, id)),
+            ..Self::default()
+        }
     }
+}
+
+/// What the build says of itself: address, and the number as it follows from parameters of the Verilog.
+fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
+    let number = |value: u64| value as u32;
+    let build_id = BUILD_ID.of::<64>(id.0);
+    let rounds = WATCHDOG_ROUNDS.of::<32>(build.guard.watchdog).whole();
+    let silence = rounds * ROUND_TICKS.of::<32>(build.guard.round).whole();
+    let formula = |(address, fact): (u8, u32)| {
+        let formula = match address {
+            BUILD_LOW => build_id.bits(0),
+            BUILD_HIGH => build_id.bits(32),
+            registers::CLOCK_HZ => CLOCK_HZ.of(number(build.timebase.clock_hz())).whole(),
+            registers::TICK_NS => TICK_NS.of(number(build.timebase.tick_ns())).whole(),
+            WATCHDOG_TICKS => silence.clone(),
+            _ => Formula::number(fact.into()),
+        };
+        (address, formula)
+    };
+    facts(build, id).into_iter().map(formula).collect()
 }
 
 impl<const N: usize> Logic for Link<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        clock!(self, clock, machine, facts);
-        self.machine.received.next = self.received_valid.val();
-        self.machine.received_data.next = self.received.val();
-        self.answer.next = self.machine.a.val();
-        self.answer_valid.next = self.machine.answer_valid.val();
-        self.machine.answer_take.next = self.answer_take.val();
+        clock!(self, clock, processor, register_mirror);
+        self.processor.received.next = self.received_valid.val();
+        self.processor.received_data.next = self.received.val();
+        self.answer.next = self.processor.a.val();
+        self.answer_valid.next = self.processor.answer_valid.val();
+        self.processor.answer_take.next = self.answer_take.val();
 
-        self.put_valid.next = self.machine.put_valid.val();
-        self.put_axis.next = self.machine.a.val().get_bits::<3>(3);
-        self.put_word.next = self.machine.x.val().get_bits::<3>(2);
-        self.put_data.next = self.machine.put_data.val();
-        self.machine.put_ready.next = self.put_ready.val();
-        self.machine.room.next = self.room.val();
-        self.machine.room_valid.next = self.room_valid.val();
-        self.start_valid.next = self.machine.start_valid.val();
-        self.start_mask.next = self.machine.a.val().get_bits::<N>(0);
-        self.machine.start_ready.next = self.start_ready.val();
-        self.home_valid.next = self.machine.home_valid.val();
-        self.home_mask.next = self.machine.a.val().get_bits::<N>(0);
-        self.clear.next = self.machine.clear.val();
-        self.stop.next = self.machine.stop.val();
-        self.broken.next = self.machine.broken.val();
-        self.kick.next = self.machine.kick.val();
-        self.enable.next = self.machine.enable.val();
+        self.put_valid.next = self.processor.put_valid.val();
+        self.put_axis.next = self.processor.a.val().get_bits::<3>(3);
+        self.put_word.next = self.processor.x.val().get_bits::<3>(2);
+        self.put_data.next = self.processor.put_data.val();
+        self.processor.put_ready.next = self.put_ready.val();
+        self.processor.room.next = self.room.val();
+        self.processor.room_valid.next = self.room_valid.val();
+        self.start_valid.next = self.processor.start_valid.val();
+        self.start_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.processor.start_ready.next = self.start_ready.val();
+        self.home_valid.next = self.processor.home_valid.val();
+        self.home_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.clear.next = self.processor.clear.val();
+        self.stop.next = self.processor.stop.val();
+        self.broken.next = self.processor.broken.val();
+        self.kick.next = self.processor.kick.val();
+        self.enable.next = self.processor.enable.val();
 
-        self.machine.scanned.next = self.facts.scanned.val();
-        self.machine.fault.next = self.fault.val();
-        self.machine.halted.next = self.halted.val();
-        self.machine.idle.next = self.idle.val();
-        self.machine.ready.next = self.ready.val();
-        self.machine.armed.next = self.armed.val();
-        self.machine.cause.next = self.cause.val();
-        self.machine.culprits.next = self.culprits.val();
-        self.machine.homing.next = self.homing.val();
-        self.machine.facts.next = self.facts.data.val();
+        self.processor.scanned.next = self.register_mirror.scanned.val();
+        self.processor.fault.next = self.fault.val();
+        self.processor.halted.next = self.halted.val();
+        self.processor.idle.next = self.idle.val();
+        self.processor.ready.next = self.ready.val();
+        self.processor.armed.next = self.armed.val();
+        self.processor.cause.next = self.cause.val();
+        self.processor.culprits.next = self.culprits.val();
+        self.processor.homing.next = self.homing.val();
+        self.processor.facts.next = self.register_mirror.data.val();
 
-        self.facts.address.next = self.machine.x.val().get_bits::<7>(0);
-        self.facts.get_data.next = self.get_data.val();
-        self.facts.get_valid.next = self.get_valid.val();
-        self.facts.latch.next = self.latch.val();
-        self.facts.latch_axis.next = self.latch_axis.val();
-        self.get_axis.next = self.facts.get_axis.val();
-        self.get_item.next = self.facts.get_item.val();
+        self.register_mirror.address.next = self.processor.x.val().get_bits::<7>(0);
+        self.register_mirror.get_data.next = self.get_data.val();
+        self.register_mirror.get_valid.next = self.get_valid.val();
+        self.register_mirror.latch.next = self.latch.val();
+        self.register_mirror.latch_axis.next = self.latch_axis.val();
+        self.get_axis.next = self.register_mirror.get_axis.val();
+        self.get_item.next = self.register_mirror.get_item.val();
     }
 }
 
@@ -180,15 +207,29 @@ impl<const N: usize> Logic for Link<N> {
 mod tests {
     use super::*;
     use crate::sim::assert_synthesizes;
-    use carrystep_core::link::Line;
+    use carrystep_core::link::LineKind;
     use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn formulas_are_the_facts_of_the_build() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let mut build = EngineBuild::minimal(&build, 1);
+        build.guard.watchdog = 4095;
+        let id = LineKind::Spi.build_id(&build);
+        let values: Vec<_> = formulas(&build, id)
+            .iter()
+            .map(|(at, fact)| (*at, fact.value().value() as u32))
+            .collect();
+        assert_eq!(values, facts(&build, id));
+    }
 
     #[test]
     fn link_synthesizes() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let build = EngineBuild::minimal(&build, 1);
-        let id = Line::Spi.build_id(&build);
+        let id = LineKind::Spi.build_id(&build);
         assert_synthesizes(Link::<6>::new(&build, id), "carrystep_link");
     }
 }

@@ -10,6 +10,6 @@ pub mod sequencer;
 mod sim;
 pub mod six_axis;
 
-pub use axis::Axis;
+pub use axis::ParallelAxis;
 pub use sim::{AxisSim, SixAxisSim};
 pub use six_axis::SixAxis;

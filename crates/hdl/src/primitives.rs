@@ -2,7 +2,8 @@
 //! registers with a reset value, memories, words of bits, and constants that differ between builds.
 
 pub mod constant;
-pub mod lanes;
+pub mod formula;
 pub mod memory;
+pub mod per_axis;
 pub mod register;
 pub mod word;

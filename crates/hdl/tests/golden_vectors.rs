@@ -54,7 +54,9 @@ fn axis_produces_the_first_edges_of_the_golden_vectors() {
     for case in vectors["cases"].as_array().unwrap() {
         let first = case["first8"].as_array().unwrap();
         let edges = run(case, first.last().unwrap()[0].as_u64().unwrap());
-        let expected = first.iter().map(|edge| format!("{}:{}:{:+}", edge[0], edge[1], edge[2].as_i64().unwrap()));
+        let expected = first
+            .iter()
+            .map(|edge| format!("{}:{}:{:+}", edge[0], edge[1], edge[2].as_i64().unwrap()));
         assert_eq!(edges, expected.collect::<Vec<_>>(), "{}", case["name"]);
     }
 }

@@ -16,7 +16,7 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
-        let pins = [PinTiming { width: 5, gap: 5, setup: 2, hold: 2 }; AXES];
+        let pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 2, dir_hold: 2 }; AXES];
         let build = Build { timebase, phase: StartPhase::Half, pins };
         Self { core: SixAxisSim::new(&build).unwrap(), cycle: 0 }
     }
@@ -124,7 +124,7 @@ fn underrun_freezes_all_axes_until_clear() {
 fn step_rate_above_the_pin_timing_is_an_overrun() {
     let mut bench = Bench::new();
     let timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
-    let pins = [PinTiming { width: 40, gap: 40, setup: 1, hold: 1 }; AXES];
+    let pins = [PinTiming { step_high: 40, step_low: 40, dir_setup: 1, dir_hold: 1 }; AXES];
     bench.core = SixAxisSim::new(&Build { timebase, phase: StartPhase::Half, pins }).unwrap();
     bench.segment(4, Segment { ticks: 1000, v: i64::MAX, ..LAST });
     bench.start(1 << 4);

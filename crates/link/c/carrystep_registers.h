@@ -1,99 +1,101 @@
-/* What the gateware and its clients agree on: constants, the register map, the answer's fields.
+/* The protocol between the gateware and its hosts: constants, the register map, and the fields of
+ * an answer.
  *
- * Generated from crates/core/src/link by `cargo xtask generate`: change that, not this. */
+ * This file is generated from crates/core/src/link by `cargo xtask generate`: change that source
+ * instead. */
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
 
 #include <stdint.h>
 
-/* Ends a frame, and begins one. */
+/* Byte that begins and ends a frame. */
 #define CARRYSTEP_END 0xc0u
-/* Says that the next byte stands for another. */
+/* Escape byte: with the next byte it stands for END or ESC in a frame. */
 #define CARRYSTEP_ESC 0xdbu
-/* After ESC: END. */
+/* After ESC: the pair stands for END. */
 #define CARRYSTEP_ESC_END 0xdcu
-/* After ESC: ESC. */
+/* After ESC: the pair stands for ESC. */
 #define CARRYSTEP_ESC_ESC 0xddu
-/* CRC-32 of Ethernet and zlib, reflected: polynomial. */
+/* Polynomial of the CRC-32 of Ethernet and zlib, reflected. */
 #define CARRYSTEP_CRC_POLYNOMIAL UINT32_C(0xedb88320)
-/* What its register holds, not yet inverted, after a frame and its CRC. */
+/* Value of the CRC register, before its inversion, after a frame and its CRC. */
 #define CARRYSTEP_CRC_RESIDUE UINT32_C(0xdebb20e3)
-/* Bytes of a CRC. */
+/* Length of a CRC in bytes. */
 #define CARRYSTEP_CRC_BYTES 4u
-/* Set in an address: the frame writes. */
+/* Bit of the address that makes a request a write. */
 #define CARRYSTEP_WRITE 0x80u
-/* Sequence and address. */
+/* Length of the sequence number and the address of a request in bytes. */
 #define CARRYSTEP_REQUEST_HEAD 2u
-/* Words of a segment, the commit included. */
+/* Number of words of a segment, the commit included. */
 #define CARRYSTEP_SEGMENT_FRAME_WORDS 8u
-/* The longest request, without END and ESC. */
+/* Length of the longest request in bytes, without END and ESC. */
 #define CARRYSTEP_LONGEST_REQUEST 38u
-/* An answer, without END and ESC. */
+/* Length of an answer in bytes, without END and ESC. */
 #define CARRYSTEP_ANSWER_BYTES 15u
-/* First byte of an answer's data. */
+/* Number of the first data byte in an answer. */
 #define CARRYSTEP_ANSWER_DATA 7u
-/* Frames by which a repeated one may lie behind the next; so many may be on their way. */
+/* Number of writes that may be unacknowledged, and by which a repeated one may lie behind. */
 #define CARRYSTEP_WINDOW 0x7fu
-/* What IDENTITY holds. */
+/* Value of the register IDENTITY. */
 #define CARRYSTEP_IDENTITY_VALUE UINT32_C(0x50545343)
-/* The version of the protocol that this map belongs to. */
+/* Version of the protocol to which this register map belongs. */
 #define CARRYSTEP_PROTOCOL_VERSION UINT32_C(0x00000001)
-/* In CONTROL: power the drivers. */
+/* Bit of CONTROL: power the drivers. */
 #define CARRYSTEP_CONTROL_ENABLE UINT32_C(0x00000001)
-/* In CONTROL: stop all axes. */
+/* Bit of CONTROL: stop all axes. */
 #define CARRYSTEP_CONTROL_STOP UINT32_C(0x00000002)
-/* First address of the axes. */
+/* First address of the axes' registers. */
 #define CARRYSTEP_AXES_AT 0x40u
-/* Addresses of each axis. */
+/* Number of addresses of each axis. */
 #define CARRYSTEP_PER_AXIS 0x08u
-/* Most axes of a build. */
+/* Greatest number of axes of a build. */
 #define CARRYSTEP_MOST_AXES 0x08u
-/* Segments that can wait for an axis, beside the one that runs. */
+/* Number of segments that can wait for an axis, in addition to the one that runs. */
 #define CARRYSTEP_QUEUE_SEGMENTS 0x07u
 
-/* The map; for an axis, its register is CARRYSTEP_OF_AXIS(register, axis). */
+/* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
 #define CARRYSTEP_OF_AXIS(register, axis) ((register) + CARRYSTEP_PER_AXIS * (axis))
 
-/* "CSTP", low byte first: this is carrystep (read) */
+/* The bytes of "CSTP", low byte first, which identify carrystep (read) */
 #define CARRYSTEP_IDENTITY 0x00u
-/* version of this protocol (read) */
+/* Version of the protocol (read) */
 #define CARRYSTEP_PROTOCOL 0x01u
-/* build id, low half: a hash of this map and of all build parameters (read) */
+/* Build id, low half: a hash of register map and build parameters, for hosts to compare (read) */
 #define CARRYSTEP_BUILD_LOW 0x02u
-/* build id, high half (read) */
+/* Build id, high half (read) */
 #define CARRYSTEP_BUILD_HIGH 0x03u
-/* axes of this build (read) */
+/* Number of axes (read) */
 #define CARRYSTEP_AXIS_COUNT 0x04u
-/* clock, Hz (read) */
+/* Frequency of the clock in Hz (read) */
 #define CARRYSTEP_CLOCK_HZ 0x05u
-/* tick, ns (read) */
+/* Length of a tick in ns (read) */
 #define CARRYSTEP_TICK_NS 0x06u
-/* phases of a tick (read) */
+/* Number of phases in a tick (read) */
 #define CARRYSTEP_PHASES 0x07u
-/* ticks of silence after which the axes are stopped; 0: never (read) */
+/* Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
-/* bit 0: power the drivers; bit 1: stop all axes by their ramps (write) */
+/* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
 #define CARRYSTEP_CONTROL 0x20u
-/* axes that start together, a bit each, on the first tick at which all rest and have a segment (write) */
+/* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
-/* resume after a stop, whatever is written: queues empty, P at its start; the position stays (write) */
+/* Any value ends a complete stop: queues empty, P at its start value, position kept (write) */
 #define CARRYSTEP_CLEAR 0x22u
-/* axes, a bit each, whose next limit latches their position and stops only them (write) */
+/* Axes, one bit each: the next limit latches the position and ramps down this axis only (write) */
 #define CARRYSTEP_HOME 0x23u
-/* fraction of a step, low half, 2^-64 step (read, axis 0) */
+/* P, the fraction of a step in units of 2^-64 step, low half (read, axis 0) */
 #define CARRYSTEP_P_LOW 0x40u
-/* fraction of a step, high half (read, axis 0) */
+/* P, high half (read, axis 0) */
 #define CARRYSTEP_P_HIGH 0x41u
-/* steps forward less steps back, two's complement (read, axis 0) */
+/* Position: steps forward minus steps backward, two's complement (read, axis 0) */
 #define CARRYSTEP_POSITION 0x42u
-/* steps that freezes have discarded (read, axis 0) */
+/* Number of steps that freezes have discarded since configuration (read, axis 0) */
 #define CARRYSTEP_DISCARDED 0x43u
-/* position when the limit was reached in homing (read, axis 0) */
+/* Position in steps at which the limit was reached in homing (read, axis 0) */
 #define CARRYSTEP_LATCHED 0x44u
-/* ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move (write, 8 words, axis 0) */
+/* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
 
-/* Why the axes were stopped, by the number in an answer. */
+/* The causes of a stop, by their number in the field `cause` of an answer. */
 #define CARRYSTEP_CAUSE_ESTOP 0u
 #define CARRYSTEP_CAUSE_OVERRUN 1u
 #define CARRYSTEP_CAUSE_PROTOCOL 2u
@@ -103,33 +105,33 @@
 #define CARRYSTEP_CAUSE_UNDERRUN 6u
 #define CARRYSTEP_CAUSE_STOP 7u
 
-/* Fields of an answer, of its bytes without END and ESC. */
+/* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
-/* the request's sequence number */
+/* the sequence number of the request */
 #define CARRYSTEP_ANSWER_SEQUENCE(answer) ((uint8_t)((answer)[0] >> 0 & 255u))
-/* the request's address */
+/* the address of the request */
 #define CARRYSTEP_ANSWER_ADDRESS(answer) ((uint8_t)((answer)[1] >> 0 & 255u))
-/* the sequence number that the next write must have: all before it have been executed */
+/* number of the next write; all before it were executed, or dropped during a fault */
 #define CARRYSTEP_ANSWER_NEXT(answer) ((uint8_t)((answer)[2] >> 0 & 255u))
-/* a stop has been called; segments and starts are dropped until a clear */
+/* a stop has been triggered; segments and starts are dropped until a clear */
 #define CARRYSTEP_ANSWER_FAULT(answer) ((uint8_t)((answer)[3] >> 0 & 1u))
-/* the stop is over: no axis moves any more */
+/* the stop is complete: no axis moves any more */
 #define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
-/* all axes are done, and no start is armed */
+/* no axis moves, no queue holds a segment, and no start is armed */
 #define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
-/* the drivers have had power for long enough: starts are taken */
+/* the drivers have had power for the enable time, as a start requires */
 #define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
-/* a start waits; another is refused as busy */
+/* a start is armed; another start is refused as busy */
 #define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
-/* why, where there is a fault */
+/* the cause of the stop, if `fault` is set */
 #define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)((answer)[3] >> 5 & 7u))
-/* segments that the addressed axis still takes */
+/* number of segments for which the queue of the addressed axis has room */
 #define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
 /* this write was not executed: out of sequence, or busy */
 #define CARRYSTEP_ANSWER_REFUSED(answer) ((uint8_t)((answer)[4] >> 3 & 1u))
-/* where there is a fault: the axes that it came from */
+/* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
-/* axes that still wait for their limit */
+/* the axes that still wait for their limit, one bit each */
 #define CARRYSTEP_ANSWER_HOMING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
 
 #endif

@@ -4,20 +4,7 @@
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
-/// A run of whole ticks during which one axis follows a cubic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Segment {
-    /// Length in ticks, at least 1.
-    pub ticks: u32,
-    /// Speed at the first tick, 2^-64 step per tick.
-    pub v: i64,
-    /// Acceleration, 2^-64 step per tick^2.
-    pub a: i64,
-    /// Jerk, 2^-64 step per tick^3.
-    pub j: i64,
-    /// Whether the axis stops at the end of this segment.
-    pub last: bool,
-}
+pub use carrystep_core::Segment;
 
 /// One command of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -75,19 +62,21 @@ pub enum ProgramError {
     },
     /// A start while the drivers have no power. The gateware would refuse it as long as they have
     /// none.
-    #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
+    #[error(
+        "the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START"
+    )]
     NoPower,
 }
 
 /// A source of segments: memory, a file, or a planner that runs at the same time.
-pub trait Source {
+pub trait SegmentSource {
     /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
     /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
 }
 
-/// Segments and starts in order, as a [`Source`] that gives each axis its own segments.
+/// Segments and starts in order, as a [`SegmentSource`] that gives each axis its own segments.
 #[derive(Debug, Clone)]
 pub struct Program<'a> {
     commands: &'a [Command],
@@ -141,7 +130,7 @@ impl<'a> Program<'a> {
     }
 }
 
-impl Source for Program<'_> {
+impl SegmentSource for Program<'_> {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         let at = self.segment.get_mut(usize::from(axis))?;
         while let Some(command) = self.commands.get(*at) {
@@ -167,21 +156,17 @@ impl Source for Program<'_> {
 
 #[cfg(feature = "std")]
 mod from_core {
-    use super::{Command, Segment};
+    use super::Command;
     use carrystep_core as planned;
-
-    impl From<planned::Segment> for Segment {
-        fn from(planned::Segment { ticks, v, a, j, last }: planned::Segment) -> Self {
-            Self { ticks, v, a, j, last }
-        }
-    }
 
     impl Command {
         /// Converts a planned command; `None` for a wait or a clear, which the link's programs do
         /// not contain.
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
-                planned::Command::Segment { axis, segment } => Some(Self::Segment { axis, segment: segment.into() }),
+                planned::Command::Segment { axis, segment } => {
+                    Some(Self::Segment { axis, segment })
+                }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
                 planned::Command::Wait { .. } | planned::Command::Clear => None,
             }

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// The facts of a build, as its registers report them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Facts {
+pub struct BuildFacts {
     /// Identity of the device; carrystep reports [`IDENTITY_VALUE`].
     pub identity: u32,
     /// Version of the protocol.
@@ -28,7 +28,7 @@ pub struct Facts {
 
 /// Why a host refuses to drive this gateware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum Refusal {
+pub enum GatewareMismatch {
     /// The device answers in frames, but its identity is not carrystep's.
     #[error("what answers is not carrystep: identity {0:#010x}")]
     Identity(u32),
@@ -52,21 +52,23 @@ pub enum Refusal {
     },
 }
 
-impl Facts {
+impl BuildFacts {
     /// Checks that a host may drive this gateware. `wanted` is the build id that the host was made
     /// for, or `None` for any.
     ///
     /// # Errors
-    /// [`Refusal`] gives the found and the wanted value.
-    pub fn check(&self, wanted: Option<u64>) -> Result<(), Refusal> {
+    /// [`GatewareMismatch`] gives the found and the wanted value.
+    pub fn check(&self, wanted: Option<u64>) -> Result<(), GatewareMismatch> {
         if self.identity != IDENTITY_VALUE {
-            return Err(Refusal::Identity(self.identity));
+            return Err(GatewareMismatch::Identity(self.identity));
         }
         if self.protocol != PROTOCOL_VERSION {
-            return Err(Refusal::Protocol { found: self.protocol });
+            return Err(GatewareMismatch::Protocol { found: self.protocol });
         }
         match wanted {
-            Some(wanted) if wanted != self.build => Err(Refusal::Build { found: self.build, wanted }),
+            Some(wanted) if wanted != self.build => {
+                Err(GatewareMismatch::Build { found: self.build, wanted })
+            }
             _ => Ok(()),
         }
     }

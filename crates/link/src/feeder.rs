@@ -1,7 +1,7 @@
 //! The feeder: sends the segments of a program in the order in which the queues need them, and each
 //! start as early as possible.
 
-pub use crate::command::Source;
+pub use crate::command::SegmentSource;
 use crate::command::{ProgramError, Segment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
@@ -31,7 +31,7 @@ pub struct Feeder<S> {
     last_start: bool,
 }
 
-impl<S: Source> Feeder<S> {
+impl<S: SegmentSource> Feeder<S> {
     /// A feeder that has sent nothing yet.
     pub fn new(source: S) -> Self {
         Self { source, axes: [Axis::default(); MOST_AXES as usize], start: None, last_start: false }
@@ -56,10 +56,16 @@ impl<S: Source> Feeder<S> {
     ///
     /// # Errors
     /// [`ProgramError`] if the source returns a segment or a start that no gateware accepts.
-    pub fn next(&mut self, axes: u8, room: &[u8], may_start: bool) -> Result<Option<Body>, ProgramError> {
+    pub fn next(
+        &mut self,
+        axes: u8,
+        room: &[u8],
+        may_start: bool,
+    ) -> Result<Option<Body>, ProgramError> {
         self.look_ahead(axes);
         let able = |(axis, room): &(&mut Axis, &u8)| axis.ahead.is_some() && **room > 0;
-        let hungriest = (0..axes).zip(self.axes.iter_mut().zip(room)).filter(|(_, pair)| able(pair));
+        let hungriest =
+            (0..axes).zip(self.axes.iter_mut().zip(room)).filter(|(_, pair)| able(pair));
         if let Some((number, (axis, _))) = hungriest.min_by_key(|(_, (axis, _))| axis.ticks)
             && let Some(segment) = axis.ahead.take()
         {
@@ -73,7 +79,9 @@ impl<S: Source> Feeder<S> {
         }
         match self.start {
             Some(mask) if may_start && self.start_is_due(axes)? => {
-                for (_, axis) in self.axes.iter_mut().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
+                for (_, axis) in
+                    self.axes.iter_mut().enumerate().filter(|(number, _)| mask >> number & 1 == 1)
+                {
                     axis.waiting -= 1;
                 }
                 self.start = None;
@@ -91,12 +99,18 @@ impl<S: Source> Feeder<S> {
     /// [`ProgramError`] where the start can never be sent.
     pub fn start_is_due(&self, axes: u8) -> Result<bool, ProgramError> {
         let Some(mask) = self.start else { return Ok(false) };
-        for (number, axis) in (0..MOST_AXES).zip(&self.axes).filter(|(number, _)| mask >> number & 1 == 1) {
+        for (number, axis) in
+            (0..MOST_AXES).zip(&self.axes).filter(|(number, _)| mask >> number & 1 == 1)
+        {
             if number >= axes {
                 return Err(ProgramError::Axis { axis: number, axes });
             }
             if axis.waiting == 0 {
-                return if axis.dry { Err(ProgramError::NoMove { axis: number, mask }) } else { Ok(false) };
+                return if axis.dry {
+                    Err(ProgramError::NoMove { axis: number, mask })
+                } else {
+                    Ok(false)
+                };
             }
         }
         Ok(true)
@@ -114,6 +128,8 @@ impl<S: Source> Feeder<S> {
 
     /// Whether the whole program was sent.
     pub fn is_done(&self, axes: u8) -> bool {
-        self.last_start && self.start.is_none() && self.axes.iter().take(axes.into()).all(|axis| axis.dry)
+        self.last_start
+            && self.start.is_none()
+            && self.axes.iter().take(axes.into()).all(|axis| axis.dry)
     }
 }

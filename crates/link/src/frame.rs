@@ -1,7 +1,9 @@
 //! Requests and answers, and their conversion to and from the bytes of a frame.
 
 use crate::command::Segment;
-use crate::registers::{self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE};
+use crate::registers::{
+    self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
+};
 use crate::registers::{AXES_AT, MOST_AXES, PER_AXIS, SEGMENT, SEGMENT_FRAME_WORDS};
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use thiserror::Error;
@@ -125,7 +127,9 @@ impl Request {
     /// # Errors
     /// [`FrameError`] if the frame must not be answered.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FrameError> {
-        let (&[sequence, address, ..], Some((content, _))) = (bytes, bytes.split_last_chunk::<CRC_BYTES>()) else {
+        let (&[sequence, address, ..], Some((content, _))) =
+            (bytes, bytes.split_last_chunk::<CRC_BYTES>())
+        else {
             return Err(FrameError::Length(bytes.len()));
         };
         let words = match address {
@@ -138,7 +142,9 @@ impl Request {
         }
         check(bytes)?;
         let word = |index: usize| word_at(content, REQUEST_HEAD + 4 * index);
-        let long = |index: usize| (u64::from(word(index + 1)) << 32 | u64::from(word(index))).cast_signed();
+        let long = |index: usize| {
+            (u64::from(word(index + 1)) << 32 | u64::from(word(index))).cast_signed()
+        };
         let body = match (words, axis_of(address)) {
             (0, _) => Body::Read { address },
             (1, _) => Body::Write { address: address & !WRITE, word: word(0) },
@@ -146,7 +152,13 @@ impl Request {
                 let (v, a, j) = (long(1), long(3), long(5));
                 Body::Segment {
                     axis,
-                    segment: Segment { ticks: word(0).wrapping_add(1), v, a, j, last: word(7) & 1 == 1 },
+                    segment: Segment {
+                        ticks: word(0).wrapping_add(1),
+                        v,
+                        a,
+                        j,
+                        last: word(7) & 1 == 1,
+                    },
                 }
             }
             _ => return Err(FrameError::Address(address)),
@@ -194,7 +206,8 @@ impl Answer {
     /// # Errors
     /// [`FrameError`] if the frame must be ignored.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FrameError> {
-        let bytes: &[u8; ANSWER_BYTES] = bytes.try_into().map_err(|_| FrameError::Length(bytes.len()))?;
+        let bytes: &[u8; ANSWER_BYTES] =
+            bytes.try_into().map_err(|_| FrameError::Length(bytes.len()))?;
         check(bytes)?;
         Ok(Self {
             sequence: map::sequence(bytes),
@@ -222,7 +235,8 @@ impl Answer {
 
 /// Checks that the last four bytes are the CRC of those before them.
 fn check(bytes: &[u8]) -> Result<(), FrameError> {
-    let (content, crc) = bytes.split_last_chunk::<CRC_BYTES>().ok_or(FrameError::Length(bytes.len()))?;
+    let (content, crc) =
+        bytes.split_last_chunk::<CRC_BYTES>().ok_or(FrameError::Length(bytes.len()))?;
     if CRC.checksum(content) == u32::from_le_bytes(*crc) { Ok(()) } else { Err(FrameError::Crc) }
 }
 

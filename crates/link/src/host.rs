@@ -8,13 +8,13 @@ mod state;
 mod time;
 
 pub use error::{HomingFault, HostError};
-pub use homing::{AxisHoming, Homed, Homing, Stage, Wiring};
+pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 pub use motion::{Ended, Progress, Wish};
 #[cfg(feature = "std")]
 pub use time::SystemClock;
 pub use time::{Clock, Patience};
 
-use crate::facts::Facts;
+use crate::facts::BuildFacts;
 use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
 use crate::registers as map;
@@ -38,7 +38,7 @@ pub struct Host<L, C, const N: usize = 64> {
     clock: C,
     patience: Patience,
     session: Session<N>,
-    facts: Facts,
+    facts: BuildFacts,
     status: Status,
     /// Whether the drivers were seen with power. They keep it until this host removes it.
     powered: bool,
@@ -56,13 +56,18 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError::Silence`] if nothing answers, [`HostError::Noise`] if the bytes received are no
     /// frames, [`HostError::Refused`] if it is another gateware.
-    pub fn connect(line: L, clock: C, wanted: Option<u64>, patience: Patience) -> Result<Self, HostError<L::Error>> {
+    pub fn connect(
+        line: L,
+        clock: C,
+        wanted: Option<u64>,
+        patience: Patience,
+    ) -> Result<Self, HostError<L::Error>> {
         let mut host = Self {
             line,
             clock,
             patience,
             session: Session::new(patience.timing),
-            facts: Facts::default(),
+            facts: BuildFacts::default(),
             status: Status::default(),
             powered: false,
             out: [0; 256],
@@ -78,21 +83,30 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let rest = [map::CLOCK_HZ, map::TICK_NS, map::PHASES, map::WATCHDOG_TICKS];
             let [clock_hz, tick_ns, phases, watchdog_ticks] = host.registers(rest)?;
             let build = u64::from(high) << 32 | u64::from(low);
-            host.facts = Facts { identity, protocol, build, axes, clock_hz, tick_ns, phases, watchdog_ticks };
+            host.facts = BuildFacts {
+                identity,
+                protocol,
+                build,
+                axes,
+                clock_hz,
+                tick_ns,
+                phases,
+                watchdog_ticks,
+            };
         }
         host.facts.check(wanted)?;
         let axes = host.facts.axes.min(MOST_AXES.into()) as u8;
         host.session.adopt(host.status.answer.next, axes);
-        host.look()?;
+        host.read_status()?;
         Ok(host)
     }
 
     /// The facts that the gateware reported.
-    pub const fn facts(&self) -> &Facts {
+    pub const fn facts(&self) -> &BuildFacts {
         &self.facts
     }
 
-    /// The state from the last answers. [`Self::look`] reads it again.
+    /// The state from the last answers. [`Self::read_status`] reads it again.
     pub const fn status(&self) -> &Status {
         &self.status
     }
@@ -106,7 +120,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// # Errors
     /// [`HostError`] if the connection fails.
-    pub fn look(&mut self) -> Result<Status, HostError<L::Error>> {
+    pub fn read_status(&mut self) -> Result<Status, HostError<L::Error>> {
         for axis in 0..self.session.axes() {
             self.register(of_axis(map::POSITION, axis))?;
         }
@@ -121,7 +135,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.registers([address]).map(|[word]| word)
     }
 
-    fn registers<const K: usize>(&mut self, addresses: [u8; K]) -> Result<[u32; K], HostError<L::Error>> {
+    fn registers<const K: usize>(
+        &mut self,
+        addresses: [u8; K],
+    ) -> Result<[u32; K], HostError<L::Error>> {
         let mut words = [None; K];
         self.listen();
         for address in addresses {

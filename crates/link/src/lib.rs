@@ -33,10 +33,10 @@ pub mod travel;
 pub mod window;
 
 pub use command::{Command, Program, ProgramError, Segment};
-pub use facts::{Facts, Refusal};
-pub use feeder::{Feeder, Source};
+pub use facts::{BuildFacts, GatewareMismatch};
+pub use feeder::{Feeder, SegmentSource};
 pub use frame::{Answer, Body, FrameError, Request};
-pub use host::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
+pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
 pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
 pub use line::{Exchanged, Line};
 pub use session::{Session, SessionError, Timing, WriteError};

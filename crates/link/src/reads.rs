@@ -43,17 +43,23 @@ impl Reads {
     /// The read to be sent at the time `now`, ms. A read without an answer is sent again after
     /// `resend` ms.
     pub fn transmit(&mut self, now: u32, resend: u32) -> Option<Request> {
-        let due = |question: &&mut Question| question.asked.is_none_or(|asked| now.wrapping_sub(asked) >= resend);
+        let due = |question: &&mut Question| {
+            question.asked.is_none_or(|asked| now.wrapping_sub(asked) >= resend)
+        };
         let question = self.questions.iter_mut().flatten().find(due)?;
         question.asked = Some(now);
-        Some(Request { sequence: question.sequence, body: Body::Read { address: question.address } })
+        Some(Request {
+            sequence: question.sequence,
+            body: Body::Read { address: question.address },
+        })
     }
 
     /// Whether this answer belongs to a read, which it completes.
     pub fn answer(&mut self, answer: &Answer) -> bool {
         let own = |place: &&mut Option<Question>| {
             place.is_some_and(|question| {
-                question.asked.is_some() && (question.address, question.sequence) == (answer.address, answer.sequence)
+                question.asked.is_some()
+                    && (question.address, question.sequence) == (answer.address, answer.sequence)
             })
         };
         self.questions.iter_mut().find(own).map(Option::take).is_some()

@@ -1,141 +1,143 @@
-//! What the gateware and its clients agree on: constants, the register map, the answer's fields.
+//! The protocol between the gateware and its hosts: constants, the register map, and the fields of
+//! an answer.
 //!
-//! Generated from `crates/core/src/link` by `cargo xtask generate`: change that, not this.
+//! This file is generated from `crates/core/src/link` by `cargo xtask generate`: change that source
+//! instead.
 
-/// Ends a frame, and begins one.
+/// Byte that begins and ends a frame.
 pub const END: u8 = 0xc0;
-/// Says that the next byte stands for another.
+/// Escape byte: with the next byte it stands for END or ESC in a frame.
 pub const ESC: u8 = 0xdb;
-/// After ESC: END.
+/// After ESC: the pair stands for END.
 pub const ESC_END: u8 = 0xdc;
-/// After ESC: ESC.
+/// After ESC: the pair stands for ESC.
 pub const ESC_ESC: u8 = 0xdd;
-/// CRC-32 of Ethernet and zlib, reflected: polynomial.
+/// Polynomial of the CRC-32 of Ethernet and zlib, reflected.
 pub const CRC_POLYNOMIAL: u32 = 0xedb8_8320;
-/// What its register holds, not yet inverted, after a frame and its CRC.
+/// Value of the CRC register, before its inversion, after a frame and its CRC.
 pub const CRC_RESIDUE: u32 = 0xdebb_20e3;
-/// Bytes of a CRC.
+/// Length of a CRC in bytes.
 pub const CRC_BYTES: usize = 4;
-/// Set in an address: the frame writes.
+/// Bit of the address that makes a request a write.
 pub const WRITE: u8 = 0x80;
-/// Sequence and address.
+/// Length of the sequence number and the address of a request in bytes.
 pub const REQUEST_HEAD: usize = 2;
-/// Words of a segment, the commit included.
+/// Number of words of a segment, the commit included.
 pub const SEGMENT_FRAME_WORDS: usize = 8;
-/// The longest request, without END and ESC.
+/// Length of the longest request in bytes, without END and ESC.
 pub const LONGEST_REQUEST: usize = 38;
-/// An answer, without END and ESC.
+/// Length of an answer in bytes, without END and ESC.
 pub const ANSWER_BYTES: usize = 15;
-/// First byte of an answer's data.
+/// Number of the first data byte in an answer.
 pub const ANSWER_DATA: usize = 7;
-/// Frames by which a repeated one may lie behind the next; so many may be on their way.
+/// Number of writes that may be unacknowledged, and by which a repeated one may lie behind.
 pub const WINDOW: u8 = 0x7f;
-/// What IDENTITY holds.
+/// Value of the register IDENTITY.
 pub const IDENTITY_VALUE: u32 = 0x5054_5343;
-/// The version of the protocol that this map belongs to.
+/// Version of the protocol to which this register map belongs.
 pub const PROTOCOL_VERSION: u32 = 0x0000_0001;
-/// In CONTROL: power the drivers.
+/// Bit of CONTROL: power the drivers.
 pub const CONTROL_ENABLE: u32 = 0x0000_0001;
-/// In CONTROL: stop all axes.
+/// Bit of CONTROL: stop all axes.
 pub const CONTROL_STOP: u32 = 0x0000_0002;
-/// First address of the axes.
+/// First address of the axes' registers.
 pub const AXES_AT: u8 = 0x40;
-/// Addresses of each axis.
+/// Number of addresses of each axis.
 pub const PER_AXIS: u8 = 0x08;
-/// Most axes of a build.
+/// Greatest number of axes of a build.
 pub const MOST_AXES: u8 = 0x08;
-/// Segments that can wait for an axis, beside the one that runs.
+/// Number of segments that can wait for an axis, in addition to the one that runs.
 pub const QUEUE_SEGMENTS: u8 = 0x07;
 
-/// "CSTP", low byte first: this is carrystep (read).
+/// The bytes of "CSTP", low byte first, which identify carrystep (read).
 pub const IDENTITY: u8 = 0x00;
-/// version of this protocol (read).
+/// Version of the protocol (read).
 pub const PROTOCOL: u8 = 0x01;
-/// build id, low half: a hash of this map and of all build parameters (read).
+/// Build id, low half: a hash of register map and build parameters, for hosts to compare (read).
 pub const BUILD_LOW: u8 = 0x02;
-/// build id, high half (read).
+/// Build id, high half (read).
 pub const BUILD_HIGH: u8 = 0x03;
-/// axes of this build (read).
+/// Number of axes (read).
 pub const AXIS_COUNT: u8 = 0x04;
-/// clock, Hz (read).
+/// Frequency of the clock in Hz (read).
 pub const CLOCK_HZ: u8 = 0x05;
-/// tick, ns (read).
+/// Length of a tick in ns (read).
 pub const TICK_NS: u8 = 0x06;
-/// phases of a tick (read).
+/// Number of phases in a tick (read).
 pub const PHASES: u8 = 0x07;
-/// ticks of silence after which the axes are stopped; 0: never (read).
+/// Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read).
 pub const WATCHDOG_TICKS: u8 = 0x08;
-/// bit 0: power the drivers; bit 1: stop all axes by their ramps (write).
+/// Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write).
 pub const CONTROL: u8 = 0x20;
-/// axes that start together, a bit each, on the first tick at which all rest and have a segment (write).
+/// Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write).
 pub const START: u8 = 0x21;
-/// resume after a stop, whatever is written: queues empty, P at its start; the position stays (write).
+/// Any value ends a complete stop: queues empty, P at its start value, position kept (write).
 pub const CLEAR: u8 = 0x22;
-/// axes, a bit each, whose next limit latches their position and stops only them (write).
+/// Axes, one bit each: the next limit latches the position and ramps down this axis only (write).
 pub const HOME: u8 = 0x23;
-/// fraction of a step, low half, 2^-64 step (read, axis 0).
+/// P, the fraction of a step in units of 2^-64 step, low half (read, axis 0).
 pub const P_LOW: u8 = 0x40;
-/// fraction of a step, high half (read, axis 0).
+/// P, high half (read, axis 0).
 pub const P_HIGH: u8 = 0x41;
-/// steps forward less steps back, two's complement (read, axis 0).
+/// Position: steps forward minus steps backward, two's complement (read, axis 0).
 pub const POSITION: u8 = 0x42;
-/// steps that freezes have discarded (read, axis 0).
+/// Number of steps that freezes have discarded since configuration (read, axis 0).
 pub const DISCARDED: u8 = 0x43;
-/// position when the limit was reached in homing (read, axis 0).
+/// Position in steps at which the limit was reached in homing (read, axis 0).
 pub const LATCHED: u8 = 0x44;
-/// ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move (write, 8 words, axis 0).
+/// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;
 
-/// Why the axes were stopped, by the number in an answer.
+/// The causes of a stop, by their number in the field `cause` of an answer.
 pub const CAUSES: [&str; 8] =
     ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
 
-/// Of an answer: the request's sequence number.
+/// Of an answer: the sequence number of the request.
 pub const fn sequence(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[0]
 }
 
-/// Of an answer: the request's address.
+/// Of an answer: the address of the request.
 pub const fn address(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[1]
 }
 
-/// Of an answer: the sequence number that the next write must have: all before it have been executed.
+/// Of an answer: number of the next write; all before it were executed, or dropped during a fault.
 pub const fn next(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[2]
 }
 
-/// Of an answer: a stop has been called; segments and starts are dropped until a clear.
+/// Of an answer: a stop has been triggered; segments and starts are dropped until a clear.
 pub const fn fault(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] & 1 == 1
 }
 
-/// Of an answer: the stop is over: no axis moves any more.
+/// Of an answer: the stop is complete: no axis moves any more.
 pub const fn halted(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 1 & 1 == 1
 }
 
-/// Of an answer: all axes are done, and no start is armed.
+/// Of an answer: no axis moves, no queue holds a segment, and no start is armed.
 pub const fn idle(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 2 & 1 == 1
 }
 
-/// Of an answer: the drivers have had power for long enough: starts are taken.
+/// Of an answer: the drivers have had power for the enable time, as a start requires.
 pub const fn ready(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 3 & 1 == 1
 }
 
-/// Of an answer: a start waits; another is refused as busy.
+/// Of an answer: a start is armed; another start is refused as busy.
 pub const fn armed(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 4 & 1 == 1
 }
 
-/// Of an answer: why, where there is a fault.
+/// Of an answer: the cause of the stop, if `fault` is set.
 pub const fn cause(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[3] >> 5
 }
 
-/// Of an answer: segments that the addressed axis still takes.
+/// Of an answer: number of segments for which the queue of the addressed axis has room.
 pub const fn free(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[4] & 7
 }
@@ -145,12 +147,12 @@ pub const fn refused(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[4] >> 3 & 1 == 1
 }
 
-/// Of an answer: where there is a fault: the axes that it came from.
+/// Of an answer: the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0.
 pub const fn culprits(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[5]
 }
 
-/// Of an answer: axes that still wait for their limit.
+/// Of an answer: the axes that still wait for their limit, one bit each.
 pub const fn homing(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[6]
 }

@@ -2,7 +2,7 @@
 //! caller passes bytes and milliseconds.
 
 use crate::command::ProgramError;
-use crate::feeder::{Feeder, Source};
+use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Request, axis_of, of_axis};
 use crate::reads::Reads;
 use crate::registers::{ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, POSITION, START};
@@ -177,7 +177,7 @@ impl<const N: usize> Session<N> {
     /// # Errors
     /// [`ProgramError`]. After [`ProgramError::NoPower`] the program can continue once CONTROL = 1
     /// was written.
-    pub fn feed<S: Source>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
+    pub fn feed<S: SegmentSource>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 {
             let free = !self.starting && !self.armed;
             let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {
@@ -238,7 +238,8 @@ impl<const N: usize> Session<N> {
         self.window.answer(answer, now, |body| settle(body, under_way, starting))?;
         self.armed = answer.armed;
         if let Some(axis) = axis_of(answer.address).map(usize::from)
-            && let (Some(room), Some(under_way)) = (self.room.get_mut(axis), self.under_way.get(axis))
+            && let (Some(room), Some(under_way)) =
+                (self.room.get_mut(axis), self.under_way.get(axis))
         {
             *room = answer.free.saturating_sub(*under_way);
         }
@@ -250,7 +251,10 @@ impl<const N: usize> Session<N> {
 fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool) {
     match *body {
         Body::Segment { axis, .. } => {
-            under_way.get_mut(usize::from(axis)).into_iter().for_each(|count| *count = count.saturating_sub(1));
+            under_way
+                .get_mut(usize::from(axis))
+                .into_iter()
+                .for_each(|count| *count = count.saturating_sub(1));
         }
         Body::Write { address: START, .. } => *starting = false,
         Body::Write { .. } | Body::Read { .. } => {}

@@ -49,7 +49,8 @@ struct Job {
 /// # Errors
 /// [`Starved`] gives the first axis whose queue would run empty.
 pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<(), Starved> {
-    let mut waiting: Vec<VecDeque<Job>> = (0..axes).map(|axis| jobs(commands, axis, tick_ns, baud)).collect();
+    let mut waiting: Vec<VecDeque<Job>> =
+        (0..axes).map(|axis| jobs(commands, axis, tick_ns, baud)).collect();
     let mut now = 0_u64;
     loop {
         let heads = || (0..).zip(&waiting).filter_map(|(axis, jobs)| Some((axis, jobs.front()?)));
@@ -57,7 +58,9 @@ pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<
         now = now.max(soonest);
         let placed = heads().filter(|(_, job)| job.place <= now);
         let Some((axis, _)) = placed.min_by_key(|(_, job)| job.due) else { return Ok(()) };
-        let Some(job) = waiting.get_mut(usize::from(axis)).and_then(VecDeque::pop_front) else { return Ok(()) };
+        let Some(job) = waiting.get_mut(usize::from(axis)).and_then(VecDeque::pop_front) else {
+            return Ok(());
+        };
         now = now.saturating_add(job.takes);
         if now > job.due {
             let late_us = (now - job.due).div_ceil(1000);
@@ -78,10 +81,16 @@ fn jobs(commands: &[Command], axis: u8, tick_ns: u64, baud: u32) -> VecDeque<Job
         }
         let due = tick.saturating_mul(tick_ns);
         begins.push(due);
-        if let Some(&place) = begins.len().checked_sub(1 + usize::from(QUEUE_SEGMENTS)).and_then(|k| begins.get(k)) {
+        if let Some(&place) =
+            begins.len().checked_sub(1 + usize::from(QUEUE_SEGMENTS)).and_then(|k| begins.get(k))
+        {
             let request = Request { sequence: 0, body: Body::Segment { axis, segment } };
             let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
-            jobs.push_back(Job { place, due, takes: (bits * 1_000_000_000).div_ceil(u64::from(baud.max(1))) });
+            jobs.push_back(Job {
+                place,
+                due,
+                takes: (bits * 1_000_000_000).div_ceil(u64::from(baud.max(1))),
+            });
         }
         tick = tick.saturating_add(segment.ticks.into());
     }
@@ -96,7 +105,8 @@ mod tests {
     /// A program of `count` segments of `ticks` ticks for each of six axes.
     fn even(count: u32, ticks: u32) -> Vec<Command> {
         let segment = |last| Segment { ticks, v: 1, a: 0, j: 0, last };
-        let of = |k| (0..6).map(move |axis| Command::Segment { axis, segment: segment(k + 1 == count) });
+        let of =
+            |k| (0..6).map(move |axis| Command::Segment { axis, segment: segment(k + 1 == count) });
         (0..count).flat_map(of).collect()
     }
 

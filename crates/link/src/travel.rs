@@ -25,7 +25,9 @@ pub struct Gait {
 
 /// Error: the move needs more ticks than a segment can count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("a move of {steps} steps at this speed takes over 2^32 ticks: a greater speed or acceleration would do")]
+#[error(
+    "a move of {steps} steps at this speed takes over 2^32 ticks: a greater speed or acceleration would do"
+)]
 pub struct TooLong {
     /// Length of the move, steps.
     pub steps: i32,
@@ -54,7 +56,9 @@ impl Travel {
             travel.go(steps, gait).ok_or(TooLong { steps })?;
         }
         travel.push(Segment { ticks: after, ..rest });
-        if let Some(segment) = travel.count.checked_sub(1).and_then(|last| travel.segments.get_mut(last)) {
+        if let Some(segment) =
+            travel.count.checked_sub(1).and_then(|last| travel.segments.get_mut(last))
+        {
             segment.iter_mut().for_each(|segment| segment.last = true);
         }
         Ok(travel)
@@ -88,11 +92,30 @@ impl Travel {
         let ticks = |count: u128| u32::try_from(count).ok();
         let peak = start + n * a;
         // The remainders of the divisions are distributed over the cruise.
-        let rest = (u128::from(steps.unsigned_abs()) << 64) - (2 * n + m) * start - n * (n + m - 1) * a;
+        let rest =
+            (u128::from(steps.unsigned_abs()) << 64) - (2 * n + m) * start - n * (n + m - 1) * a;
         let (speed, faster) = (peak + rest / m, rest % m);
-        self.push(Segment { ticks: ticks(n)?, v: signed(start)?, a: signed(a)?, j: 0, last: false });
-        self.push(Segment { ticks: ticks(faster)?, v: signed(speed + 1)?, a: 0, j: 0, last: false });
-        self.push(Segment { ticks: ticks(m - faster)?, v: signed(speed)?, a: 0, j: 0, last: false });
+        self.push(Segment {
+            ticks: ticks(n)?,
+            v: signed(start)?,
+            a: signed(a)?,
+            j: 0,
+            last: false,
+        });
+        self.push(Segment {
+            ticks: ticks(faster)?,
+            v: signed(speed + 1)?,
+            a: 0,
+            j: 0,
+            last: false,
+        });
+        self.push(Segment {
+            ticks: ticks(m - faster)?,
+            v: signed(speed)?,
+            a: 0,
+            j: 0,
+            last: false,
+        });
         // The deceleration starts at the speed of the last tick of the acceleration, which is `a`
         // below the peak.
         let v = start + n.saturating_sub(1) * a;
@@ -219,8 +242,13 @@ mod tests {
     fn rests_are_kept_and_too_long_moves_refused() {
         let gait = Gait { start: 0, speed: 1 << 60, accel: 1 << 40 };
         let travel = Travel::new(0, gait, 3, 4).unwrap();
-        assert_eq!(travel.segments().map(|segment| (segment.ticks, segment.v)).collect::<Vec<_>>(), [(3, 0), (4, 0)]);
-        for slow in [Gait { speed: 1 << 30, ..gait }, Gait { accel: 1, ..gait }, Gait { speed: 0, ..gait }] {
+        assert_eq!(
+            travel.segments().map(|segment| (segment.ticks, segment.v)).collect::<Vec<_>>(),
+            [(3, 0), (4, 0)]
+        );
+        for slow in
+            [Gait { speed: 1 << 30, ..gait }, Gait { accel: 1, ..gait }, Gait { speed: 0, ..gait }]
+        {
             assert_eq!(Travel::new(-5, slow, 0, 0), Err(TooLong { steps: -5 }));
         }
     }

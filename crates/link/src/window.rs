@@ -51,9 +51,11 @@ pub struct Window<const N: usize> {
     sent: usize,
     /// Number of writes that were sent at least once.
     reached: usize,
-    /// Time when the round began or the last write was acknowledged, ms.
+    /// Time of the latest of these events, ms: a round's first write was sent, a write was
+    /// acknowledged, or a refusal ended a round.
     since: u32,
-    /// Distance from the missing write to the last refused write of this round.
+    /// How many writes behind the missing one the last refused write was; 0 is the missing one
+    /// itself. `None` if no write was refused since the last acknowledgement or timeout.
     refused: Option<u8>,
     /// Whether the gateware refused the write as busy, so that the next round must wait.
     busy: bool,
@@ -66,7 +68,17 @@ impl<const N: usize> Window<N> {
     pub fn new(first: u8) -> Self {
         let () = Self::FITS;
         let slots = [Body::Read { address: 0 }; N];
-        Self { slots, at: 0, length: 0, first, sent: 0, reached: 0, since: 0, refused: None, busy: false }
+        Self {
+            slots,
+            at: 0,
+            length: 0,
+            first,
+            sent: 0,
+            reached: 0,
+            since: 0,
+            refused: None,
+            busy: false,
+        }
     }
 
     /// Number of unacknowledged writes.
@@ -98,7 +110,8 @@ impl<const N: usize> Window<N> {
         Ok(())
     }
 
-    /// Removes the writes that were never sent; `withdrawn` is called with each.
+    /// Removes the writes that were never sent; `withdrawn` is called with each. Writes that were
+    /// sent in any round stay, because the gateware may have executed them.
     pub fn withdraw(&mut self, mut withdrawn: impl FnMut(&Body)) {
         while self.length > self.reached {
             self.length -= 1;
@@ -129,31 +142,46 @@ impl<const N: usize> Window<N> {
         Some(request)
     }
 
-    /// Checks that this answers a write of this host, as far as that can be known. Of acknowledged
-    /// writes only the number is left, so a late answer to one of them is accepted.
+    /// Checks that this answers a write of this host, as far as that can be known. An answer to a
+    /// read passes. Of acknowledged writes only the number is left, so a late answer to one of them
+    /// passes here too; [`Self::answer`] may still refuse it.
     ///
     /// # Errors
     /// [`Foreign`] if the number was never sent, or was sent with another address.
-    /// [`Foreign`]: its number was never sent from here, or with another address.
     pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
         let behind = answer.sequence.wrapping_sub(self.first);
         if answer.address & WRITE == 0 || behind > WINDOW {
             return Ok(());
         }
         let slot = self.slots.get((self.at + usize::from(behind)) % N);
-        let sent = usize::from(behind) < self.reached && slot.is_some_and(|body| body.address() == answer.address);
-        if sent { Ok(()) } else { Err(Foreign { sequence: answer.sequence, address: answer.address }) }
+        let sent = usize::from(behind) < self.reached
+            && slot.is_some_and(|body| body.address() == answer.address);
+        if sent {
+            Ok(())
+        } else {
+            Err(Foreign { sequence: answer.sequence, address: answer.address })
+        }
     }
 
     /// Processes the acknowledgement in an answer: all writes before `next` were executed.
     /// `executed` is called with each of them once, in order.
     ///
     /// # Errors
-    /// [`OutOfStep`] if the answer acknowledges writes that were never sent.
-    pub fn answer(&mut self, answer: &Answer, now: u32, mut executed: impl FnMut(&Body)) -> Result<(), OutOfStep> {
+    /// [`OutOfStep`] if the answer acknowledges writes that were never sent, or if its `next` is
+    /// older than the first unacknowledged write.
+    pub fn answer(
+        &mut self,
+        answer: &Answer,
+        now: u32,
+        mut executed: impl FnMut(&Body),
+    ) -> Result<(), OutOfStep> {
         let advance = usize::from(answer.next.wrapping_sub(self.first));
         if advance > self.reached {
-            return Err(OutOfStep { next: answer.next, first: self.first, sent: self.reached as u8 });
+            return Err(OutOfStep {
+                next: answer.next,
+                first: self.first,
+                sent: self.reached as u8,
+            });
         }
         for _ in 0..advance {
             self.slots.get(self.at).into_iter().for_each(&mut executed);
@@ -175,7 +203,9 @@ impl<const N: usize> Window<N> {
     }
 
     /// Processes a refusal. The gateware refuses every write behind a missing one, so one loss
-    /// causes many refusals with rising numbers. Only the first of them begins a new round.
+    /// causes many refusals with rising numbers. The first of them begins a new round; the others
+    /// are only recorded. A refusal whose number does not rise is not one of them: it answers a
+    /// write of the new round, and begins another round.
     fn refusal(&mut self, behind: u8, now: u32) {
         if self.refused.is_some_and(|before| behind > before) {
             self.refused = Some(behind);

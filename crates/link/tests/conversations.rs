@@ -15,7 +15,8 @@ use support::unhex;
 #[test]
 fn rust_client_follows_every_conversation() {
     for (name, text) in scripts() {
-        converse(&mut RustClient::default(), &text).unwrap_or_else(|words| panic!("{name}: {words}"));
+        converse(&mut RustClient::default(), &text)
+            .unwrap_or_else(|words| panic!("{name}: {words}"));
     }
 }
 
@@ -39,11 +40,14 @@ fn frames_of_the_page_occur_in_a_conversation() {
         .filter(|line| !line.starts_with('#') && !line.starts_with("<x"))
         .filter_map(|line| Some((line.chars().next()?, unhex(line.split_once(' ')?.1))))
         .collect();
-    let script = std::fs::read_to_string(root.join("tests/conversations/example_frames.txt")).unwrap();
+    let script =
+        std::fs::read_to_string(root.join("tests/conversations/example_frames.txt")).unwrap();
     let mut said = Vec::new();
     let mut sending = false;
     for line in script.lines() {
-        if let Some(("take", rest)) = line.strip_prefix("> ").and_then(|words| words.split_once(' ')) {
+        if let Some(("take", rest)) =
+            line.strip_prefix("> ").and_then(|words| words.split_once(' '))
+        {
             said.push(('<', unhex(rest.split_once(' ').unwrap().1)));
         }
         if let Some(bytes) = line.strip_prefix("< c0").filter(|_| sending) {

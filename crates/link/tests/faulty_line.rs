@@ -28,7 +28,10 @@ fn rust_client_survives_a_hundred_thousand_frames() {
     let outcome = run(&mut RustClient::default(), 100_000, 1, Faults::BAD);
     println!("{outcome:?}");
     assert_eq!(outcome.fault, None);
-    assert!(outcome.frames >= 100_000 && outcome.damaged > 3000 && outcome.repeated > 1000, "{outcome:?}");
+    assert!(
+        outcome.frames >= 100_000 && outcome.damaged > 3000 && outcome.repeated > 1000,
+        "{outcome:?}"
+    );
 }
 
 #[test]
@@ -36,20 +39,27 @@ fn c_client_survives_ten_thousand_frames() {
     let outcome = run(&mut CClient::shared(), 10_000, 2, Faults::BAD);
     println!("{outcome:?}");
     assert_eq!(outcome.fault, None);
-    assert!(outcome.frames >= 10_000 && outcome.damaged > 300 && outcome.repeated > 100, "{outcome:?}");
+    assert!(
+        outcome.frames >= 10_000 && outcome.damaged > 300 && outcome.repeated > 100,
+        "{outcome:?}"
+    );
 }
 
 #[test]
 fn clean_line_repeats_nothing_and_keeps_the_queues_full() {
     for client in [&mut RustClient::default() as &mut dyn Client, &mut CClient::shared()] {
         let outcome = run(client, 2000, 3, Faults::default());
-        assert_eq!((outcome.fault, outcome.damaged, outcome.repeated, outcome.out_of_turn), (None, 0, 0, 0));
+        assert_eq!(
+            (outcome.fault, outcome.damaged, outcome.repeated, outcome.out_of_turn),
+            (None, 0, 0, 0)
+        );
     }
 }
 
 fn faults() -> impl Strategy<Value = Faults> {
-    (0..8000_u32, 0..8000_u32, 0..8000_u32, 0..60_000_u32, 0..60_000_u32, 0..200_000_u32)
-        .prop_map(|(flip, drop, double, again, cut, delay)| Faults { flip, drop, double, again, cut, delay })
+    (0..8000_u32, 0..8000_u32, 0..8000_u32, 0..60_000_u32, 0..60_000_u32, 0..200_000_u32).prop_map(
+        |(flip, drop, double, again, cut, delay)| Faults { flip, drop, double, again, cut, delay },
+    )
 }
 
 proptest! {

@@ -10,8 +10,12 @@ use proptest::prelude::*;
 use support::device::on_the_line;
 
 fn request() -> impl Strategy<Value = Request> {
-    let segment = (0..8_u8, 1..=u32::MAX, any::<[i64; 3]>(), any::<bool>())
-        .prop_map(|(axis, ticks, [v, a, j], last)| Body::Segment { axis, segment: Segment { ticks, v, a, j, last } });
+    let segment = (0..8_u8, 1..=u32::MAX, any::<[i64; 3]>(), any::<bool>()).prop_map(
+        |(axis, ticks, [v, a, j], last)| Body::Segment {
+            axis,
+            segment: Segment { ticks, v, a, j, last },
+        },
+    );
     let body = prop_oneof![
         (0..0x80_u8).prop_map(|address| Body::Read { address }),
         (0..0x40_u8, any::<u32>()).prop_map(|(address, word)| Body::Write { address, word }),

@@ -5,7 +5,8 @@
 mod support;
 
 use carrystep_link::{
-    Command, Ended, Host, HostError, Patience, Program, ProgramError, Refusal, Segment, Timing, Wish,
+    Command, Ended, GatewareMismatch, Host, HostError, Patience, Program, ProgramError, Segment,
+    Timing, Wish,
 };
 use std::convert::Infallible;
 use support::bench_line::{End, Peer};
@@ -14,8 +15,13 @@ use support::random::{Random, program};
 use support::soak::TICKS;
 
 const BUILD: u64 = 0x0123_4567_89ab_cdef;
-const QUICK: Patience =
-    Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 2000, look: 20 };
+const QUICK: Patience = Patience {
+    timing: Timing { resend: 12, pause: 2 },
+    silence: 500,
+    lost: 500,
+    change: 2000,
+    status_period: 20,
+};
 
 type Error = HostError<Infallible>;
 
@@ -39,11 +45,15 @@ fn nobody(peer: Peer) -> Error {
 
 #[test]
 fn other_gateware_is_refused_and_both_builds_are_named() {
-    assert_eq!(refusal(|device| device.facts[0] = 0x4242_4242), "what answers is not carrystep: identity 0x42424242");
+    assert_eq!(
+        refusal(|device| device.facts[0] = 0x4242_4242),
+        "what answers is not carrystep: identity 0x42424242"
+    );
     let said = refusal(|device| device.facts[1] = 9);
     assert!(said.starts_with("the gateware speaks protocol 9, this driver 1:"), "{said}");
     let said = refusal(|device| device.facts[3] = 0xffff_ffff);
-    let expected = "the gateware is build ffffffff89abcdef, this machine needs build 0123456789abcdef: ";
+    let expected =
+        "the gateware is build ffffffff89abcdef, this machine needs build 0123456789abcdef: ";
     assert!(said.starts_with(expected), "{said}");
 }
 
@@ -69,7 +79,7 @@ fn gateware_that_stops_answering_is_reported_as_lost() {
     // An idle hour between two calls does not count as silence.
     end.0.borrow_mut().peer = Peer::Gateware;
     end.0.borrow_mut().now += 3_600_000;
-    host.look().unwrap();
+    host.read_status().unwrap();
 }
 
 #[test]
@@ -80,16 +90,28 @@ fn program_that_no_gateware_accepts_is_refused_before_it_is_sent() {
     let said = |commands: &[Command]| Program::new(commands, 6).map(|_| ()).unwrap_err();
     assert_eq!(said(&[of(6, segment), start(64)]), ProgramError::Axis { axis: 6, axes: 6 });
     assert_eq!(said(&[start(64)]), ProgramError::Axis { axis: 6, axes: 6 });
-    assert_eq!(said(&[of(1, Segment { ticks: 0, ..segment }), start(2)]), ProgramError::NoTicks { axis: 1 });
-    assert_eq!(said(&[of(1, segment), start(2), start(2)]), ProgramError::NoMove { axis: 1, mask: 2 });
-    assert_eq!(said(&[of(1, Segment { last: false, ..segment }), start(2)]), ProgramError::NoEnd { axis: 1 });
+    assert_eq!(
+        said(&[of(1, Segment { ticks: 0, ..segment }), start(2)]),
+        ProgramError::NoTicks { axis: 1 }
+    );
+    assert_eq!(
+        said(&[of(1, segment), start(2), start(2)]),
+        ProgramError::NoMove { axis: 1, mask: 2 }
+    );
+    assert_eq!(
+        said(&[of(1, Segment { last: false, ..segment }), start(2)]),
+        ProgramError::NoEnd { axis: 1 }
+    );
     assert_eq!(said(&[of(1, segment)]), ProgramError::NoStart { axis: 1 });
     Program::new(&[], 6).unwrap();
 }
 
 #[test]
 fn refusals_are_separate_errors() {
-    assert_eq!(HostError::<Infallible>::from(Refusal::Identity(1)), HostError::Refused(Refusal::Identity(1)));
+    assert_eq!(
+        HostError::<Infallible>::from(GatewareMismatch::Identity(1)),
+        HostError::Refused(GatewareMismatch::Identity(1))
+    );
 }
 
 /// Runs a program, stops it, and measures the exchanges until the write of CONTROL with bit 1 is
@@ -130,8 +152,15 @@ fn start_without_power_is_refused_before_anything_is_sent() {
     let commands = [Command::Segment { axis: 0, segment }, Command::Start { mask: 1 }];
     let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
     assert_eq!(error, HostError::Program(ProgramError::NoPower));
-    assert!(error.to_string().starts_with("the drivers have no power: write CONTROL = 1 and wait for `ready`"));
-    assert_eq!(host.write(carrystep_link::registers::START, 1), Err(HostError::Program(ProgramError::NoPower)));
+    assert!(
+        error
+            .to_string()
+            .starts_with("the drivers have no power: write CONTROL = 1 and wait for `ready`")
+    );
+    assert_eq!(
+        host.write(carrystep_link::registers::START, 1),
+        Err(HostError::Program(ProgramError::NoPower))
+    );
     assert!(end.0.borrow().device.log.is_empty(), "something was written");
     host.enable().unwrap();
     assert_eq!(host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn), Ok(Ended::Done));
@@ -143,7 +172,7 @@ fn clear_while_the_estop_is_pressed_is_an_error() {
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
     end.0.borrow_mut().device.press(true);
-    host.look().unwrap();
+    host.read_status().unwrap();
     let begun = end.0.borrow().now;
     assert_eq!(host.clear(), Err(HostError::StillPressed));
     let took = end.0.borrow().now - begun;

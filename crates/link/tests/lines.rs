@@ -45,7 +45,8 @@ fn spi_sends_end_while_there_is_nothing_else_to_send() {
     assert_eq!(line.exchange(&[2; 40], &mut into).unwrap(), Exchanged { sent: 40, received: 40 });
     assert_eq!(line.exchange(&[3; 90], &mut into).unwrap(), Exchanged { sent: 64, received: 64 });
     assert_eq!(line.exchange(&[4; 9], &mut into[..4]).unwrap(), Exchanged { sent: 4, received: 4 });
-    let expected = [vec![0xc0; 16], vec![1; 5], vec![0xc0; 11], vec![2; 40], vec![3; 64], vec![4; 4]];
+    let expected =
+        [vec![0xc0; 16], vec![1; 5], vec![0xc0; 11], vec![2; 40], vec![3; 64], vec![4; 4]];
     assert_eq!(line.free().0, expected.concat());
 }
 
@@ -79,7 +80,8 @@ fn line_that_nobody_reads_does_not_block() {
     let mut line = SerialLine::open(&name, 3_000_000).unwrap();
     let (tell, told) = std::sync::mpsc::channel();
     std::thread::spawn(move || {
-        let sent: usize = (0..1000).map(|_| line.exchange(&[0x55; 256], &mut [0; 256]).unwrap().sent).sum();
+        let sent: usize =
+            (0..1000).map(|_| line.exchange(&[0x55; 256], &mut [0; 256]).unwrap().sent).sum();
         tell.send(sent).unwrap();
     });
     let sent = told.recv_timeout(std::time::Duration::from_secs(30)).expect("it hangs");
@@ -89,8 +91,14 @@ fn line_that_nobody_reads_does_not_block() {
 #[test]
 fn port_that_cannot_be_opened_gives_the_reason() {
     let absent = SerialLine::open("/dev/carrystep-none", 921_600).err().unwrap();
-    assert!(matches!(&absent, OpenError::Absent { port, .. } if port == "/dev/carrystep-none"), "{absent}");
-    assert!(absent.to_string().starts_with("there is no serial port /dev/carrystep-none: "), "{absent}");
+    assert!(
+        matches!(&absent, OpenError::Absent { port, .. } if port == "/dev/carrystep-none"),
+        "{absent}"
+    );
+    assert!(
+        absent.to_string().starts_with("there is no serial port /dev/carrystep-none: "),
+        "{absent}"
+    );
 
     let (_board, port) = TTYPort::pair().unwrap();
     let name = port.name().unwrap();

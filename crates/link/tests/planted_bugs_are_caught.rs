@@ -25,7 +25,11 @@ const IN_C: [(&str, &str, &str); 25] = [
         "}\n    return CARRYSTEP_NOTHING;",
     ),
     ("ticks are not less one", "segment->ticks - 1u", "segment->ticks"),
-    ("the count of others is believed", "advance > session->reached", "false && advance > session->reached"),
+    (
+        "the count of others is believed",
+        "advance > session->reached",
+        "false && advance > session->reached",
+    ),
     ("answers to other hosts are believed", "!own(session, answer) || ", ""),
     (
         "answers to writes that were never sent are believed",
@@ -38,17 +42,37 @@ const IN_C: [(&str, &str, &str); 25] = [
         "",
     ),
     ("a start is fed without power", "return UNPOWERED;", ""),
-    ("a start is written without power", "WRITES(CARRYSTEP_START) && !carrystep_may_start(session)", "0"),
-    ("what was never sent may be executed", "advance > session->reached", "advance > session->length"),
-    ("every refusal begins a new round", "!session->has_refused || behind <= session->refused", "true"),
+    (
+        "a start is written without power",
+        "WRITES(CARRYSTEP_START) && !carrystep_may_start(session)",
+        "0",
+    ),
+    (
+        "what was never sent may be executed",
+        "advance > session->reached",
+        "advance > session->length",
+    ),
+    (
+        "every refusal begins a new round",
+        "!session->has_refused || behind <= session->refused",
+        "true",
+    ),
     (
         "no refusal begins a new round after the first",
         "!session->has_refused || behind <= session->refused",
         "!session->has_refused",
     ),
     ("a busy start is sent again at once", "session->busy = behind == 0;", ""),
-    ("nothing is sent again by time", "waited >= session->resend)", "false && waited >= session->resend)"),
-    ("a question is answered by any answer", " && session->reads[index].sequence == answer->sequence", ""),
+    (
+        "nothing is sent again by time",
+        "waited >= session->resend)",
+        "false && waited >= session->resend)",
+    ),
+    (
+        "a question is answered by any answer",
+        " && session->reads[index].sequence == answer->sequence",
+        "",
+    ),
     (
         "segments on their way are not counted",
         "answer->free > under_way ? answer->free - under_way : 0",
@@ -57,7 +81,11 @@ const IN_C: [(&str, &str, &str); 25] = [
     ("a start does not wait for the other", "!session->starting && !session->armed", "true"),
     ("a start does not wait for its segments", "feeder->axes[axis].waiting == 0", "false"),
     ("only axis 0 is fed first", "feeder->axes[axis].ticks < feeder->axes[found].ticks", "false"),
-    ("a withdrawn segment stays on its way", "settle(session, &session->slots[slot(session, session->length)]);", ""),
+    (
+        "a withdrawn segment stays on its way",
+        "settle(session, &session->slots[slot(session, session->length)]);",
+        "",
+    ),
 ];
 
 fn verdict(client: &mut dyn Client) -> Result<(), String> {

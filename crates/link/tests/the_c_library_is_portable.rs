@@ -33,9 +33,16 @@ fn example(change: impl FnOnce(&mut Device)) -> (Option<i32>, Device) {
     let folder = Folder::new(as_it_is);
     STUBS.iter().for_each(|(name, text)| folder.write(name, text));
     folder.write("rp2040_spi.c", EXAMPLE);
-    let program =
-        folder.compile(&["rp2040_spi.c", "carrystep_feeder.c", "carrystep_session.c", "carrystep_frame.c"]).unwrap();
-    let mut child = Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let program = folder
+        .compile(&[
+            "rp2040_spi.c",
+            "carrystep_feeder.c",
+            "carrystep_session.c",
+            "carrystep_frame.c",
+        ])
+        .unwrap();
+    let mut child =
+        Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut to = child.stdin.take().unwrap();
     let mut device = Device::new(6, 0x77);
     change(&mut device);
@@ -58,9 +65,12 @@ fn example(change: impl FnOnce(&mut Device)) -> (Option<i32>, Device) {
 fn example_moves_exactly_2500_steps() {
     let (status, device) = example(|_| ());
     assert_eq!((status, device.fault), (Some(0), None));
-    let segments =
-        device.log.iter().filter_map(|done| if let Done::Segment(0, words) = done { Some(words) } else { None });
-    let long = |low: u32, high: u32| i128::from((u64::from(high) << 32 | u64::from(low)).cast_signed());
+    let segments = device
+        .log
+        .iter()
+        .filter_map(|done| if let Done::Segment(0, words) = done { Some(words) } else { None });
+    let long =
+        |low: u32, high: u32| i128::from((u64::from(high) << 32 | u64::from(low)).cast_signed());
     let way: i128 = segments
         .map(|&[ticks, v0, v1, a0, a1, ..]| {
             let n = i128::from(ticks) + 1;
@@ -69,7 +79,10 @@ fn example_moves_exactly_2500_steps() {
         .sum();
     assert_eq!(way, 2500 << 64);
     let writes = [Done::Write(0x20, 1), Done::Write(0x21, 1), Done::Write(0x20, 0)];
-    assert_eq!(device.log.iter().filter(|done| matches!(done, Done::Write(..))).collect::<Vec<_>>(), writes.each_ref());
+    assert_eq!(
+        device.log.iter().filter(|done| matches!(done, Done::Write(..))).collect::<Vec<_>>(),
+        writes.each_ref()
+    );
 }
 
 #[test]
@@ -90,14 +103,18 @@ fn library_needs_only_memset_and_memcpy() {
     let folder = Folder::new(as_it_is);
     let arguments = ["-c", "-ffreestanding", "-fno-builtin"];
     let copies = &["memset", "memcpy"][..];
-    for (file, allowed) in
-        [("carrystep_frame.c", &[][..]), ("carrystep_session.c", copies), ("carrystep_feeder.c", copies)]
-    {
+    for (file, allowed) in [
+        ("carrystep_frame.c", &[][..]),
+        ("carrystep_session.c", copies),
+        ("carrystep_feeder.c", copies),
+    ] {
         let object = folder.compile(&[&arguments[..], &[file]].concat()).unwrap();
         let symbols = Command::new("nm").arg("-u").arg(object).output().unwrap();
         let text = String::from_utf8(symbols.stdout).unwrap();
-        let foreign = text.split_whitespace().filter(|&word| word != "U" && !word.starts_with("carrystep_"));
-        let foreign: Vec<&str> = foreign.filter(|word| !word.starts_with('_') && !allowed.contains(word)).collect();
+        let foreign =
+            text.split_whitespace().filter(|&word| word != "U" && !word.starts_with("carrystep_"));
+        let foreign: Vec<&str> =
+            foreign.filter(|word| !word.starts_with('_') && !allowed.contains(word)).collect();
         assert!(foreign.is_empty(), "{file}: {foreign:?}");
     }
     for (name, text) in C_LIBRARY {
@@ -122,8 +139,9 @@ fn library_has_no_undefined_behaviour_on_noise() {
     // A long run of noise.
     let mut random = Random::new(22);
     for _ in 0..300 {
-        let noise: Vec<u8> =
-            (0..200).map(|_| [random.next() as u8, 0xc0, 0xdb][(random.next() % 3) as usize]).collect();
+        let noise: Vec<u8> = (0..200)
+            .map(|_| [random.next() as u8, 0xc0, 0xdb][(random.next() % 3) as usize])
+            .collect();
         use support::client::Client as _;
         client.say(&format!("take 1 {}", hex(&noise)));
     }

@@ -2,26 +2,27 @@
 //! [`SixAxis`] and [`Engine`](crate::Engine); only the way to compute them may change here.
 //!
 //! Between two loads of a segment, the position of an axis is a cubic with integer coefficients. A
-//! *window* is a run of clocks in which nothing but STEP, DIR and the positions can change. The
-//! fast model passes a window at once, axis by axis:
+//! *window* is a run of clocks in which the axes only repeat their additions, so that on the pins
+//! nothing but STEP and DIR can change. The fast model passes a window at once, axis by axis:
 //!
 //! - It divides the window into stretches in which V keeps its sign, and finds the ticks of each
 //!   stretch that step. Where edges are far apart, it jumps from edge to edge: it guesses each root
 //!   in floating point and corrects it in integers.
-//! - Where it expects more than one edge in [a few ticks](crossings), it adds tick by tick, because
-//!   one addition per tick is then cheaper than one root per edge.
+//! - Where it expects more than one edge in six ticks ([`crossings`]), it adds tick by tick,
+//!   because one addition per tick is then cheaper than one root per edge.
 //! - Vector instructions work on several edges of one axis, both in jumps and in phases. Running
 //!   the axes side by side was not faster (docs/decisions/0024).
 //! - The shaper goes from request to request while nothing is held back.
 //!
-//! All other events (a load, a start, a fault, a frozen core, a held-back step) are executed by the
-//! clock-by-clock code; a window ends before them. If a fault occurs in a window, the window is
-//! undone and passed again up to the fault.
+//! All other events (a load, a start, a fault, a frozen core whose pins still move) are executed by
+//! the clock-by-clock code; a window ends before them. While a step is held back, the shaper of
+//! that axis alone is executed clock by clock within the window. If a fault occurs in a window, the
+//! window is undone and passed again up to the fault.
 
 mod crossings;
 mod edges;
 mod engine;
-mod lane;
+mod one_axis;
 mod passage;
 mod pins;
 
@@ -62,40 +63,57 @@ impl Fast {
         self.core.outputs(inputs)
     }
 
-    /// Advances by one cycle and reports the edges on the pins to `to`.
+    /// Advances by one cycle and reports the edges on the pins to `to`. The pins are registers, so
+    /// an edge has the number of the cycle after the executed one: the first cycle with the new
+    /// level.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
-        let before = self.core.lanes.map(|lane| lane.shaper);
+        let before = self.core.axis_models.map(|axis_model| axis_model.shaper);
         self.core.clock(inputs);
         self.cycle += 1;
-        for ((axis, lane), before) in (0..).zip(&self.core.lanes).zip(&before) {
-            edges::changes(self.cycle, axis, before, &lane.shaper, to);
+        for ((axis, axis_model), before) in (0..).zip(&self.core.axis_models).zip(&before) {
+            edges::changes(self.cycle, axis, before, &axis_model.shaper, to);
         }
     }
 
     /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
-    /// cycles nothing changes but STEP, DIR and the positions, provided that the inputs stay the
+    /// cycles no output changes but STEP, DIR and the positions, provided that the inputs stay the
     /// same. If the result is 0, the caller must execute the next cycle with [`Fast::clock`].
     pub fn leap(&mut self, inputs: &Inputs, most: u64, to: &mut impl Edges) -> u64 {
         let mut clocks = most;
         if !self.core.is_still(inputs) {
             clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
-            let mut lanes = self.core.lanes.map(|lane| lane.moving());
+            let mut axis_models = self.core.axis_models.map(|axis_model| axis_model.moving());
             let build = &self.core.build;
-            let from = passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
+            let from =
+                passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
             let strobes;
-            (clocks, strobes) = self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
-            self.core.lanes.iter_mut().zip(&lanes).for_each(|(lane, moved)| lane.moved(moved, strobes));
+            (clocks, strobes) = self.passages.pass(
+                &mut axis_models,
+                from,
+                clocks,
+                &build.timebase,
+                &build.pins,
+                to,
+            );
+            self.core
+                .axis_models
+                .iter_mut()
+                .zip(&axis_models)
+                .for_each(|(axis_model, moved)| axis_model.moved(moved, strobes));
         }
         self.cycle += clocks;
         self.core.pass(clocks);
         clocks
     }
 
-    /// Cycles before the strobe that ends the first of the running segments.
+    /// Cycles from the present one, itself included, to the strobe that ends the first of the
+    /// running segments, that strobe not included. The ticks `left` of a segment include the
+    /// present tick.
     fn clocks_to_load(&self) -> u64 {
-        let left =
-            |lane: &crate::parallel::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
-        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
+        let left = |axis_model: &crate::parallel::six_axis::AxisModel| {
+            axis_model.axis.running.then_some(axis_model.axis.left.saturating_sub(1))
+        };
+        let plain = self.core.axis_models.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()
     }

@@ -123,15 +123,27 @@ mod tests {
     use crate::check::speeds;
     use carrystep_core::Segment;
 
-    const LIMITS: ExactLimits =
-        ExactLimits { start_speed: 0, speed: 1 << 60, acceleration: 1 << 40, jerk: None, tolerance: 1 };
+    const LIMITS: ExactLimits = ExactLimits {
+        start_speed: 0,
+        speed: 1 << 60,
+        acceleration: 1 << 40,
+        jerk: None,
+        tolerance: 1,
+    };
 
     /// The least V of the run that these registers make.
     fn slowest(wanted: Wanted, Bend { a, j }: Bend) -> i128 {
         let n = wanted.ticks;
-        let v = (wanted.distance - n * (n - 1) / 2 * a - n * (n - 1) * (n - 2) / 6 * j).div_euclid(n);
+        let v =
+            (wanted.distance - n * (n - 1) / 2 * a - n * (n - 1) * (n - 2) / 6 * j).div_euclid(n);
         let fits = |x: i128| i64::try_from(x).unwrap();
-        let segment = Segment { ticks: u32::try_from(n).unwrap(), v: fits(v), a: fits(a), j: fits(j), last: false };
+        let segment = Segment {
+            ticks: u32::try_from(n).unwrap(),
+            v: fits(v),
+            a: fits(a),
+            j: fits(j),
+            last: false,
+        };
         speeds(&segment).min().unwrap()
     }
 
@@ -142,7 +154,15 @@ mod tests {
         let n = 100_000;
         let distance = n * n * n / 6 * 109 / 10;
         for doubled_middle in [n * 109 / 10, -n * 109 / 10] {
-            let wanted = Wanted { ticks: n, distance, doubled_middle, jerk: 10, one_way: true, least: 0, first: true };
+            let wanted = Wanted {
+                ticks: n,
+                distance,
+                doubled_middle,
+                jerk: 10,
+                one_way: true,
+                least: 0,
+                first: true,
+            };
             let bend = wanted.within(&LIMITS);
             assert_eq!(bend.j, 10);
             assert!(slowest(wanted, bend) >= 0, "{bend:?}");

@@ -14,7 +14,13 @@ const HELD: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Appends the bounds for the unknowns V n, A n^2 and J n^3, in steps, over `n` ticks. `scale` is
 /// the weight of a row, chosen so that one unit of excess counts like one level.
-pub(crate) fn bounds(rows: &mut Vec<Row>, n: f64, limits: &ExactLimits, [first, last]: [bool; 2], scale: f64) {
+pub(crate) fn bounds(
+    rows: &mut Vec<Row>,
+    n: f64,
+    limits: &ExactLimits,
+    [first, last]: [bool; 2],
+    scale: f64,
+) {
     let mut hold = |at: [f64; 3], most: f64| {
         rows.push(Row { at: at.map(|b| b * scale), error: 0.0, most: most * scale });
     };

@@ -21,7 +21,11 @@ pub(crate) struct Duty {
 ///
 /// # Errors
 /// The first rule that is broken.
-pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> Result<Peaks, Broken> {
+pub(crate) fn check(
+    segments: &[Segment],
+    duty: &Duty,
+    limits: &ExactLimits,
+) -> Result<Peaks, Broken> {
     let mut peaks = [0_i128; 3];
     let (mut ticks, mut distance) = (0_u64, 0_i128);
     for segment in segments {
@@ -94,8 +98,13 @@ pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
 mod tests {
     use super::*;
 
-    const LIMITS: ExactLimits =
-        ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, jerk: Some(7), tolerance: 1 };
+    const LIMITS: ExactLimits = ExactLimits {
+        start_speed: 1000,
+        speed: 1_000_000,
+        acceleration: 100,
+        jerk: Some(7),
+        tolerance: 1,
+    };
 
     fn segment(ticks: u32, v: i64, a: i64, j: i64) -> Segment {
         Segment { ticks, v, a, j, last: false }

@@ -177,7 +177,11 @@ impl<F: Real> Corridor<'_, F> {
         let width = if speed > 0.0 { speed * self.tolerance * JOINT } else { AT_REST };
         let ahead = self.ahead(done, end);
         for sign in [-1.0, 1.0] {
-            rows.push(Row { at: basis(n, n).map(|b| sign * b / width), error: 1.0, most: sign * ahead / width });
+            rows.push(Row {
+                at: basis(n, n).map(|b| sign * b / width),
+                error: 1.0,
+                most: sign * ahead / width,
+            });
         }
     }
 
@@ -220,7 +224,8 @@ impl<F: Real> Corridor<'_, F> {
     /// How far the chord of the profile's tick lies above the profile at time `t`, steps.
     fn sag(&self, stretch: Stretch, t: f64) -> f64 {
         let part = t - t.floor();
-        let acceleration = self.profile.acceleration(self.seconds(stretch.first as f64 + t)) * self.clock.tick;
+        let acceleration =
+            self.profile.acceleration(self.seconds(stretch.first as f64 + t)) * self.clock.tick;
         wide(acceleration * self.clock.tick) * part * (1.0 - part) / 2.0
     }
 
@@ -238,10 +243,19 @@ impl<F: Real> Corridor<'_, F> {
         // chords, so the chord of the curve may deviate from the curve as far as the profile's
         // chord does from the profile.
         let chords = late > 0.0 && self.bend / 8.0 > UNSEEN * width;
-        let side = |t: f64| if chords { (chord(t, n), self.sag(stretch, t)) } else { (basis(t, n), 0.0) };
+        let side =
+            |t: f64| if chords { (chord(t, n), self.sag(stretch, t)) } else { (basis(t, n), 0.0) };
         let [(after, above), (before, below)] = [t + late, t - late].map(side);
-        rows.push(Row { at: after.map(|b| -b * weight), error: 1.0, most: -(ahead + above) * weight - slack });
-        rows.push(Row { at: before.map(|b| b * weight), error: 1.0, most: (ahead + below) * weight - slack });
+        rows.push(Row {
+            at: after.map(|b| -b * weight),
+            error: 1.0,
+            most: -(ahead + above) * weight - slack,
+        });
+        rows.push(Row {
+            at: before.map(|b| b * weight),
+            error: 1.0,
+            most: (ahead + below) * weight - slack,
+        });
     }
 }
 

@@ -9,7 +9,7 @@ use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::{MoveFile, PathKind};
-use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, kinds};
+use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
@@ -62,15 +62,22 @@ pub(crate) fn demand<F: Real>(
     if straight {
         line::share_limits(moved.profile, &mut axes);
     }
-    let refused = |axis: usize, refusal: Refusal, least_time| {
-        let (axis, refusal) = if straight { line::blame(moved.profile, &own, axis, refusal) } else { (axis, refusal) };
+    let refused = |axis: usize, refusal: LimitRefusal, least_time| {
+        let (axis, refusal) = if straight {
+            line::blame(moved.profile, &own, axis, refusal)
+        } else {
+            (axis, refusal)
+        };
         let carrystep_files::Axis { name, unit, .. } = &file.machine.axes[axis];
         PlanError::Refused { index, axis: name.clone(), refusal, unit: unit.clone(), least_time }
     };
 
     let mut least = F::zero();
-    for (axis, (steps, limits)) in axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero()) {
-        let time = kinds::least_time(moved.profile, *steps, limits).map_err(|refusal| refused(axis, refusal, None))?;
+    for (axis, (steps, limits)) in
+        axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero())
+    {
+        let time = kinds::least_time(moved.profile, *steps, limits)
+            .map_err(|refusal| refused(axis, refusal, None))?;
         least = least.max(time);
     }
     let clock = match time {
@@ -87,7 +94,7 @@ pub(crate) fn demand<F: Real>(
 
     // Where several axes refuse the time, the error names the slowest one: its least time works for
     // all axes.
-    let mut worst: Option<(usize, Refusal)> = None;
+    let mut worst: Option<(usize, LimitRefusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
     for (axis, (steps, limits)) in axes.iter().enumerate() {
         if steps.is_zero() {
@@ -148,7 +155,8 @@ fn given<F: Real>(
     let tick_ns = timebase.tick_ns();
     let ns = time * BigDecimal::from(1_000_000_000_u64);
     let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
-    let too_long = || PlanError::TooLong { index, seconds: time.to_f64().unwrap_or(f64::NAN), tick_ns };
+    let too_long =
+        || PlanError::TooLong { index, seconds: time.to_f64().unwrap_or(f64::NAN), tick_ns };
     let tick = BigDecimal::from(tick_ns);
     // The decimal quotient may be rounded; the remainder is exact and corrects it.
     let mut full = (&ns / &tick).with_scale_round(0, RoundingMode::Floor);

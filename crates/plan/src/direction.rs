@@ -34,26 +34,33 @@ impl Pins {
     /// The state after configuration: DIR is forward. No axis can start before the first strobe, so
     /// DIR has been stable since one latency and one tick before the origin.
     pub fn new(timebase: &Timebase) -> Self {
-        let configured = -i128::from(timebase.latency_clocks()) - i128::from(timebase.clocks_per_tick());
+        let configured =
+            -i128::from(timebase.latency_clocks()) - i128::from(timebase.clocks_per_tick());
         Self { backward: false, turned: configured, last_edge: None }
     }
 
     /// Ticks of rest that this axis needs before a move that would start at clock `begin`.
-    pub fn rest(&self, begin: i128, strokes: &Strokes, pins: &PinTiming, build: (&Timebase, StartPhase)) -> u64 {
+    pub fn rest(
+        &self,
+        begin: i128,
+        strokes: &Strokes,
+        pins: &PinTiming,
+        build: (&Timebase, StartPhase),
+    ) -> u64 {
         let clocks = i128::from(build.0.clocks_per_tick());
         let edge = begin + strokes.first_edge;
         let missing = |since: i128| {
-            let earliest = (since + i128::from(pins.setup)).max(self.ready(pins));
+            let earliest = (since + i128::from(pins.dir_setup)).max(self.ready(pins));
             u64::try_from((earliest - edge + clocks - 1).div_euclid(clocks)).unwrap_or(0)
         };
-        if !self.turns(strokes) {
+        if !self.changes_dir(strokes) {
             return missing(self.turned);
         }
-        if missing(self.turn(begin + strokes.motion, pins)) == 0 {
+        if missing(self.dir_change(begin + strokes.motion, pins)) == 0 {
             return 0;
         }
         let (least, early) = if borrows(build.1, strokes.backward) { (1, 0) } else { (2, clocks) };
-        missing(self.turn(begin + early, pins)).max(least)
+        missing(self.dir_change(begin + early, pins)).max(least)
     }
 
     /// Updates the state of the pins by a move whose rest starts at clock `begin`. `turned_in_rest`
@@ -68,25 +75,29 @@ impl Pins {
         timebase: &Timebase,
     ) {
         let motion = begin + i128::from(rest) * i128::from(timebase.clocks_per_tick());
-        if self.turns(strokes) {
-            self.turned = self.turn(turned_in_rest.map_or(motion + strokes.motion, |early| begin + early), pins);
+        if self.changes_dir(strokes) {
+            self.turned = self.dir_change(
+                turned_in_rest.map_or(motion + strokes.motion, |early| begin + early),
+                pins,
+            );
             self.backward = strokes.backward;
         }
         self.last_edge = Some(motion + strokes.last_edge);
     }
 
     /// Whether DIR has to change for this move.
-    pub fn turns(&self, strokes: &Strokes) -> bool {
+    pub fn changes_dir(&self, strokes: &Strokes) -> bool {
         self.backward != strokes.backward
     }
 
-    fn turn(&self, wanted: i128, pins: &PinTiming) -> i128 {
-        self.last_edge.map_or(wanted, |last| wanted.max(last + i128::from(pins.hold)))
+    fn dir_change(&self, wanted: i128, pins: &PinTiming) -> i128 {
+        self.last_edge.map_or(wanted, |last| wanted.max(last + i128::from(pins.dir_hold)))
     }
 
     /// The clock at which the last pulse and the gap after it are over.
     fn ready(&self, pins: &PinTiming) -> i128 {
-        self.last_edge.map_or(i128::MIN, |last| last + i128::from(pins.width) + i128::from(pins.gap))
+        self.last_edge
+            .map_or(i128::MIN, |last| last + i128::from(pins.step_high) + i128::from(pins.step_low))
     }
 }
 

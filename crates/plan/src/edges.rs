@@ -41,7 +41,13 @@ pub(crate) fn first_motion(segments: &[Segment]) -> u64 {
 ///
 /// The segments must travel in one direction only; `start` is the value of P before them. Returns
 /// `None` if the segments have fewer than `k` pulses.
-pub(crate) fn edge(segments: &[Segment], start: u64, backward: bool, k: u64, timebase: &Timebase) -> Option<i128> {
+pub(crate) fn edge(
+    segments: &[Segment],
+    start: u64,
+    backward: bool,
+    k: u64,
+    timebase: &Timebase,
+) -> Option<i128> {
     let target = i128::from(k) * ONE_STEP;
     let passed = |p: i128| if backward { p < ONE_STEP - target } else { p >= target };
     let mut p = i128::from(start);

@@ -3,7 +3,7 @@
 //! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use carrystep_files::{TooManyAxes, Unit};
-use carrystep_profile::Refusal;
+use carrystep_profile::LimitRefusal;
 use thiserror::Error;
 
 /// A move that cannot be done as requested, and what to change. `index` counts moves from 0; the
@@ -21,7 +21,7 @@ pub enum PlanError {
         /// The axis that needs the longest time.
         axis: String,
         /// The limit with the wanted and the available value, in steps and seconds.
-        refusal: Refusal,
+        refusal: LimitRefusal,
         /// The unit in which the message gives the values.
         unit: Unit,
         /// Least time in which all axes can do the move, seconds, rounded up to whole ticks; `None`
@@ -133,8 +133,8 @@ impl PlanError {
     }
 }
 
-fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
-    let Refusal { limit, wanted, available, .. } = refusal;
+fn refused(refusal: &LimitRefusal, unit: &Unit, least_time: Option<f64>) -> String {
+    let LimitRefusal { limit, wanted, available, .. } = refusal;
     let seconds = limit.seconds();
     let has = unit.both(*available, seconds);
     match least_time {
@@ -145,7 +145,10 @@ fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
             let needs = if needs == has { format!("a little more than {needs}") } else { needs };
             format!("needs {needs}, over {limit} {has}; at least {least} s would do")
         }
-        Some(least) => format!("no {} would do, {limit} is {has}; at least {least} s would do", unit.per(seconds)),
+        Some(least) => format!(
+            "no {} would do, {limit} is {has}; at least {least} s would do",
+            unit.per(seconds)
+        ),
     }
 }
 
@@ -155,7 +158,8 @@ fn too_slow(broken: Broken, least_speed: &str, longest: Option<f64>) -> String {
             format!("so slow that it needs over 131072 segments; at most {longest} s would do")
         }
         (Broken::Segments, None) => {
-            "so slow that it needs over 131072 segments; raise the limits that make it slow".to_owned()
+            "so slow that it needs over 131072 segments; raise the limits that make it slow"
+                .to_owned()
         }
         (_, Some(longest)) => format!("too slow to place its edges; at most {longest} s would do"),
         (_, None) => format!(

@@ -47,17 +47,22 @@ pub(crate) fn solve(rows: &[Row], start: [usize; 4]) -> Option<Best> {
         let most = basis.map(|i| rows[i].most);
         let z: [f64; 4] = std::array::from_fn(|r| dot(inverse[r], most));
         let excess = |row: &Row| dot(wide(row), z) - row.most;
-        let (worst, excess) =
-            rows.iter().map(excess).enumerate().fold((0, NOISE), |best, now| if now.1 > best.1 { now } else { best });
+        let (worst, excess) = rows
+            .iter()
+            .map(excess)
+            .enumerate()
+            .fold((0, NOISE), |best, now| if now.1 > best.1 { now } else { best });
         if excess <= NOISE {
             return Some(Best { coefficients: [z[0], z[1], z[2]], level: z[3] });
         }
         // Writes the entering row as a combination of the basis rows. The dual multipliers of the
         // basis are the last row of the inverse, negated.
         let entering = wide(&rows[worst]);
-        let share: [f64; 4] = std::array::from_fn(|c| (0..4).map(|r| entering[r] * inverse[r][c]).sum());
+        let share: [f64; 4] =
+            std::array::from_fn(|c| (0..4).map(|r| entering[r] * inverse[r][c]).sum());
         let ratio = |c: usize| -inverse[3][c] / share[c];
-        let leaving = (0..4).filter(|&c| share[c] > 1e-12).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
+        let leaving =
+            (0..4).filter(|&c| share[c] > 1e-12).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
         basis[leaving] = worst;
         for row in &mut inverse {
             let pivot = row[leaving] / share[leaving];
@@ -79,9 +84,11 @@ fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
 
 /// Inverts a matrix by Gauss-Jordan elimination with column pivots; `None` if it is singular.
 fn invert(mut matrix: [[f64; 4]; 4]) -> Option<[[f64; 4]; 4]> {
-    let mut inverse: [[f64; 4]; 4] = std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))));
+    let mut inverse: [[f64; 4]; 4] =
+        std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))));
     for column in 0..4 {
-        let pivot = (column..4).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;
+        let pivot = (column..4)
+            .max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;
         let value = matrix[pivot][column];
         if value == 0.0 || !value.is_finite() {
             return None;
@@ -108,7 +115,11 @@ mod tests {
 
     /// The two rows that bound the error at `s` on both sides, for coefficients of s, s^2 and s^3.
     fn point(s: f64, value: f64) -> [Row; 2] {
-        [1.0, -1.0].map(|sign| Row { at: [s, s * s, s * s * s].map(|b| sign * b), error: 1.0, most: sign * value })
+        [1.0, -1.0].map(|sign| Row {
+            at: [s, s * s, s * s * s].map(|b| sign * b),
+            error: 1.0,
+            most: sign * value,
+        })
     }
 
     fn samples(of: impl Fn(f64) -> f64) -> Vec<Row> {
@@ -117,7 +128,8 @@ mod tests {
 
     #[test]
     fn a_sampled_cubic_is_recovered_exactly() {
-        let best = solve(&samples(|s| 3.0 * s - 2.0 * s * s + s * s * s), [0, 43, 84, 127]).unwrap();
+        let best =
+            solve(&samples(|s| 3.0 * s - 2.0 * s * s + s * s * s), [0, 43, 84, 127]).unwrap();
         assert!(best.level.abs() < 1e-12, "{best:?}");
         assert!((best.coefficients[1] + 2.0).abs() < 1e-9);
     }

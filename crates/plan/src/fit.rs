@@ -74,7 +74,9 @@ impl<F: Real> Fitter<'_, F> {
             let longest = self.longest(first, done, guess);
             let fitted = self.without_stub(first, done, longest);
             let length = fitted.ticks as f64;
-            let trend = segments.last().map_or(1.0, |before| (length / before.ticks as f64).clamp(0.5, 2.0));
+            let trend = segments
+                .last()
+                .map_or(1.0, |before| (length / before.ticks as f64).clamp(0.5, 2.0));
             guess = (length * trend).max(LEAST_GUESS);
             first += fitted.ticks;
             done += fitted.distance;
@@ -93,7 +95,9 @@ impl<F: Real> Fitter<'_, F> {
         let end = piece.start + piece.units;
         let mut first = 0;
         let mut segments = Vec::with_capacity(risen.len());
-        for (left, &Fitted { ticks, bend: Bend { a, j }, distance }) in (0..risen.len()).rev().zip(risen.iter().rev()) {
+        for (left, &Fitted { ticks, bend: Bend { a, j }, distance }) in
+            (0..risen.len()).rev().zip(risen.iter().rev())
+        {
             let ends = left == 0 && piece.first + piece.ticks == self.corridor.clock.ticks;
             if distance > end - done && !ends {
                 return None;
@@ -136,7 +140,8 @@ impl<F: Real> Fitter<'_, F> {
             if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 40 + 1) {
                 break;
             }
-            let next = if long[1].1.is_finite() { shorter(long) } else { longer(ticks as f64, level) };
+            let next =
+                if long[1].1.is_finite() { shorter(long) } else { longer(ticks as f64, level) };
             ticks = match next as u64 {
                 next if next > known && next < bad => next,
                 next if next >= bad && bad > most => most,
@@ -169,7 +174,9 @@ impl<F: Real> Fitter<'_, F> {
             return self.cubic(stretch, false);
         }
         let closed = self.cubic(stretch, true);
-        if closed.is_some_and(|(_, level)| level <= FULL) || piece.first + piece.ticks == self.corridor.clock.ticks {
+        if closed.is_some_and(|(_, level)| level <= FULL)
+            || piece.first + piece.ticks == self.corridor.clock.ticks
+        {
             return closed;
         }
         self.cubic(stretch, false)
@@ -197,7 +204,11 @@ impl<F: Real> Fitter<'_, F> {
             self.rows.push(Row { at: at.map(|b| -b), error: 1.0, most: -most });
         } else {
             // The cubic must not pass the end of the piece, because nothing could correct that.
-            self.rows.push(Row { at: basis(n, n).map(|b| b * scale), error: 0.0, most: steps(rest) * scale });
+            self.rows.push(Row {
+                at: basis(n, n).map(|b| b * scale),
+                error: 0.0,
+                most: steps(rest) * scale,
+            });
         }
         bounds(&mut self.rows, n, self.limits, [opens, ends], scale);
         let [v, a, j] = solve(&self.rows, start)?.coefficients;
@@ -216,7 +227,11 @@ impl<F: Real> Fitter<'_, F> {
                 least: i128::from(opens && self.corridor.steps_at_once()),
                 first: opens,
             };
-            let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, rest, ends)?;
+            let fitted = self.whole(
+                Fitted { ticks, bend: wanted.within(self.limits), distance },
+                rest,
+                ends,
+            )?;
             let level = self.judge(&fitted, (samples, standing), opens)?;
             Some((fitted, level))
         })
@@ -237,7 +252,12 @@ impl<F: Real> Fitter<'_, F> {
 
     /// Returns the level of the integers as a fraction of the tolerance, or `None` if they break a
     /// limit. The start speed counts only for a segment that `opens` a move.
-    fn judge(&self, fitted: &Fitted, (samples, standing): (usize, usize), opens: bool) -> Option<f64> {
+    fn judge(
+        &self,
+        fitted: &Fitted,
+        (samples, standing): (usize, usize),
+        opens: bool,
+    ) -> Option<f64> {
         let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
         let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
@@ -251,12 +271,17 @@ impl<F: Real> Fitter<'_, F> {
         if opens && self.corridor.steps_at_once() && v == 0 {
             return None;
         }
-        if opens && start_speed(&segment, false, self.limits) > self.limits.start_speed + self.limits.tolerance {
+        if opens
+            && start_speed(&segment, false, self.limits)
+                > self.limits.start_speed + self.limits.tolerance
+        {
             return None;
         }
         let length = ticks as f64;
         let found = [steps(level), steps(a) * length * length, steps(j) * length * length * length];
-        let error = |row: &Row| row.at[0] * found[0] + row.at[1] * found[1] + row.at[2] * found[2] - row.most;
+        let error = |row: &Row| {
+            row.at[0] * found[0] + row.at[1] * found[1] + row.at[2] * found[2] - row.most
+        };
         let side = |side| peak(self.rows[side..standing.max(side)].iter().step_by(2).map(error));
         let rest = self.rows[standing..samples].iter().map(error).fold(0.0, f64::max);
         Some(rest.max(side(0)).max(side(1)))
@@ -265,7 +290,8 @@ impl<F: Real> Fitter<'_, F> {
     /// A segment of one tick that returns to the profile as far as the speed limit allows.
     fn straight(&self, first: u64, done: i128) -> Fitted {
         let piece = self.corridor.piece;
-        let ends = first + 1 == piece.ticks && piece.first + piece.ticks == self.corridor.clock.ticks;
+        let ends =
+            first + 1 == piece.ticks && piece.first + piece.ticks == self.corridor.clock.ticks;
         let rest = piece.start + piece.units - done;
         let ideal = (self.corridor.ahead(done, (first + 1) as f64) * 2_f64.powi(64)) as i128;
         let distance = if ends { rest } else { ideal.min(rest).clamp(0, self.limits.speed) };

@@ -48,7 +48,9 @@ mod tests {
     fn longest_time_is_within_two_percent_below_the_limit() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         for limit in [0.5_f64, 3.3333, 2190.7, 654_321.0] {
-            let found = longest_time(limit / 40.0, 1e6, &timebase, |time| time.to_f64().unwrap() <= limit).unwrap();
+            let found =
+                longest_time(limit / 40.0, 1e6, &timebase, |time| time.to_f64().unwrap() <= limit)
+                    .unwrap();
             assert!(found <= limit && found > 0.98 * limit, "{found} {limit}");
         }
         assert_eq!(longest_time(1.0, 1e6, &timebase, |_| false), None);

@@ -6,7 +6,7 @@
 use crate::peaks::Peaks;
 use carrystep_core::{Build, Command, Program, Segment};
 use carrystep_files::PathKind;
-use carrystep_profile::{Leg, Line, SharedProfile, Timeline};
+use carrystep_profile::{Leg, SharedProfile, StraightLine, Timeline};
 
 /// All moves of a file, ready for the gateware. The origin of all ticks is the first tick of the
 /// first move.
@@ -61,15 +61,17 @@ impl Plan {
     }
 
     /// The moves along a straight line, which the checker needs for its tolerance across the line.
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<StraightLine> {
         let mut before = vec![0; self.moves.first().map_or(0, |planned| planned.axes.len())];
         let mut lines = Vec::new();
         let per_second = 2_f64.powi(-64) / self.build.timebase.tick_seconds();
         for PlannedMove { path, axes, .. } in &self.moves {
             if *path == PathKind::Straight {
-                let part = |axis: &PlannedAxis| axis.peaks.speed as f64 * per_second / axis.steps.unsigned_abs() as f64;
+                let part = |axis: &PlannedAxis| {
+                    axis.peaks.speed as f64 * per_second / axis.steps.unsigned_abs() as f64
+                };
                 let moving = axes.iter().filter(|axis| axis.steps != 0);
-                lines.push(Line {
+                lines.push(StraightLine {
                     before: before.clone(),
                     steps: axes.iter().map(|axis| axis.steps).collect(),
                     speed: moving.map(part).fold(0.0, f64::max),

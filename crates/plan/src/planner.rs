@@ -1,9 +1,9 @@
 //! Plans a move file: for each move it finds the time and the profiles, shares the distance out,
-//! writes the segments, adds the rest that DIR needs, and runs the exact check.
+//! writes the segments, runs the exact check, and adds the rest that DIR needs.
 //!
 //! This file holds the order of these steps; each step has a module of its own. The two constants
-//! below may be tuned: the exact check (`check.rs`) decides whether a plan leaves this crate. A
-//! unit is 2^-64 step throughout the crate.
+//! below may be changed without harm, because the exact check (`check.rs`) decides whether a plan
+//! leaves this crate. A unit is 2^-64 step throughout the crate.
 
 use crate::check::{Duty, check};
 use crate::corridor::{self, Corridor};
@@ -39,12 +39,14 @@ use std::sync::Arc;
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::new::<F>(file)?;
-    let moves = (0..file.moves.len()).map(|index| planner.plan_move::<F>(index)).collect::<Result<_, _>>()?;
+    let moves = (0..file.moves.len())
+        .map(|index| planner.plan_move::<F>(index))
+        .collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
 }
 
-/// Least length of a fitted piece in multiples of the tolerance: in a short piece the tolerance is
-/// reduced to the length in ticks divided by this number.
+/// Limits the tolerance of a fit in a short piece, in ticks, to the length of the piece in ticks
+/// divided by this number. A piece of 16 ticks has a tolerance of at most 0.25 ticks.
 const LEAST_RATIO: f64 = 64.0;
 
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
@@ -79,7 +81,9 @@ struct Draft<F: Real> {
 impl<'a> Planner<'a> {
     fn new<F: Real>(file: &'a MoveFile) -> Result<Self, PlanError> {
         let timebase = file.machine.timebase;
-        let exact = |axis: &Axis| ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range));
+        let exact = |axis: &Axis| {
+            ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
+        };
         Ok(Self {
             file,
             build: file.machine.build()?,
@@ -91,11 +95,13 @@ impl<'a> Planner<'a> {
 
     fn plan_move<F: Real>(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
         let time = self.file.moves[index].time.as_ref();
-        let (clock, drafts) = self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
+        let (clock, drafts) =
+            self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
         let axes = &self.file.machine.axes;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
-            self.finish(Place { index, axis }, draft, rest, &clock).map_err(|b| broken(index, &axes[axis], b))
+            self.finish(Place { index, axis }, draft, rest, &clock)
+                .map_err(|b| broken(index, &axes[axis], b))
         });
         let planned = planned.collect::<Result<Vec<_>, _>>()?;
         let start_tick = self.ticks + rest;
@@ -103,54 +109,90 @@ impl<'a> Planner<'a> {
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
         let Move { profile, path, fit_ns, .. } = self.file.moves[index];
         let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
-        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
+        Ok(PlannedMove {
+            start_tick,
+            rest_ticks: rest,
+            ticks: clock.ticks,
+            seconds,
+            fit_seconds,
+            path,
+            axes: planned,
+        })
     }
 
     /// Plans all axes of a move, in the given time in seconds, or without one as fast as the limits
     /// allow.
-    fn drafts<F: Real>(&self, index: usize, time: Option<&BigDecimal>) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
+    fn drafts<F: Real>(
+        &self,
+        index: usize,
+        time: Option<&BigDecimal>,
+    ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand::<F>(self.file, index, time)?;
         let axes = &self.file.machine.axes;
         let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { index, axis }, profile, &clock).map_err(|b| broken(index, &axes[axis], b))
+            self.draft(Place { index, axis }, profile, &clock)
+                .map_err(|b| broken(index, &axes[axis], b))
         });
         Ok((clock, drafts.collect::<Result<_, _>>()?))
     }
 
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
-    /// longest time that works. Every other error is returned unchanged.
+    /// longest time that works. It is found by bisection between the shortest and the given time;
+    /// each candidate is planned as a trial. Every other error is returned unchanged.
     fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
-        let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } = error else {
+        let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } =
+            error
+        else {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest = self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let shortest =
+            self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
         let given = self.file.moves[index].time.as_ref().and_then(BigDecimal::to_f64);
         let works = |time: &BigDecimal| self.drafts::<F>(index, Some(time)).is_ok();
-        let longest = shortest.zip(given).and_then(|(least, given)| longest_time(least, given, timebase, works));
+        let longest = shortest
+            .zip(given)
+            .and_then(|(least, given)| longest_time(least, given, timebase, works));
         let named = self.file.machine.axes.iter().find(|one| one.name == axis);
         let least = slow::least_speed(timebase);
-        let least_speed = named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
+        let least_speed =
+            named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
         PlanError::TooSlow { index, axis, broken, least_speed, longest }
     }
 
-    fn draft<F: Real>(&self, place: Place, profile: SharedProfile<F>, clock: &Clock<F>) -> Result<Draft<F>, Broken> {
+    fn draft<F: Real>(
+        &self,
+        place: Place,
+        profile: SharedProfile<F>,
+        clock: &Clock<F>,
+    ) -> Result<Draft<F>, Broken> {
         let Place { index, axis } = place;
         let steps = self.file.moves[index].steps[axis];
         if steps == 0 {
-            return Ok(Draft { steps, profile, segments: still(clock.ticks), strokes: None, rest: 0 });
+            return Ok(Draft {
+                steps,
+                profile,
+                segments: still(clock.ticks),
+                strokes: None,
+                rest: 0,
+            });
         }
         let segments = self.motion(place, steps, &*profile, clock, 0)?;
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
         let backward = steps < 0;
-        let edge = |k| edges::edge(&segments, phase.start_value(), backward, k, timebase).ok_or(Broken::Landing);
+        let edge = |k| {
+            edges::edge(&segments, phase.start_value(), backward, k, timebase)
+                .ok_or(Broken::Landing)
+        };
         let strokes = Strokes {
             backward,
-            motion: i128::from(edges::first_motion(&segments)) * i128::from(timebase.clocks_per_tick()),
+            motion: i128::from(edges::first_motion(&segments))
+                * i128::from(timebase.clocks_per_tick()),
             first_edge: edge(1)?,
             last_edge: edge(steps.unsigned_abs())?,
         };
-        let rest = self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
+        let rest =
+            self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
         Ok(Draft { steps, profile, segments, strokes: Some(strokes), rest })
     }
 
@@ -168,8 +210,15 @@ impl<'a> Planner<'a> {
         let Move { profile: kind, fit_ns, .. } = self.file.moves[place.index];
         let limits = self.limits(place, profile);
         let (phase, backward) = (self.build.phase, steps < 0);
-        let mut writer =
-            Writer { profile, clock: *clock, limits: &limits, phase, backward, segments: Vec::new(), ahead: 0 };
+        let mut writer = Writer {
+            profile,
+            clock: *clock,
+            limits: &limits,
+            phase,
+            backward,
+            segments: Vec::new(),
+            ahead: 0,
+        };
         let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
         let breakpoints = if kind.is_fitted() {
             Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
@@ -189,17 +238,31 @@ impl<'a> Planner<'a> {
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
+            // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
+            // that are curved and belong to a sine or a logistic profile are fitted. The rest are
+            // exact.
             if piece.by_pulse {
                 writer.placed(piece, &pulses)?;
             } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
                 let pulses = pulses.count;
                 let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
-                let [begin, end] = [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
+                let [begin, end] = [piece.first, piece.first + piece.ticks]
+                    .map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;
                 let bend = corridor::steps(limits.acceleration);
-                let corridor =
-                    Corridor { profile, clock: *clock, phase, backward, pulses, piece, rises, tolerance, bend };
-                let mut fitter = Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
+                let corridor = Corridor {
+                    profile,
+                    clock: *clock,
+                    phase,
+                    backward,
+                    pulses,
+                    piece,
+                    rises,
+                    tolerance,
+                    bend,
+                };
+                let mut fitter =
+                    Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
                 writer.fitted(piece, &segments, last)?;
@@ -207,12 +270,13 @@ impl<'a> Planner<'a> {
                     risen = segments;
                 }
             } else {
-                // In a fitted move only the last piece has to land exactly, because each exact
-                // landing costs a segment. A piece also lands exactly if the next piece is too
-                // small to take over its remainder.
+                // In a move that is not fitted every piece lands exactly. In a fitted move only the
+                // last piece must, because each exact landing costs a segment; the remainder of
+                // another piece goes to the next one. There are two exceptions. A piece lands
+                // exactly if the next one is too small to take over its remainder.
                 let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
-                // A piece longer than one segment's 32-bit tick counter also lands exactly: an
-                // uncorrected rounding of half a unit in V would shift edges visibly after some
+                // And a piece longer than one segment's 32-bit tick counter lands exactly, because
+                // an uncorrected rounding of half a unit in V would shift edges visibly after some
                 // hours.
                 let long = piece.ticks > u64::from(u32::MAX);
                 let lands = !kind.is_fitted() || long || pieces.get(index + 1).is_none_or(small);
@@ -223,19 +287,26 @@ impl<'a> Planner<'a> {
     }
 
     /// The limits that the integers of one axis must keep in one move.
-    fn limits<F: Real>(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
+    fn limits<F: Real>(
+        &self,
+        Place { index, axis }: Place,
+        profile: &dyn Profile<F>,
+    ) -> ExactLimits {
         let limits = self.limits[axis];
         if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
             return limits;
         }
         // A logistic profile is never at rest. Without a start speed in the file, the speed of the
         // curve itself at time 0 is therefore the limit of the start speed.
-        let per_tick = profile.speed(F::zero()) * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
+        let per_tick = profile.speed(F::zero())
+            * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
         ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
     }
 
-    /// Puts the rest before the motion, marks the last segment, runs the exact check on the result,
-    /// and updates the recorded state of the axis' pins.
+    /// Finishes an axis of a move, in this order: plans the motion again where the rest has already
+    /// travelled a unit of it, runs the exact check on the motion alone, tests that the rest
+    /// travels what it has borrowed, updates the recorded state of the axis' pins, puts the rest
+    /// before the motion, and marks the last segment.
     fn finish<F: Real>(
         &mut self,
         place: Place,
@@ -250,7 +321,9 @@ impl<'a> Planner<'a> {
         let mut before = still(rest);
         let mut early = None;
         let mut borrowed = 0;
-        if own_rest > 0 && strokes.is_some_and(|s| self.pins[axis].turns(&s)) {
+        // A rest in which DIR changes is written by `turning_rest`, whose length has 32 bits; a
+        // longer one is refused.
+        if own_rest > 0 && strokes.is_some_and(|s| self.pins[axis].changes_dir(&s)) {
             before = turning_rest(u32::try_from(rest).map_err(|_| Broken::Range)?, backward, phase);
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
             if borrows(phase, backward) {
@@ -258,7 +331,11 @@ impl<'a> Planner<'a> {
                 motion = self.motion(place, steps, &*profile, clock, borrowed)?;
             }
         }
-        let duty = Duty { backward, distance: i128::from(steps) * ONE_STEP - borrowed, ticks: clock.ticks };
+        let duty = Duty {
+            backward,
+            distance: i128::from(steps) * ONE_STEP - borrowed,
+            ticks: clock.ticks,
+        };
         let limits = self.limits(place, &*profile);
         let peaks = if steps == 0 { Peaks::default() } else { check(&motion, &duty, &limits)? };
         if before.iter().map(|s| edges::travel(s, s.ticks.into())).sum::<i128>() != borrowed {
@@ -266,7 +343,14 @@ impl<'a> Planner<'a> {
         }
         if let Some(strokes) = strokes {
             let now = self.now();
-            self.pins[axis].after(now, rest, early, &strokes, &self.build.pins[axis], &self.build.timebase);
+            self.pins[axis].after(
+                now,
+                rest,
+                early,
+                &strokes,
+                &self.build.pins[axis],
+                &self.build.timebase,
+            );
         }
         let mut segments = before;
         segments.append(&mut motion);
@@ -283,8 +367,8 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The edge tolerance of a fit in ticks. It is never less than the time that the floats of the
-/// profile can resolve.
+/// The edge tolerance of a fit in ticks: that of the move file, but not less than the time that the
+/// floats of the profile can resolve. In a short piece, `LEAST_RATIO` reduces it further.
 fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
     let noise = F::epsilon().to_f64().unwrap_or(0.0) * 16.0 * clock.ticks as f64;
     (fit_ns as f64 / tick_ns as f64).max(noise)
@@ -292,11 +376,13 @@ fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
 
 /// Whether a piece needs no fit, because it is one tick long or has constant speed.
 fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
-    let middle = (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
+    let middle =
+        (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
     piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
 }
 
-/// Segments that keep an axis at rest for a number of ticks.
+/// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
+/// limit of the gateware's counter.
 fn still(mut ticks: u64) -> Vec<Segment> {
     let mut segments = Vec::new();
     while ticks > 0 {

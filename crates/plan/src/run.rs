@@ -99,12 +99,15 @@ impl<F: Real> Writer<'_, F> {
         self.lay(n, distance, last.bend, false)?;
         let rest = -sign * self.ahead;
         for (other, fitted) in (1..laid).rev().zip(others.iter().rev()) {
-            let Some((slower, faster)) = landing::shared(fitted.ticks.into(), n, rest) else { continue };
+            let Some((slower, faster)) = landing::shared(fitted.ticks.into(), n, rest) else {
+                continue;
+            };
             let faster = [(other, slower), (laid, faster)].map(|(i, units)| {
                 let segment = self.segments.get(i).copied()?;
                 let v = i64::try_from(i128::from(segment.v) + sign * units).ok()?;
                 let faster = Segment { v, ..segment };
-                let kept = speeds(&faster).all(|v| (0..=self.limits.fastest()).contains(&(sign * v)));
+                let kept =
+                    speeds(&faster).all(|v| (0..=self.limits.fastest()).contains(&(sign * v)));
                 kept.then_some(faster)
             });
             if let [Some(other_faster), Some(last_faster)] = faster {
@@ -160,18 +163,31 @@ impl<F: Real> Writer<'_, F> {
             let local = share::distance(self.profile, &self.clock, first, ticks);
             local.map(|local| local.min(units)).ok_or(Broken::Range)
         };
-        let rises = self.profile.speed(self.clock.at(first)) <= self.profile.speed(self.clock.at(first + ticks));
-        let head = if rises { local(first, half)? } else { units - local(first + half, ticks - half)? };
+        let rises = self.profile.speed(self.clock.at(first))
+            <= self.profile.speed(self.clock.at(first + ticks));
+        let head =
+            if rises { local(first, half)? } else { units - local(first + half, ticks - half)? };
         self.halves(piece, half, head, jerk, ends)
     }
 
     /// Writes the first `half` ticks of a piece, which travel `head` units, and then the other
     /// ticks.
-    fn halves(&mut self, piece: Piece, half: u64, head: i128, jerk: Rate, ends: bool) -> Result<(), Broken> {
+    fn halves(
+        &mut self,
+        piece: Piece,
+        half: u64,
+        head: i128,
+        jerk: Rate,
+        ends: bool,
+    ) -> Result<(), Broken> {
         let Piece { first, ticks, start, units, .. } = piece;
         self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
         let (first, start) = (first + half, start + head);
-        self.divide(Piece { first, ticks: ticks - half, start, units: units - head, ..piece }, jerk, ends)
+        self.divide(
+            Piece { first, ticks: ticks - half, start, units: units - head, ..piece },
+            jerk,
+            ends,
+        )
     }
 
     /// Whether a piece has constant speed, so that integers can share its distance out.
@@ -229,21 +245,42 @@ impl<F: Real> Writer<'_, F> {
     }
 
     /// Writes one run of constant jerk.
-    fn run(&mut self, piece: Piece, doubled_middle: i128, jerk: i128, ends: bool) -> Result<(), Broken> {
+    fn run(
+        &mut self,
+        piece: Piece,
+        doubled_middle: i128,
+        jerk: i128,
+        ends: bool,
+    ) -> Result<(), Broken> {
         let n = i128::from(piece.ticks);
         let sign = self.sign();
         let distance = sign * piece.units - self.ahead;
         let (ticks, first) = (n, piece.first == 0);
-        let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, least: 0, first };
+        let wanted = Wanted {
+            ticks,
+            distance: sign * distance,
+            doubled_middle,
+            jerk,
+            one_way: true,
+            least: 0,
+            first,
+        };
         self.lay(n, distance, wanted.within(self.limits), ends)
     }
 
     /// Writes a run of `n` ticks over a signed distance in units. The part that V cannot spread
     /// evenly is added to the first ticks, one unit each, if the run `ends` a piece; otherwise it
     /// is carried into the next run.
-    pub fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
+    pub fn lay(
+        &mut self,
+        n: i128,
+        distance: i128,
+        Bend { a, j }: Bend,
+        ends: bool,
+    ) -> Result<(), Broken> {
         let sign = self.sign();
-        let level = sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
+        let level =
+            sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
         let (level, a, j) = (sign * level, sign * a, sign * j);
         let v = level.div_euclid(n);
         let remainder = level.rem_euclid(n);

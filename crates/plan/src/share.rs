@@ -53,7 +53,8 @@ pub(crate) fn share<F: Real>(
     care: &Care<F>,
     fastest: i128,
 ) -> Result<Vec<Piece>, Broken> {
-    let tick_at = |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
+    let tick_at =
+        |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
     let zones: Vec<[u64; 2]> = care.by_pulse.iter().map(|zone| zone.map(tick_at)).collect();
     let behind = care.behind.map(|(ends, units)| (ends.map(tick_at), units));
     let mut cuts = cuts(profile, clock, breakpoints);
@@ -66,7 +67,10 @@ pub(crate) fn share<F: Real>(
     }
     for [begin, end] in zones {
         let inside = |piece: &Piece| (begin..end).contains(&piece.first);
-        let (ticks, units) = (end - begin, pieces.iter().filter(|piece| inside(piece)).map(|piece| piece.units).sum());
+        let (ticks, units) = (
+            end - begin,
+            pieces.iter().filter(|piece| inside(piece)).map(|piece| piece.units).sum(),
+        );
         pieces.retain(|piece| piece.first == begin || !inside(piece));
         if let Some(zone) = pieces.iter_mut().find(|piece| piece.first == begin) {
             *zone = Piece { ticks, units, by_pulse: true, ..*zone };
@@ -83,17 +87,29 @@ pub(crate) fn share<F: Real>(
 /// Keeps the axis behind between the two ticks: takes units from a piece before the first tick, and
 /// adds them to the piece after the second one that has most room below the speed limit. Returns
 /// `None` if there is no such piece or no room.
-fn fall_behind(pieces: &mut [Piece], [first, last]: [u64; 2], units: i128, fastest: i128) -> Option<()> {
-    let early = pieces.iter_mut().filter(|piece| piece.first < first).max_by_key(|piece| piece.units)?;
+fn fall_behind(
+    pieces: &mut [Piece],
+    [first, last]: [u64; 2],
+    units: i128,
+    fastest: i128,
+) -> Option<()> {
+    let early =
+        pieces.iter_mut().filter(|piece| piece.first < first).max_by_key(|piece| piece.units)?;
     early.units -= units;
     let room = |piece: &Piece| i128::from(piece.ticks) * fastest - piece.units;
-    let late = pieces.iter_mut().filter(|piece| piece.first >= last).max_by_key(|piece| room(piece))?;
+    let late =
+        pieces.iter_mut().filter(|piece| piece.first >= last).max_by_key(|piece| room(piece))?;
     late.units += units;
     (room(late) >= 0).then_some(())
 }
 
 /// The pieces between the cuts, which travel `total` units together. Their `start` is not yet set.
-fn pieces<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, total: i128, cuts: &[u64]) -> Option<Vec<Piece>> {
+fn pieces<F: Real>(
+    profile: &dyn Profile<F>,
+    clock: &Clock<F>,
+    total: i128,
+    cuts: &[u64],
+) -> Option<Vec<Piece>> {
     let mut pieces = Vec::with_capacity(cuts.len());
     for ends in cuts.windows(2) {
         let (first, ticks) = (ends[0], ends[1] - ends[0]);
@@ -108,7 +124,12 @@ fn pieces<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, total: i128, cuts
 
 /// Distance over whole ticks, in units. It is computed from a mean speed and not from the
 /// difference of two positions, so that its relative error stays small for a single tick too.
-pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, first: u64, ticks: u64) -> Option<i128> {
+pub(crate) fn distance<F: Real>(
+    profile: &dyn Profile<F>,
+    clock: &Clock<F>,
+    first: u64,
+    ticks: u64,
+) -> Option<i128> {
     let end = first + ticks;
     let mean = profile.mean_speed(clock.at(first), clock.at(end));
     let used = if end == clock.ticks { float::<F>(ticks - 1) + clock.last } else { float(ticks) };
@@ -116,7 +137,11 @@ pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, firs
 }
 
 /// The ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
-fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakpoints<F>) -> Vec<u64> {
+fn cuts<F: Real>(
+    profile: &dyn Profile<F>,
+    clock: &Clock<F>,
+    breakpoints: Breakpoints<F>,
+) -> Vec<u64> {
     let mut cuts = vec![0, clock.ticks];
     // A fitted move that comes to rest may do so up to a tick later.
     let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
@@ -134,7 +159,8 @@ fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakp
             Breakpoints::Rounded(most) => {
                 // A cruise that takes over this much of a ramp, or of a rest, begins with the wrong
                 // speed.
-                let [here, there] = [breakpoint, nearest * clock.tick].map(|t| profile.speed(t.min(clock.seconds)));
+                let [here, there] =
+                    [breakpoint, nearest * clock.tick].map(|t| profile.speed(t.min(clock.seconds)));
                 // A breakpoint at either end of the move is not rounded: without its ramp the move
                 // would start at its top speed.
                 let inside = nearest > F::zero() && nearest < float(clock.ticks);

@@ -83,7 +83,8 @@ impl<F: Real> Pulses<'_, F> {
         let quarter = float::<F>(4).recip();
         let (begin, end) = (quarter, self.profile.distance() - quarter);
         let slow = |pulses: &mut dyn Iterator<Item = u64>| {
-            let slow = pulses.take(MOST_SEGMENTS).take_while(|&k| self.speed(k) < self.least()).count();
+            let slow =
+                pulses.take(MOST_SEGMENTS).take_while(|&k| self.speed(k) < self.least()).count();
             if slow < MOST_SEGMENTS { Ok(slow as u64) } else { Err(Broken::Segments) }
         };
         let lead = slow(&mut (first..=last))?;
@@ -116,14 +117,17 @@ impl<F: Real> Pulses<'_, F> {
     /// step from the start of the move.
     pub fn due_between(&self, from: i128, to: i128) -> impl Iterator<Item = u64> + use<'_, F> {
         let first = u64::try_from(from / ONE_STEP).unwrap_or(0).max(1);
-        (first..=self.count).skip_while(move |&k| self.due(k) <= from).take_while(move |&k| self.due(k) <= to)
+        (first..=self.count)
+            .skip_while(move |&k| self.due(k) <= from)
+            .take_while(move |&k| self.due(k) <= to)
     }
 
     /// The distance from the start of the motion at which pulse `k` is due, 2^-64 step. Forward, P
     /// has to reach a whole step to carry; backward, P has to fall below it to borrow, which is one
     /// unit more.
     pub fn due(&self, k: u64) -> i128 {
-        i128::from(self.phase.pulse_half_steps(k, self.backward)) * (ONE_STEP / 2) + i128::from(self.backward)
+        i128::from(self.phase.pulse_half_steps(k, self.backward)) * (ONE_STEP / 2)
+            + i128::from(self.backward)
             - self.borrowed
     }
 

@@ -54,7 +54,9 @@ mod tests {
     #[test]
     fn nearest_and_toward_zero_round_as_documented() {
         let unit = 2_f64.powi(-64);
-        for (value, near, cut) in [(0.5, 1, 0), (0.49, 0, 0), (1.5, 2, 1), (-1.5, -2, -1), (-0.4, 0, 0)] {
+        for (value, near, cut) in
+            [(0.5, 1, 0), (0.49, 0, 0), (1.5, 2, 1), (-1.5, -2, -1), (-0.4, 0, 0)]
+        {
             assert_eq!(nearest(value * unit), Some(near), "{value}");
             assert_eq!(toward_zero(value * unit), Some(cut), "{value}");
         }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Tests may panic.
 
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::plan;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -16,7 +16,8 @@ const GUARD: &str = "[machine.guard]\nwatchdog_ms = 100\nenable_ms = 1\ndebounce
 
 /// The shipped machine with a guard, and the demo's moves, in one file without comments.
 fn good() -> String {
-    let moves = include_str!("../../../sim/demo.toml").replace("machine_file = \"six-axis.toml\"", "");
+    let moves =
+        include_str!("../../../sim/demo.toml").replace("machine_file = \"six-axis.toml\"", "");
     let machine = include_str!("../../../sim/six-axis.toml").replacen(
         "[[machine.axis]]",
         &format!("{GUARD}[[machine.axis]]\nstop_accel = 5e3"),
@@ -126,11 +127,15 @@ impl Mutation {
     fn apply(self, text: &str) -> String {
         let numbers = || {
             let mut found = pieces(text, |c| c.is_ascii_alphanumeric() || "+-._".contains(c));
-            found.retain(|&(from, to)| text[from..to].starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+            found.retain(|&(from, to)| {
+                text[from..to].starts_with(|c: char| c.is_ascii_digit() || c == '-')
+            });
             found
         };
         let lines = || pieces(text, |c| c != '\n');
-        let replaced = |(from, to): (usize, usize), new: &str| format!("{}{new}{}", &text[..from], &text[to..]);
+        let replaced = |(from, to): (usize, usize), new: &str| {
+            format!("{}{new}{}", &text[..from], &text[to..])
+        };
         match self {
             Self::Byte(at, byte) => {
                 let mut bytes = text.as_bytes().to_vec();
@@ -150,7 +155,9 @@ impl Mutation {
                 let (before, after) = text.as_bytes().split_at(at);
                 String::from_utf8_lossy(&[before, piece.as_bytes(), after].concat()).into_owned()
             }
-            Self::Number(at, number) if !numbers().is_empty() => replaced(*at.get(&numbers()), &number),
+            Self::Number(at, number) if !numbers().is_empty() => {
+                replaced(*at.get(&numbers()), &number)
+            }
             Self::SwapTokens(one, other) => {
                 let tokens = pieces(text, |c| !c.is_whitespace());
                 if tokens.is_empty() {
@@ -159,7 +166,12 @@ impl Mutation {
                 let (one, other) = (*one.get(&tokens), *other.get(&tokens));
                 let (first, second) = (one.min(other), one.max(other));
                 let swapped = replaced(second, &text[first.0..first.1]);
-                format!("{}{}{}", &swapped[..first.0], &text[second.0..second.1], &swapped[first.1..])
+                format!(
+                    "{}{}{}",
+                    &swapped[..first.0],
+                    &text[second.0..second.1],
+                    &swapped[first.1..]
+                )
             }
             Self::RepeatLine(at, times) if !lines().is_empty() => {
                 let (from, to) = *at.get(&lines());
@@ -174,7 +186,7 @@ impl Mutation {
 /// Reads and plans a text within a second; returns the result as a message.
 fn read_and_plan(text: &str) -> Result<String, TestCaseError> {
     let started = Instant::now();
-    let source = Source { path: "mutated.toml".into(), text: text.into() };
+    let source = SourceText { path: "mutated.toml".into(), text: text.into() };
     let said = match MoveFile::from_source(source) {
         Err(error) => {
             if let Some((_, span)) = &error.place {

@@ -3,7 +3,7 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::{PlannedAxis, plan};
 
 /// Plans the reference move with a tolerance in ns. Only the seven-segment profile gets a jerk
@@ -12,16 +12,19 @@ fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {
     let jerk = if profile == "scurve" { "jerk_limit = 50_000_000\n" } else { "" };
     let text = format!(
         "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 150_000\n\
-         accel_limit = 500_000\n{jerk}step_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n\
+         accel_limit = 500_000\n{jerk}step_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n\
          [[move]]\nprofile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}\n"
     );
-    let file = MoveFile::from_source(Source { path: "reference.toml".into(), text: text.into() }).expect("a move file");
+    let file =
+        MoveFile::from_source(SourceText { path: "reference.toml".into(), text: text.into() })
+            .expect("a move file");
     plan::<f64>(&file).expect("a plan").moves.remove(0).axes.remove(0)
 }
 
 /// Numbers of segments of the ramp up, of the cruise, and of the ramp down with its landing.
 fn counts(axis: &PlannedAxis) -> [usize; 3] {
-    let ends: Vec<u64> = axis.profile.breakpoints().iter().map(|t| (t * 1e6).round() as u64).collect();
+    let ends: Vec<u64> =
+        axis.profile.breakpoints().iter().map(|t| (t * 1e6).round() as u64).collect();
     let mut counts = [0; 3];
     let mut tick = 0;
     for segment in &axis.segments {
@@ -33,7 +36,10 @@ fn counts(axis: &PlannedAxis) -> [usize; 3] {
 
 fn assert_at_most(profile: &str, fit_ns: u32, most: usize) {
     let [up, cruise, down] = counts(&reference(profile, fit_ns));
-    assert!(up <= most && down <= most && cruise == 1, "{profile} at {fit_ns} ns: {up} + {cruise} + {down}");
+    assert!(
+        up <= most && down <= most && cruise == 1,
+        "{profile} at {fit_ns} ns: {up} + {cruise} + {down}"
+    );
 }
 
 #[test]
@@ -42,7 +48,11 @@ fn reference_ramps_last_as_long_as_published() {
     // therefore up to 0.2 % shorter.
     for (profile, ramp, within) in [("logistic", 0.325_371, 1e-4), ("sine", 0.282_843, 5e-4)] {
         let axis = reference(profile, 1000);
-        assert!((axis.profile.breakpoints()[0] - ramp).abs() < within, "{profile}: {:?}", axis.profile);
+        assert!(
+            (axis.profile.breakpoints()[0] - ramp).abs() < within,
+            "{profile}: {:?}",
+            axis.profile
+        );
     }
 }
 

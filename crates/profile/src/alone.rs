@@ -9,7 +9,7 @@ use crate::bad_ramp::BadRamp;
 use crate::curve::Curve;
 use crate::logistic::{self, LogisticRamp, SHORTFALL};
 use crate::profile::{Profile, Real, real};
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use crate::scurve::ScurveRamp;
 use crate::sine::SineRamp;
 use crate::solve::smallest;
@@ -17,16 +17,24 @@ use crate::solve::smallest;
 /// The ramp of constant acceleration from rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn trapezoid_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn trapezoid_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     ranade_ramp(top, time, &Limits { start_speed: F::zero(), ..*limits })
 }
 
 /// The ramp of constant acceleration from the start speed, which must be below `top`.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn ranade_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn ranade_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     scurve_ramp(top, time, &Limits { jerk: F::infinity(), ..*limits })
 }
 
@@ -36,8 +44,12 @@ pub fn ranade_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
 /// limit it is therefore a ramp of constant acceleration.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn scurve_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     let start = limits.start_speed;
     let ramp = |acceleration, jerk| ScurveRamp::steepest(start, top, acceleration, jerk);
     let lasting = |time: F| {
@@ -57,9 +69,18 @@ pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
 /// The sinusoidal ramp from rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn sine_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<SineRamp<F>, Refusal> {
-    in_time(time, limits, |limits| SineRamp::within(limits, top), |time| SineRamp::lasting(top, time))
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn sine_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<SineRamp<F>, LimitRefusal> {
+    in_time(
+        time,
+        limits,
+        |limits| SineRamp::within(limits, top),
+        |time| SineRamp::lasting(top, time),
+    )
 }
 
 /// The logistic ramp with the asymptote `top`. As in its source, it ends at 99.5 % of the
@@ -68,8 +89,12 @@ pub fn sine_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result
 /// It starts at 0.5 %, or at the start speed if that is over 0 and smaller.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn logistic_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<LogisticRamp<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn logistic_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, LimitRefusal> {
     let start = logistic::start_fraction(limits, top);
     let ramp = |steepness| LogisticRamp::between(top, steepness, start);
     // With a steepness of 1/s, the duration of the ramp is the product k T.
@@ -82,7 +107,11 @@ pub fn logistic_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Re
 ///
 /// # Errors
 /// A [`BadRamp`] if the centre is so early that the ramp would end before it starts.
-pub fn logistic_ramp_about<F: Real>(top: F, centre: F, limits: &Limits<F>) -> Result<LogisticRamp<F>, BadRamp> {
+pub fn logistic_ramp_about<F: Real>(
+    top: F,
+    centre: F,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, BadRamp> {
     let acceleration = logistic::steepest(limits, top) * (top / real(4.0));
     LogisticRamp::new(top, acceleration, centre, real(SHORTFALL))
 }
@@ -93,7 +122,7 @@ fn in_time<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     steepest: impl Fn(&Limits<F>) -> R,
     lasting: impl Fn(F) -> R,
-) -> Result<R, Refusal> {
+) -> Result<R, LimitRefusal> {
     let Some(time) = time else { return Ok(steepest(limits)) };
     let duration = |limits: &Limits<F>| steepest(limits).duration();
     let least = duration(limits);
@@ -103,8 +132,13 @@ fn in_time<F: Real, R: Curve<F>>(
     let free = Limits { jerk: F::infinity(), ..*limits };
     if free.acceleration.is_finite() && duration(&free) > time {
         let does = |acceleration| duration(&Limits { acceleration, ..free }) <= time;
-        return Err(Refusal::new(Limit::Acceleration, smallest(free.acceleration, does), free.acceleration, least));
+        return Err(LimitRefusal::new(
+            Limit::Acceleration,
+            smallest(free.acceleration, does),
+            free.acceleration,
+            least,
+        ));
     }
     let does = |jerk| duration(&Limits { jerk, ..*limits }) <= time;
-    Err(Refusal::new(Limit::Jerk, smallest(limits.jerk, does), limits.jerk, least))
+    Err(LimitRefusal::new(Limit::Jerk, smallest(limits.jerk, does), limits.jerk, least))
 }

@@ -27,7 +27,9 @@ pub enum BadRamp {
         least: f64,
     },
     /// The end speed of a ramp up is below its start speed.
-    #[error("a ramp up from {start} to {end} steps/s; its top speed must be {start} steps/s or more")]
+    #[error(
+        "a ramp up from {start} to {end} steps/s; its top speed must be {start} steps/s or more"
+    )]
     TopUnderStart {
         /// Speed at the start, steps/s.
         start: f64,
@@ -42,7 +44,12 @@ pub(crate) fn positive<F: Real>(name: &'static str, value: F) -> Result<F, BadRa
 }
 
 /// Returns `value` if `holds`; otherwise the error names the parameter and its range.
-pub(crate) fn in_range<F: Real>(name: &'static str, value: F, must: &'static str, holds: bool) -> Result<F, BadRamp> {
+pub(crate) fn in_range<F: Real>(
+    name: &'static str,
+    value: F,
+    must: &'static str,
+    holds: bool,
+) -> Result<F, BadRamp> {
     if holds { Ok(value) } else { Err(BadRamp::OutOfRange { name, value: wide(value), must }) }
 }
 

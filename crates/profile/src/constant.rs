@@ -2,7 +2,7 @@
 
 use crate::curve::Curve;
 use crate::profile::{Profile, Real};
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 
 /// A move at the constant speed N / T. A distance of 0 is an axis at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,11 +26,20 @@ impl<F: Real> Constant<F> {
 /// The constant-speed move of `distance` steps in `time` seconds.
 ///
 /// # Errors
-/// A [`Refusal`] if the motor would have to jump to more than its start speed.
-pub fn constant<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Constant<F>, Refusal> {
+/// A [`LimitRefusal`] if the motor would have to jump to more than its start speed.
+pub fn constant<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<Constant<F>, LimitRefusal> {
     let least = constant_least_time(distance, limits)?;
     if limits.too_short(time, least) {
-        return Err(Refusal::new(Limit::StartSpeed, distance / time, limits.start_speed, least));
+        return Err(LimitRefusal::new(
+            Limit::StartSpeed,
+            distance / time,
+            limits.start_speed,
+            least,
+        ));
     }
     Ok(Constant::new(distance, time))
 }
@@ -38,10 +47,10 @@ pub fn constant<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Con
 /// Least time at constant speed: N / v_s, seconds.
 ///
 /// # Errors
-/// A [`Refusal`] if the start speed is 0, because no time would then be long enough.
-pub fn constant_least_time<F: Real>(distance: F, limits: &Limits<F>) -> Result<F, Refusal> {
+/// A [`LimitRefusal`] if the start speed is 0, because no time would then be long enough.
+pub fn constant_least_time<F: Real>(distance: F, limits: &Limits<F>) -> Result<F, LimitRefusal> {
     if limits.start_speed <= F::zero() {
-        return Err(Refusal::never(Limit::StartSpeed, limits.start_speed));
+        return Err(LimitRefusal::never(Limit::StartSpeed, limits.start_speed));
     }
     Ok(distance / limits.start_speed)
 }
@@ -76,7 +85,11 @@ impl<F: Real> Profile<F> for Constant<F> {
     }
 
     fn crossing(&self, x: F) -> F {
-        if x >= self.distance { self.duration } else { self.duration * (x.max(F::zero()) / self.distance) }
+        if x >= self.distance {
+            self.duration
+        } else {
+            self.duration * (x.max(F::zero()) / self.distance)
+        }
     }
 
     fn breakpoints(&self) -> &[F] {

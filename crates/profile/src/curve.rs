@@ -11,7 +11,7 @@ pub trait Curve<F: Real>: Profile<F> {
     fn peak_acceleration(&self) -> F;
 
     /// Greatest absolute jerk inside the pieces, steps/s^3. Where the acceleration jumps, the jerk
-    /// has an impulse; it is not counted here but in [`Figures::acceleration_jump`].
+    /// has an impulse; it is not counted here but in [`CurveFigures::acceleration_jump`].
     fn peak_jerk(&self) -> F;
 
     /// Time from position `x` to `x + 1` (both in 0..=distance), seconds: the delay c_n of the
@@ -24,9 +24,9 @@ pub trait Curve<F: Real>: Profile<F> {
     }
 
     /// Returns all extremes.
-    fn figures(&self) -> Figures<F> {
+    fn figures(&self) -> CurveFigures<F> {
         let (start, end) = (F::zero(), self.duration());
-        Figures {
+        CurveFigures {
             steps: self.distance(),
             seconds: end,
             start_speed: self.speed(start),
@@ -51,7 +51,7 @@ pub(crate) fn is_time<F: Real>(part: F, whole: F) -> bool {
 
 /// The extremes of a ramp or a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figures<F> {
+pub struct CurveFigures<F> {
     /// Distance, steps.
     pub steps: F,
     /// Duration, seconds.

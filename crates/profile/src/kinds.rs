@@ -2,7 +2,7 @@
 //!
 //! A new kind has one row in each function here; the planner and the command `profile` call nothing else.
 
-use crate::{Curve, Limits, Real, Refusal, rule};
+use crate::{Curve, LimitRefusal, Limits, Real, rule};
 use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
@@ -12,8 +12,12 @@ pub type SharedCurve<F = f64> = Arc<dyn Curve<F>>;
 /// The least time, in seconds, in which a move of `distance` steps keeps to the limits.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that no time can keep.
-pub fn least_time<F: Real>(kind: ProfileKind, distance: F, limits: &Limits<F>) -> Result<F, Refusal> {
+/// A [`LimitRefusal`] names the limit that no time can keep.
+pub fn least_time<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    limits: &Limits<F>,
+) -> Result<F, LimitRefusal> {
     match kind {
         ProfileKind::Ranade => Ok(rule::ranade_least_time(distance, limits)),
         ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(distance, limits)),
@@ -27,8 +31,13 @@ pub fn least_time<F: Real>(kind: ProfileKind, distance: F, limits: &Limits<F>) -
 /// A whole move of `distance` steps that takes `time` seconds.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails, and the least time.
-pub fn whole<F: Real>(kind: ProfileKind, distance: F, time: F, limits: &Limits<F>) -> Result<SharedCurve<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails, and the least time.
+pub fn whole<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<SharedCurve<F>, LimitRefusal> {
     match kind {
         ProfileKind::Ranade => rule::ranade(distance, time, limits),
         ProfileKind::Trapezoid => rule::trapezoid(distance, time, limits).map(shared),
@@ -46,7 +55,7 @@ pub(crate) fn ramp(
     top: f64,
     time: Option<f64>,
     limits: &Limits<f64>,
-) -> Option<Result<SharedCurve, Refusal>> {
+) -> Option<Result<SharedCurve, LimitRefusal>> {
     Some(match kind {
         ProfileKind::Ranade => rule::ranade_ramp(top, time, limits).map(shared),
         ProfileKind::Trapezoid => rule::trapezoid_ramp(top, time, limits).map(shared),

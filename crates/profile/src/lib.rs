@@ -33,13 +33,13 @@ mod widened;
 
 pub use bad_ramp::BadRamp;
 pub use constant::Constant;
-pub use curve::{Curve, Figures};
-pub use line::Line;
+pub use curve::{Curve, CurveFigures};
+pub use line::StraightLine;
 pub use logistic::{LogisticRamp, SHORTFALL};
 pub use profile::{Profile, Real, SharedProfile};
 pub use ramp::Ramp;
 pub use ramped::RampedMove;
-pub use refusal::{Limit, Limits, Refusal};
+pub use refusal::{Limit, LimitRefusal, Limits};
 pub use scurve::ScurveRamp;
 pub use sine::SineRamp;
 pub use timeline::{Crossing, Leg, Timeline};
@@ -49,7 +49,9 @@ pub use widened::Widened;
 /// that return the least time. The functions whose names end in `_ramp` return a single ramp up to
 /// a given top speed.
 pub mod rule {
-    pub use crate::alone::{logistic_ramp, logistic_ramp_about, ranade_ramp, scurve_ramp, sine_ramp, trapezoid_ramp};
+    pub use crate::alone::{
+        logistic_ramp, logistic_ramp_about, ranade_ramp, scurve_ramp, sine_ramp, trapezoid_ramp,
+    };
     pub use crate::constant::{constant, constant_least_time};
     pub use crate::logistic::{logistic, logistic_least_time};
     pub use crate::ranade::{ranade, ranade_least_time};

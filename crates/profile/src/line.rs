@@ -3,7 +3,7 @@
 /// The line against which the checker measures the pulses of such a move. It compares the positions
 /// of the axes with each other, not with the time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct StraightLine {
     /// Pulses that each axis has made before the move.
     pub before: Vec<u64>,
     /// Steps of each axis in the move; negative is backward.

@@ -10,7 +10,7 @@ use crate::curve::Curve;
 use crate::numeric::{ln_exp_m1, softplus};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 
 /// The fraction of the asymptote that is missing at the end of a ramp, and present at its start:
@@ -53,7 +53,8 @@ impl<F: Real> LogisticRamp<F> {
         let acceleration = positive("the acceleration", acceleration)?;
         let centre = in_range("the centre", centre, "finite", centre.is_finite())?;
         let inside = shortfall > F::zero() && shortfall < F::one();
-        let shortfall = in_range("the shortfall at the end", shortfall, "over 0 and under 1", inside)?;
+        let shortfall =
+            in_range("the shortfall at the end", shortfall, "over 0 and under 1", inside)?;
         let steepness = real::<F>(4.0) * acceleration / asymptote;
         let ramp = Self::cut(asymptote, steepness, softplus(steepness * centre), shortfall);
         let rest = tail(shortfall) / steepness;
@@ -214,7 +215,8 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
         }
         let y = self.steepness * x / self.asymptote;
         let grown = self.ln_start.exp() * y.exp_m1();
-        let t = if grown.is_finite() { grown.ln_1p() } else { softplus(self.ln_start + ln_exp_m1(y)) };
+        let t =
+            if grown.is_finite() { grown.ln_1p() } else { softplus(self.ln_start + ln_exp_m1(y)) };
         (t / self.steepness).min(self.duration)
     }
 
@@ -225,7 +227,11 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
     fn mean_speed(&self, from: F, to: F) -> F {
         let y = self.steepness * (to - from);
         let at_start = from <= F::zero();
-        let ln_from = if at_start { -self.ln_start } else { -softplus(self.steepness * (self.centre - from)) };
+        let ln_from = if at_start {
+            -self.ln_start
+        } else {
+            -softplus(self.steepness * (self.centre - from))
+        };
         if y > F::zero() { self.asymptote * (gain(ln_from, y) / y) } else { self.speed(from) }
     }
 }
@@ -272,8 +278,12 @@ impl<F: Real> Curve<F> for LogisticRamp<F> {
 /// the jump, which is 0.5 % then too. [`Curve::figures`] gives its value.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn logistic<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, LogisticRamp<F>>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails and the least time.
+pub fn logistic<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<RampedMove<F, LogisticRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps)
 }
 

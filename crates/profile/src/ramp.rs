@@ -28,19 +28,53 @@ impl<F: Real> Ramp<F> {
     /// A move up and down without a cruise, in `duration` seconds; `acceleration` must be over 0.
     pub fn triangle(distance: F, duration: F, start: F, acceleration: F) -> Self {
         let half = duration / real(2.0);
-        Self::build(distance, duration, start, start + acceleration * half, acceleration, half, true)
+        Self::build(
+            distance,
+            duration,
+            start,
+            start + acceleration * half,
+            acceleration,
+            half,
+            true,
+        )
     }
 
     /// A move that rises to `top` steps/s in `ramp` seconds (limited to half the duration), cruises
     /// and falls.
     pub fn trapezoid(distance: F, duration: F, start: F, top: F, acceleration: F, ramp: F) -> Self {
-        Self::build(distance, duration, start, top, acceleration, ramp.min(duration / real(2.0)), false)
+        Self::build(
+            distance,
+            duration,
+            start,
+            top,
+            acceleration,
+            ramp.min(duration / real(2.0)),
+            false,
+        )
     }
 
-    fn build(distance: F, duration: F, start: F, top: F, acceleration: F, ramp: F, triangle: bool) -> Self {
+    fn build(
+        distance: F,
+        duration: F,
+        start: F,
+        top: F,
+        acceleration: F,
+        ramp: F,
+        triangle: bool,
+    ) -> Self {
         let ramp_distance = (start + acceleration * ramp / real(2.0)) * ramp;
         let breakpoints = [ramp, duration - ramp];
-        Self { start, top, acceleration, ramp, ramp_distance, duration, distance, breakpoints, triangle }
+        Self {
+            start,
+            top,
+            acceleration,
+            ramp,
+            ramp_distance,
+            duration,
+            distance,
+            breakpoints,
+            triangle,
+        }
     }
 
     /// Speed at the start and at the end, steps/s.
@@ -112,7 +146,11 @@ impl<F: Real> Profile<F> for Ramp<F> {
 
     fn speed(&self, t: F) -> F {
         let near = self.nearer_end(t);
-        if near < self.ramp { (self.start + self.acceleration * near).min(self.top) } else { self.top }
+        if near < self.ramp {
+            (self.start + self.acceleration * near).min(self.top)
+        } else {
+            self.top
+        }
     }
 
     fn acceleration(&self, t: F) -> F {
@@ -133,7 +171,11 @@ impl<F: Real> Profile<F> for Ramp<F> {
     }
 
     fn crossing(&self, x: F) -> F {
-        if x + x <= self.distance { self.head_time(x) } else { self.duration - self.head_time(self.distance - x) }
+        if x + x <= self.distance {
+            self.head_time(x)
+        } else {
+            self.duration - self.head_time(self.distance - x)
+        }
     }
 
     fn breakpoints(&self) -> &[F] {

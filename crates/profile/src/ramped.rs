@@ -75,7 +75,11 @@ enum Phase {
 
 impl<F: Real, R: Curve<F>> Profile<F> for RampedMove<F, R> {
     fn shape(&self) -> &'static str {
-        if self.up.duration().is_zero() && self.down.duration().is_zero() { "constant" } else { self.up.shape() }
+        if self.up.duration().is_zero() && self.down.duration().is_zero() {
+            "constant"
+        } else {
+            self.up.shape()
+        }
     }
 
     fn duration(&self) -> F {

@@ -10,14 +10,18 @@ use crate::constant::Constant;
 use crate::curve::Curve;
 use crate::profile::{Real, real};
 use crate::ramp::Ramp;
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use std::sync::Arc;
 
 /// The move of `distance` steps (over 0) in `time` seconds by Ranade's rule.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails and the least time.
+pub fn ranade<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<Arc<dyn Curve<F>>, LimitRefusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {
@@ -30,7 +34,7 @@ pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<d
     let top = real::<F>(2.0) * average - start_speed;
     if top <= speed {
         if too_short {
-            return Err(Refusal::new(Limit::Acceleration, acceleration, limit, least));
+            return Err(LimitRefusal::new(Limit::Acceleration, acceleration, limit, least));
         }
         return Ok(Arc::new(Ramp::triangle(distance, time, start_speed, acceleration.min(limit))));
     }
@@ -40,13 +44,20 @@ pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<d
     let acceleration = if spare > F::zero() { rise * rise / spare } else { F::infinity() };
     if too_short {
         return Err(if spare > F::zero() {
-            Refusal::new(Limit::Acceleration, acceleration, limit, least)
+            LimitRefusal::new(Limit::Acceleration, acceleration, limit, least)
         } else {
-            Refusal::new(Limit::Speed, average, speed, least)
+            LimitRefusal::new(Limit::Speed, average, speed, least)
         });
     }
     let acceleration = acceleration.min(limit);
-    Ok(Arc::new(Ramp::trapezoid(distance, time, start_speed, speed, acceleration, rise / acceleration)))
+    Ok(Arc::new(Ramp::trapezoid(
+        distance,
+        time,
+        start_speed,
+        speed,
+        acceleration,
+        rise / acceleration,
+    )))
 }
 
 /// Least time from the start speed back to it, seconds: 2 (v_l - v_s)/a + (N - (v_l^2 -
@@ -59,6 +70,7 @@ pub fn ranade_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
     if distance >= ramps {
         two * rise / acceleration + (distance - ramps) / speed
     } else {
-        two * distance / (start_speed + (start_speed * start_speed + acceleration * distance).sqrt())
+        two * distance
+            / (start_speed + (start_speed * start_speed + acceleration * distance).sqrt())
     }
 }

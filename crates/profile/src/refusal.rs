@@ -70,7 +70,7 @@ impl Limit {
 
 /// Why the limits do not allow a move, and the least time in which they would.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub struct Refusal {
+pub struct LimitRefusal {
     /// The limit that fails.
     pub limit: Limit,
     /// The value that the move needs, in the limit's unit; infinite where no finite value is
@@ -82,10 +82,15 @@ pub struct Refusal {
     pub least_time: Option<f64>,
 }
 
-impl Refusal {
+impl LimitRefusal {
     pub(crate) fn new<F: Real>(limit: Limit, wanted: F, available: F, least: F) -> Self {
         let float = |x: F| x.to_f64().unwrap_or(f64::NAN);
-        Self { limit, wanted: float(wanted), available: float(available), least_time: Some(float(least)) }
+        Self {
+            limit,
+            wanted: float(wanted),
+            available: float(available),
+            least_time: Some(float(least)),
+        }
     }
 
     pub(crate) fn never<F: Real>(limit: Limit, available: F) -> Self {
@@ -94,13 +99,16 @@ impl Refusal {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for LimitRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { limit, wanted, available, least_time } = self;
         let unit = limit.unit();
         match least_time {
             Some(least) => {
-                write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do")
+                write!(
+                    f,
+                    "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do"
+                )
             }
             None => write!(f, "needs a {limit} over {available} {unit}; no time would do without"),
         }

@@ -8,7 +8,7 @@ use crate::bad_ramp::{BadRamp, in_range, wide};
 use crate::curve::Curve;
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 
 /// One acceleration ramp of at most three segments.
@@ -44,12 +44,19 @@ impl<F: Real> ScurveRamp<F> {
     /// A [`BadRamp`] if a speed is negative or not finite, if a limit is not over 0, if both limits
     /// are infinite, or if `end` is below `start`.
     pub fn new(start: F, end: F, acceleration: F, jerk: F) -> Result<Self, BadRamp> {
-        let speed = |name, v: F| in_range(name, v, "finite and not negative", v >= F::zero() && v.is_finite());
+        let speed = |name, v: F| {
+            in_range(name, v, "finite and not negative", v >= F::zero() && v.is_finite())
+        };
         let (start, end) = (speed("the start speed", start)?, speed("the top speed", end)?);
-        let acceleration = in_range("the acceleration", acceleration, "over 0", acceleration > F::zero())?;
+        let acceleration =
+            in_range("the acceleration", acceleration, "over 0", acceleration > F::zero())?;
         let finite = jerk.is_finite() || acceleration.is_finite();
-        let jerk =
-            in_range("the jerk", jerk, "over 0, and finite where the acceleration is not", jerk > F::zero() && finite)?;
+        let jerk = in_range(
+            "the jerk",
+            jerk,
+            "over 0, and finite where the acceleration is not",
+            jerk > F::zero() && finite,
+        )?;
         if end < start {
             return Err(BadRamp::TopUnderStart { start: wide(start), end: wide(end) });
         }
@@ -69,7 +76,17 @@ impl<F: Real> ScurveRamp<F> {
         };
         let duration = rise + rise + hold;
         let distance = (start + gain / real(2.0)) * duration;
-        Self { start, end, jerk, peak, rise, hold, duration, distance, breakpoints: [rise, rise + hold] }
+        Self {
+            start,
+            end,
+            jerk,
+            peak,
+            rise,
+            hold,
+            duration,
+            distance,
+            breakpoints: [rise, rise + hold],
+        }
     }
 
     /// Duration of each jerk segment, seconds.
@@ -260,8 +277,12 @@ impl<F: Real> Curve<F> for ScurveRamp<F> {
 /// below the start speed, the whole move has constant speed, as in Ranade's rule.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn scurve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, ScurveRamp<F>>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails and the least time.
+pub fn scurve<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
     scurve_to(distance, time, limits.start_speed, limits)
 }
 
@@ -273,13 +294,13 @@ pub fn scurve_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
 /// [`scurve`] with another jump at the end: from at most `end_speed` steps/s to rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn scurve_to<F: Real>(
     distance: F,
     time: F,
     end_speed: F,
     limits: &Limits<F>,
-) -> Result<RampedMove<F, ScurveRamp<F>>, Refusal> {
+) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps(end_speed))
 }
 
@@ -290,7 +311,14 @@ pub fn scurve_to_least_time<F: Real>(distance: F, end_speed: F, limits: &Limits<
 
 fn ramps<F: Real>(end_speed: F) -> impl Fn(&Limits<F>, F) -> (ScurveRamp<F>, ScurveRamp<F>) {
     move |limits, top| {
-        let from = |jump: F| ScurveRamp::steepest(jump.max(F::zero()).min(top), top, limits.acceleration, limits.jerk);
+        let from = |jump: F| {
+            ScurveRamp::steepest(
+                jump.max(F::zero()).min(top),
+                top,
+                limits.acceleration,
+                limits.jerk,
+            )
+        };
         (from(limits.start_speed), from(end_speed))
     }
 }

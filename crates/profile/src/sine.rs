@@ -9,7 +9,7 @@ use crate::curve::Curve;
 use crate::numeric::x_minus_sin;
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 use std::f64::consts::PI;
 
@@ -30,7 +30,10 @@ impl<F: Real> SineRamp<F> {
     /// # Errors
     /// A [`BadRamp`] if a parameter is not finite and over 0.
     pub fn new(top: F, duration: F) -> Result<Self, BadRamp> {
-        Ok(Self { top: positive("the top speed", top)?, duration: positive("the ramp time", duration)? })
+        Ok(Self {
+            top: positive("the top speed", top)?,
+            duration: positive("the ramp time", duration)?,
+        })
     }
 
     /// A ramp to `top` steps/s with a peak acceleration of `acceleration` steps/s^2: T = 2 v / a.
@@ -164,7 +167,8 @@ impl<F: Real> Curve<F> for SineRamp<F> {
 
     /// The peak jerk 2 pi v / T^2.
     fn peak_jerk(&self) -> F {
-        self.peak_acceleration() * (if self.duration.is_zero() { F::zero() } else { real::<F>(PI) / self.duration })
+        self.peak_acceleration()
+            * (if self.duration.is_zero() { F::zero() } else { real::<F>(PI) / self.duration })
     }
 
     fn acceleration_jump(&self) -> F {
@@ -175,8 +179,12 @@ impl<F: Real> Curve<F> for SineRamp<F> {
 /// The sinusoidal move of `distance` steps (over 0) in `time` seconds, from rest to rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn sine<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, SineRamp<F>>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails and the least time.
+pub fn sine<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<RampedMove<F, SineRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps)
 }
 

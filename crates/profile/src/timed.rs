@@ -10,7 +10,7 @@
 use crate::curve::Curve;
 use crate::profile::Real;
 use crate::ramped::{RampedMove, time_with_cruise};
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use crate::solve::{largest, smallest};
 
 /// The ramps of one curve: returns the ramps up and down for the limits and the common top speed in
@@ -21,20 +21,33 @@ impl<F: Real, R: Curve<F>, S: Fn(&Limits<F>, F) -> (R, R)> Ramps<F, R> for S {}
 
 /// The top speed of the fastest move, steps/s: the speed limit, or the speed at which the two ramps
 /// meet.
-fn fastest_top<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+fn fastest_top<F: Real, R: Curve<F>>(
+    distance: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     largest(F::zero(), limits.speed, |top| {
         let (up, down) = ramps(limits, top);
         up.distance() + down.distance() <= distance
     })
 }
 
-fn time_at<F: Real, R: Curve<F>>(distance: F, top: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+fn time_at<F: Real, R: Curve<F>>(
+    distance: F,
+    top: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     let (up, down) = ramps(limits, top);
     time_with_cruise(distance, top, &up, &down)
 }
 
 /// Least time, seconds.
-pub(crate) fn least_time<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+pub(crate) fn least_time<F: Real, R: Curve<F>>(
+    distance: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     if distance <= F::zero() {
         return F::zero();
     }
@@ -45,13 +58,13 @@ pub(crate) fn least_time<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, 
 /// the move takes that long.
 ///
 /// # Errors
-/// A [`Refusal`] if `time` is not a number or below the least time.
+/// A [`LimitRefusal`] if `time` is not a number or below the least time.
 pub(crate) fn in_time<F: Real, R: Curve<F>>(
     distance: F,
     time: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
-) -> Result<RampedMove<F, R>, Refusal> {
+) -> Result<RampedMove<F, R>, LimitRefusal> {
     let distance = distance.max(F::zero());
     let least = least_time(distance, limits, ramps);
     if time.is_nan() || limits.too_short(time, least) {
@@ -60,7 +73,8 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     let (mean, fastest) = (distance / time, fastest_top(distance, limits, ramps));
     // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
     // speed.
-    let top = largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
+    let top =
+        largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }
@@ -73,19 +87,20 @@ fn refusal<F: Real, R: Curve<F>>(
     least: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
-) -> Refusal {
+) -> LimitRefusal {
     let does = |limits: &Limits<F>| least_time(distance, limits, ramps) <= time;
     let infinity = F::infinity();
     let free = Limits { speed: infinity, jerk: infinity, ..*limits };
     if !does(&free) {
-        let wanted = smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
-        return Refusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
+        let wanted =
+            smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
+        return LimitRefusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
     }
     let free = Limits { jerk: limits.jerk, ..free };
     if !does(&free) {
         let wanted = smallest(limits.jerk, |jerk| does(&Limits { jerk, ..free }));
-        return Refusal::new(Limit::Jerk, wanted, limits.jerk, least);
+        return LimitRefusal::new(Limit::Jerk, wanted, limits.jerk, least);
     }
     let wanted = smallest(limits.speed, |speed| does(&Limits { speed, ..free }));
-    Refusal::new(Limit::Speed, wanted, limits.speed, least)
+    LimitRefusal::new(Limit::Speed, wanted, limits.speed, least)
 }

@@ -4,7 +4,7 @@
 
 use crate::profile::{Real, real};
 use crate::ramp::Ramp;
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 
 /// The trapezoid of `distance` steps (over 0) in `time` seconds.
 ///
@@ -13,22 +13,33 @@ use crate::refusal::{Limit, Limits, Refusal};
 /// with the cruise time c = sqrt(T^2 - 4 N / a), which avoids cancellation.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn trapezoid<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Ramp<F>, Refusal> {
+/// A [`LimitRefusal`] names the limit that fails and the least time.
+pub fn trapezoid<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<Ramp<F>, LimitRefusal> {
     let (two, four) = (real::<F>(2.0), real::<F>(4.0));
     let least = trapezoid_least_time(distance, limits);
     let shortest = two * (distance / limits.acceleration).sqrt();
     if limits.too_short(time, shortest) {
         let wanted = four * distance / (time * time);
-        return Err(Refusal::new(Limit::Acceleration, wanted, limits.acceleration, least));
+        return Err(LimitRefusal::new(Limit::Acceleration, wanted, limits.acceleration, least));
     }
     let cruise = ((time - shortest).max(F::zero()) * (time + shortest)).sqrt();
     let top = two * distance / (time + cruise);
     if limits.too_short(time, least) {
-        return Err(Refusal::new(Limit::Speed, top, limits.speed, least));
+        return Err(LimitRefusal::new(Limit::Speed, top, limits.speed, least));
     }
     let top = top.min(limits.speed);
-    Ok(Ramp::trapezoid(distance, time, F::zero(), top, limits.acceleration, top / limits.acceleration))
+    Ok(Ramp::trapezoid(
+        distance,
+        time,
+        F::zero(),
+        top,
+        limits.acceleration,
+        top / limits.acceleration,
+    ))
 }
 
 /// Least time from rest to rest, seconds: v_l / a + N / v_l, or 2 sqrt(N / a) where the speed limit

@@ -46,7 +46,10 @@ fn planning_cases_of_the_article_are_reproduced() {
             }
             Err(refusal) => {
                 assert_eq!((shape, refusal.limit), ("refused", Limit::Acceleration));
-                assert!(close(refusal.wanted, number(&case["trap_at_speed_limit"]["acc"])), "{refusal}");
+                assert!(
+                    close(refusal.wanted, number(&case["trap_at_speed_limit"]["acc"])),
+                    "{refusal}"
+                );
                 assert!(close(refusal.least_time.unwrap(), get("t_min")));
             }
         }
@@ -69,7 +72,8 @@ fn pulse_times_of_the_articles_ramp_are_exact() {
 fn trapezoid_takes_the_smaller_root() {
     // 1000 steps in 0.5 s at 25000 steps/s^2: the larger root would be 9683 steps/s with a negative
     // cruise.
-    let limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
+    let limits =
+        Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let ramp = rule::trapezoid(1000.0, 0.5, &limits).unwrap();
     let expected = (25000.0 * 0.5 - (12500.0_f64.powi(2) - 4.0 * 25000.0 * 1000.0).sqrt()) / 2.0;
     assert!(close(ramp.top_speed(), expected) && expected < 5000.0);
@@ -78,7 +82,8 @@ fn trapezoid_takes_the_smaller_root() {
 
 #[test]
 fn constant_speed_is_refused_without_a_start_speed() {
-    let mut limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
+    let mut limits =
+        Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let refusal = rule::constant(10.0, 100.0, &limits).unwrap_err();
     assert_eq!((refusal.limit, refusal.least_time), (Limit::StartSpeed, None));
     limits.start_speed = 100.0;
@@ -101,17 +106,32 @@ fn limits() -> impl Strategy<Value = Limits<f64>> {
 }
 
 /// Checks the properties of any profile of `n` steps in `t` seconds under `limits`.
-fn check(profile: &dyn Profile<f64>, n: f64, t: f64, limits: &Limits<f64>) -> Result<(), TestCaseError> {
+fn check(
+    profile: &dyn Profile<f64>,
+    n: f64,
+    t: f64,
+    limits: &Limits<f64>,
+) -> Result<(), TestCaseError> {
     prop_assert_eq!((profile.distance(), profile.duration()), (n, t));
-    prop_assert!(close(profile.mean_speed(0.0, t) * t, n), "adds up: {} {n}", profile.mean_speed(0.0, t) * t);
+    prop_assert!(
+        close(profile.mean_speed(0.0, t) * t, n),
+        "adds up: {} {n}",
+        profile.mean_speed(0.0, t) * t
+    );
     prop_assert!(profile.speed(0.0) <= limits.start_speed * (1.0 + 1e-15), "start speed");
-    prop_assert!((profile.position(t / 2.0 * (1.0 - 1e-15)) - n / 2.0).abs() <= 1e-11 * n, "the halves meet");
+    prop_assert!(
+        (profile.position(t / 2.0 * (1.0 - 1e-15)) - n / 2.0).abs() <= 1e-11 * n,
+        "the halves meet"
+    );
     let mut last = 0.0;
     for i in 0..=200 {
         let fraction = f64::from(i) / 200.0;
         let (time, x) = (fraction * t, fraction * n);
         prop_assert!(profile.speed(time) <= limits.speed * (1.0 + 1e-14), "speed");
-        prop_assert!(profile.acceleration(time).abs() <= limits.acceleration * (1.0 + 1e-14), "acceleration");
+        prop_assert!(
+            profile.acceleration(time).abs() <= limits.acceleration * (1.0 + 1e-14),
+            "acceleration"
+        );
         let crossing = profile.crossing(x);
         prop_assert!(crossing >= last && crossing <= t, "crossings ascend");
         last = crossing;
@@ -120,7 +140,11 @@ fn check(profile: &dyn Profile<f64>, n: f64, t: f64, limits: &Limits<f64>) -> Re
         let step = (t - time).min(t / 1000.0);
         let moved = profile.position(time + step) - profile.position(time);
         let mean = profile.mean_speed(time, time + step);
-        prop_assert!((moved - mean * step).abs() <= 1e-11 * n, "mean speed: {moved} {}", mean * step);
+        prop_assert!(
+            (moved - mean * step).abs() <= 1e-11 * n,
+            "mean speed: {moved} {}",
+            mean * step
+        );
         prop_assert!(mean <= limits.speed * (1.0 + 1e-14));
     }
     Ok(())

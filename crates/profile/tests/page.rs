@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 
-use carrystep_profile::rule::{logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time};
+use carrystep_profile::rule::{
+    logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
+};
 use carrystep_profile::{Curve, Limits, LogisticRamp, Profile, RampedMove, SHORTFALL, SineRamp};
 use std::f64::consts::PI;
 
@@ -50,7 +52,8 @@ fn row<R: Curve<f64>>(name: &str, ramped: &RampedMove<f64, R>) -> String {
 
 #[test]
 fn page_gives_the_figures_of_the_reference_move() {
-    let plan_scurve = |limits: &Limits<f64>| scurve(STEPS, scurve_least_time(STEPS, limits), limits).unwrap();
+    let plan_scurve =
+        |limits: &Limits<f64>| scurve(STEPS, scurve_least_time(STEPS, limits), limits).unwrap();
     let smooth = sine(STEPS, sine_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
     let curve = logistic(STEPS, logistic_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
     let as_sharp = plan_scurve(&Limits { jerk: smooth.peak_jerk(), ..LIMITS });
@@ -71,7 +74,10 @@ fn page_gives_the_figures_of_the_reference_move() {
         top("sine", smooth.top_speed()),
         top("logistic", curve.top_speed()),
         format!("(asymptote {})", grouped(ramp.asymptote())),
-        format!("{:.0} % more time than an scurve", 100.0 * (smooth.duration() / as_sharp.duration() - 1.0)),
+        format!(
+            "{:.0} % more time than an scurve",
+            100.0 * (smooth.duration() / as_sharp.duration() - 1.0)
+        ),
     ]);
 }
 
@@ -87,11 +93,20 @@ fn page_gives_the_errors_of_the_logistic_source() {
     let jump = |ramp: &LogisticRamp<f64>| 100.0 * ramp.speed(0.0) / ramp.asymptote();
     let least = 4.0 * 80.0 * 80.0 * 0.4 / f64::MAX.ln() / 80.0 * 60.0;
     let omega = 1000.0 / 60.0 / 5.0 * 2.0 * PI;
-    let printed = LogisticRamp::new(slow.asymptote(), 6400.0, 0.4, 1.0 - 1.0 / (1.005 * omega)).unwrap();
+    let printed =
+        LogisticRamp::new(slow.asymptote(), 6400.0, 0.4, 1.0 - 1.0 / (1.005 * omega)).unwrap();
     let symmetric = LogisticRamp::symmetric(slow.asymptote(), 6400.0).unwrap();
     says(&[
-        format!("jumps to {:.2} % of its speed at 1000 mm/min and to {:.1} % at 3000", jump(&slow), jump(&fast)),
-        format!("stops after {:.0} steps at {:.1} % of the speed", printed.distance().round(), 100.0 / (1.005 * omega)),
+        format!(
+            "jumps to {:.2} % of its speed at 1000 mm/min and to {:.1} % at 3000",
+            jump(&slow),
+            jump(&fast)
+        ),
+        format!(
+            "stops after {:.0} steps at {:.1} % of the speed",
+            printed.distance().round(),
+            100.0 / (1.005 * omega)
+        ),
         format!("instead of {:.0} steps at 99.5 %", slow.distance().round()),
         format!("under {least:.2} mm/min"),
         format!("{:.3} s instead of {:.3} s", symmetric.duration(), slow.duration()),
@@ -108,22 +123,35 @@ fn page_gives_the_errors_of_the_sinusoidal_source() {
     let entry = ramp.crossing(ramp.distance() / 256.0);
     // The table over the fourth root of the distance, at 39 places in each of its 256 cells.
     let time = |root: f64| ramp.crossing(ramp.distance() * (root / 256.0).powi(4));
-    let wrong = |cell: f64, part: f64| time(cell + part) - (time(cell) * (1.0 - part) + time(cell + 1.0) * part);
-    let places = (0..256).flat_map(|cell| (1..40).map(move |part| (f64::from(cell), f64::from(part) / 40.0)));
+    let wrong = |cell: f64, part: f64| {
+        time(cell + part) - (time(cell) * (1.0 - part) + time(cell + 1.0) * part)
+    };
+    let places = (0..256)
+        .flat_map(|cell| (1..40).map(move |part| (f64::from(cell), f64::from(part) / 40.0)));
     let worst = places.map(|(cell, part)| wrong(cell, part).abs()).fold(0.0, f64::max);
     says(&[
         format!("more than {:.2} us wrong", 1e6 * worst),
-        format!("{:.1} % of the speed after all its steps", 100.0 * ramp.speed(end) / ramp.top_speed()),
+        format!(
+            "{:.1} % of the speed after all its steps",
+            100.0 * ramp.speed(end) / ramp.top_speed()
+        ),
         format!("The first step comes at {:.2} ms", 1e3 * first),
         format!("({:.2} ms by the leading term)", 1e3 * leading),
-        format!("{:.1} ms early at the first step", 1e3 * (first - entry * 256.0 / ramp.distance())),
-        format!("{} steps/s^4", grouped((2.0 * PI).powi(2) * ramp.top_speed() / ramp.duration().powi(3))),
+        format!(
+            "{:.1} ms early at the first step",
+            1e3 * (first - entry * 256.0 / ramp.distance())
+        ),
+        format!(
+            "{} steps/s^4",
+            grouped((2.0 * PI).powi(2) * ramp.top_speed() / ramp.duration().powi(3))
+        ),
     ]);
 }
 
 #[test]
 fn page_gives_the_ramp_times_of_each_curve() {
-    let ratio = |seconds: f64| format!("{:.2}", seconds / (2.0 * (STEPS / LIMITS.acceleration).sqrt()));
+    let ratio =
+        |seconds: f64| format!("{:.2}", seconds / (2.0 * (STEPS / LIMITS.acceleration).sqrt()));
     let as_sharp = Limits { jerk: PI * 500_000.0 / 0.282_842_712_474_619, ..LIMITS };
     says(&[
         format!("sine {} times", ratio(sine_least_time(STEPS, &LIMITS))),
@@ -139,14 +167,21 @@ fn page_gives_the_errors_of_the_trapezoidal_source() {
     let (degrees, acceleration, per_step) = (360.0_f64, 1800.0_f64, 360.0 / 200.0);
     let root = (acceleration * acceleration - 4.0 * acceleration * degrees).sqrt();
     let (minus, plus) = ((acceleration - root) / 2.0, (acceleration + root) / 2.0);
-    let limits =
-        Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration: acceleration / per_step, jerk: f64::INFINITY };
+    let limits = Limits {
+        start_speed: 0.0,
+        speed: f64::INFINITY,
+        acceleration: acceleration / per_step,
+        jerk: f64::INFINITY,
+    };
     let ramp = carrystep_profile::rule::trapezoid(200.0, 1.0, &limits).unwrap();
     assert!((ramp.top_speed() * per_step / minus - 1.0).abs() < 1e-12);
     let [up, down] = [minus, plus].map(|speed| speed / acceleration);
-    assert!((ramp.breakpoints()[0] - up).abs() < 1e-12 && (ramp.breakpoints()[1] - down).abs() < 1e-12);
+    assert!(
+        (ramp.breakpoints()[0] - up).abs() < 1e-12 && (ramp.breakpoints()[1] - down).abs() < 1e-12
+    );
     let refused =
-        carrystep_profile::rule::trapezoid(200.0, 1.0, &Limits { acceleration: 100.0, ..limits }).unwrap_err();
+        carrystep_profile::rule::trapezoid(200.0, 1.0, &Limits { acceleration: 100.0, ..limits })
+            .unwrap_err();
     // As printed, the third segment moves backward from rest for as long as the ramp lasts.
     let printed = minus * up / 2.0 + minus * (down - up) - minus * up / 2.0;
     says(&[

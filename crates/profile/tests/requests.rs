@@ -3,16 +3,22 @@
 
 use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
-use carrystep_profile::Figures;
+use carrystep_profile::CurveFigures;
 use carrystep_profile::reference::{
-    Drive, Length, Listing, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv,
+    Drive, Length, Listing, Quantity, ReferenceDistance, ReferenceError, ReferenceRequest, Scale,
+    picture, write_csv,
 };
 use proptest::prelude::*;
 
 const DRIVE: Drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
 
 fn any_length() -> impl Strategy<Value = Length> {
-    prop_oneof![Just(Length::Step), Just(Length::Degree), Just(Length::Turn), Just(Length::Millimetre)]
+    prop_oneof![
+        Just(Length::Step),
+        Just(Length::Degree),
+        Just(Length::Turn),
+        Just(Length::Millimetre)
+    ]
 }
 
 /// Mostly a value that suits a motor, and sometimes any value.
@@ -26,18 +32,31 @@ fn quantity(sane: std::ops::Range<f64>) -> impl Strategy<Value = Option<Quantity
     prop::option::weighted(0.8, some)
 }
 
-fn any_request() -> impl Strategy<Value = Request> {
+fn any_request() -> impl Strategy<Value = ReferenceRequest> {
     let travel = prop_oneof![
-        Just(Travel::Ramp),
-        (1_u32..3000).prop_map(|steps| Travel::Move(Quantity::new(f64::from(steps), Length::Step))),
-        (prop::num::f64::ANY, any_length()).prop_map(|(value, unit)| Travel::Move(Quantity::new(value, unit))),
+        Just(ReferenceDistance::Ramp),
+        (1_u32..3000).prop_map(|steps| ReferenceDistance::Move(Quantity::new(
+            f64::from(steps),
+            Length::Step
+        ))),
+        (prop::num::f64::ANY, any_length())
+            .prop_map(|(value, unit)| ReferenceDistance::Move(Quantity::new(value, unit))),
     ];
     let time = prop::option::weighted(0.4, prop_oneof![9 => 1e-3..10.0, 1 => prop::num::f64::ANY]);
     let centre = prop::option::weighted(0.1, prop_oneof![9 => -1.0..2.0, 1 => prop::num::f64::ANY]);
     let values = (quantity(1.0..5e3), quantity(0.0..100.0), quantity(1.0..1e5), quantity(1.0..1e6));
-    (travel, time, centre, values).prop_map(|(travel, time, centre, (speed, start_speed, acceleration, jerk))| {
-        Request { drive: DRIVE, travel, time, speed, start_speed, acceleration, jerk, centre }
-    })
+    (travel, time, centre, values).prop_map(
+        |(travel, time, centre, (speed, start_speed, acceleration, jerk))| ReferenceRequest {
+            drive: DRIVE,
+            travel,
+            time,
+            speed,
+            start_speed,
+            acceleration,
+            jerk,
+            centre,
+        },
+    )
 }
 
 fn any_kind() -> impl Strategy<Value = ProfileKind> {
@@ -46,16 +65,25 @@ fn any_kind() -> impl Strategy<Value = ProfileKind> {
 
 /// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
 /// of a trapezoid consists of impulses that do not count.
-fn within(request: &Request, kind: ProfileKind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
+fn within(
+    request: &ReferenceRequest,
+    kind: ProfileKind,
+    figures: &CurveFigures<f64>,
+) -> Result<(), TestCaseError> {
     let limit = |quantity: Option<Quantity>| {
-        quantity.map_or(f64::INFINITY, |q| q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9))
+        quantity.map_or(f64::INFINITY, |q| {
+            q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9)
+        })
     };
     prop_assert!(figures.peak_acceleration <= limit(request.acceleration), "{figures:?}");
     prop_assert!(figures.top_speed <= limit(request.speed), "{figures:?}");
     prop_assert!(figures.peak_jerk <= limit(request.jerk), "{figures:?}");
     let jumps = [ProfileKind::Ranade, ProfileKind::Scurve, ProfileKind::Constant].contains(&kind);
     if jumps {
-        prop_assert!(figures.start_speed <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step)))));
+        prop_assert!(
+            figures.start_speed
+                <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step))))
+        );
     }
     Ok(())
 }
@@ -63,9 +91,10 @@ fn within(request: &Request, kind: ProfileKind, figures: &Figures<f64>) -> Resul
 /// Raises the limits one after the other to the values that the refusals name, until the profile is
 /// possible. A limit that is met to the last digit leaves little for the next one, so that one
 /// limit may be named twice.
-fn raised(mut request: Request, kind: ProfileKind) -> Result<(), TestCaseError> {
+fn raised(mut request: ReferenceRequest, kind: ProfileKind) -> Result<(), TestCaseError> {
     for _ in 0..6 {
-        let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind) else {
+        let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind)
+        else {
             prop_assert!(request.reference(kind).is_ok(), "{:?}", request.reference(kind));
             return Ok(());
         };
@@ -123,7 +152,7 @@ proptest! {
     fn values_named_by_a_refusal_make_the_profile_possible(request in any_request(), kind in any_kind()) {
         if let Err(ReferenceError::Refused { least_time, .. }) = request.reference(kind) {
             if let Some(time) = least_time.filter(|time| (1e-9..1e12).contains(time)) {
-                let later = Request { time: Some(time), ..request.clone() };
+                let later = ReferenceRequest { time: Some(time), ..request.clone() };
                 prop_assert!(later.reference(kind).is_ok(), "{time}: {:?}", later.reference(kind));
             }
             raised(request, kind)?;
@@ -145,15 +174,23 @@ proptest! {
 
 #[test]
 fn csv_of_a_profile_that_cannot_be_listed_stays_empty() {
-    let long = Request {
+    let long = ReferenceRequest {
         acceleration: Some(Quantity::new(1e5, Length::Step)),
-        ..Request::new(DRIVE, Travel::Move(Quantity::new(1e9, Length::Step)))
+        ..ReferenceRequest::new(DRIVE, ReferenceDistance::Move(Quantity::new(1e9, Length::Step)))
     };
-    let short = Request { travel: Travel::Move(Quantity::new(10.0, Length::Step)), ..long.clone() };
-    let both =
-        [short.reference(ProfileKind::Sine).expect("a sine"), long.reference(ProfileKind::Sine).expect("a sine")];
+    let short = ReferenceRequest {
+        travel: ReferenceDistance::Move(Quantity::new(10.0, Length::Step)),
+        ..long.clone()
+    };
+    let both = [
+        short.reference(ProfileKind::Sine).expect("a sine"),
+        long.reference(ProfileKind::Sine).expect("a sine"),
+    ];
     let mut text = Vec::new();
     assert!(write_csv(&mut text, &both, &Listing::SOURCES).is_err());
-    assert!(write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES }).is_err());
+    assert!(
+        write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES })
+            .is_err()
+    );
     assert!(text.is_empty());
 }

@@ -1,31 +1,22 @@
 // Line, link and engine of a board, without its clock manager and pins.
+//
+// A template: `ports` is the table of the engine's ports, `bytes` that of the ports between line and
+// link. The outputs of the engine and its inputs from pins are ports of this module.
 module board_bench #(parameter AXES = 6) (
-    input wire clock,
     input wire rx,       // or MOSI
     output wire tx,      // or MISO
     input wire sck,
     input wire select_n,
-    input wire estop,
-    input wire [AXES-1:0] limit_min,
-    input wire [AXES-1:0] limit_max,
-    output wire [AXES-1:0] step,
-    output wire [AXES-1:0] dir,
-    output wire enabled,
-    output wire idle,
-    output wire fault,
-    output wire halted,
-    output wire [2:0] cause,
-    output wire [AXES-1:0] culprits,
-    output wire started
+{% for port in ports if port.shown %}
+    {{ "input" if port.input else "output" }} wire {{ port.range }}{{ port.name }}{{ "," if not loop.last }}
+{% endfor %}
 );
-    wire received_valid, answer_valid, answer_take;
-    wire [7:0] received, answer;
-    wire put_valid, put_ready, room_valid, start_valid, start_ready, clear, stop, broken, home_valid, kick, enable;
-    wire get_valid, latch, armed, ready;
-    wire [2:0] put_axis, put_word, get_axis, room, latch_axis;
-    wire [1:0] get_item;
-    wire [31:0] put_data, get_data;
-    wire [AXES-1:0] start_mask, home_mask, homing;
+{% for port in bytes %}
+    wire {{ port.range }}{{ port.name }};
+{% endfor %}
+{% for port in ports if not port.shown %}
+    wire {{ port.range }}{{ port.name }};
+{% endfor %}
 
 `ifdef SPI
     carrystep_spi line (.mosi(rx), .miso(tx), .*);

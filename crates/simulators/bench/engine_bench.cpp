@@ -1,6 +1,9 @@
 // Replays the recorded inputs of a host to carrystep_engine in Verilator, and prints every cycle in
 // which any output changed. Then reads the contents of the engine through the get port. Arguments:
 // FILE [+mutant=N]; compiled for AXES axes.
+//
+// A template: `inputs` and `outputs` are the recorded ports of the engine, in the order of the
+// stimuli and of the printed bits.
 #include "Vcarrystep_engine.h"
 #include "verilated.h"
 #include <cinttypes>
@@ -14,24 +17,9 @@ constexpr int PATIENCE = 1 << 18;
 uint64_t outputs(const Vcarrystep_engine& core) {
     uint64_t all = 0;
     const auto add = [&all](uint64_t value, int bits) { all = all << bits | value; };
-    add(core.latch, 1);
-    add(core.latch ? core.latch_axis : 0, 3);
-    add(core.room_valid, 1);
-    add(core.room_valid ? core.room : 0, 3);
-    add(core.armed, 1);
-    add(core.ready, 1);
-    add(core.homing, AXES);
-    add(core.put_ready, 1);
-    add(core.start_ready, 1);
-    add(core.idle, 1);
-    add(core.fault, 1);
-    add(core.halted, 1);
-    add(core.started, 1);
-    add(core.enabled, 1);
-    add(core.fault ? core.cause : 0, 3);
-    add(core.step, AXES);
-    add(core.dir, AXES);
-    add(core.fault ? core.culprits : 0, AXES);
+{% for port in outputs %}
+    add({% if port.valid_with %}core.{{ port.valid_with }} ? core.{{ port.name }} : 0{% else %}core.{{ port.name }}{% endif %}, {{ port.width }});
+{% endfor %}
     return all;
 }
 
@@ -54,27 +42,12 @@ int main(int argc, char** argv) {
     core.clock = 0;
     core.eval();
     uint64_t before = ~uint64_t{0}, cycle = 0, count;
-    unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear;
-    unsigned stop, broken, home_valid, home_mask, kick, enable, estop, limit_min, limit_max;
-    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %x %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
-                       &start_valid, &start_mask, &clear, &stop, &broken, &home_valid, &home_mask, &kick, &enable, &estop, &limit_min,
-                       &limit_max) == 17) {
-        core.put_valid = put_valid;
-        core.put_axis = put_axis;
-        core.put_word = put_word;
-        core.put_data = put_data;
-        core.start_valid = start_valid;
-        core.start_mask = start_mask;
-        core.clear = clear;
-        core.stop = stop;
-        core.broken = broken;
-        core.home_valid = home_valid;
-        core.home_mask = home_mask;
-        core.kick = kick;
-        core.enable = enable;
-        core.estop = estop;
-        core.limit_min = limit_min;
-        core.limit_max = limit_max;
+    unsigned {% for port in inputs %}{{ port.name }}{{ ", " if not loop.last }}{% endfor %};
+    while (std::fscanf(file, "%" SCNu64 "{% for port in inputs %} %x{% endfor %}", &count
+{%- for port in inputs %}, &{{ port.name }}{% endfor %}) == {{ inputs | length + 1 }}) {
+{% for port in inputs %}
+        core.{{ port.name }} = {{ port.name }};
+{% endfor %}
         core.eval();
         for (; count != 0; --count, ++cycle) {
             const uint64_t now = outputs(core);
@@ -83,7 +56,9 @@ int main(int argc, char** argv) {
             tick(core);
         }
     }
-    core.put_valid = core.start_valid = core.clear = core.stop = core.broken = core.home_valid = core.kick = 0;
+{% for port in inputs if port.released %}
+    core.{{ port.name }} = 0;
+{% endfor %}
     for (int axis = 0; axis < AXES; ++axis)
         for (int item = 0; item < 4; ++item) {
             core.get_axis = axis;

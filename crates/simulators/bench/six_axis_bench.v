@@ -1,5 +1,6 @@
-// The host of docs/clock-by-clock.md for Icarus: feeds a program to carrystep_six_axis, and prints
-// every cycle in which any output changed. Arguments: +program=FILE +tail=CYCLES +max=CYCLES.
+// The host that docs/clock-by-clock.md specifies, for Icarus: it feeds a program to
+// carrystep_six_axis, and prints the outputs in every cycle in which any of them changed.
+// Arguments: +program=FILE +tail=CYCLES +max=CYCLES.
 `timescale 1ns / 1ps
 module six_axis_bench;
     reg clock = 0, seg_valid = 0, seg_last = 0, start_valid = 0, clear = 0;
@@ -51,9 +52,10 @@ module six_axis_bench;
         quiet = 0;
         over = 0;
         before = {420{1'bx}};
-        #1; // at time 0 the order of initial values and combinational blocks is undefined
+        #1; // At time 0 the order of initial values and combinational blocks is undefined.
         while (!over) begin
-            // Drives the inputs while the clock is low; fault is a register and has settled.
+            // The bench drives the inputs while the clock is low; `fault` is a register and has
+            // settled.
             seg_valid = kind == SEGMENT && !fault;
             seg_axis = seg_valid ? who[2:0] : 3'd0;
             {seg_ticks, seg_v, seg_a, seg_j, seg_last} = {ticks, v, a, j, last};

@@ -1,6 +1,6 @@
 // Applies recorded cycles to one module in Icarus. Each line of the file holds a number of cycles,
-// the inputs, the outputs, and a mask of the output bits to compare. Prints the first difference,
-// or the number of cycles that were equal. Argument: +vectors=FILE.
+// the inputs, the expected outputs, and a mask of the output bits to compare. The bench prints the
+// first difference, or the number of cycles that were equal. Argument: +vectors=FILE.
 `timescale 1ns / 1ps
 module vectors_bench;
     reg clock;

@@ -1,17 +1,16 @@
 //! Line, link and engine of a board in Verilator: a process that runs for a given number of clocks,
 //! and reports the changes at its pins.
 
-use crate::LevelError;
 use crate::tool::{self, VERILATOR};
 use crate::verilator::Simulation;
+use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSES, Cause};
-use carrystep_core::link::Line;
+use carrystep_core::link::LineKind;
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-const TOP: &str = include_str!("../bench/board_bench.v");
 const BENCH: &str = include_str!("../bench/board_bench.cpp");
 
 /// Levels of a board's input pins.
@@ -68,23 +67,30 @@ impl BoardProcess {
     ///
     /// # Errors
     /// [`LevelError`] if Verilator is missing or fails, or if there is no such gateware.
-    pub fn new(build: &EngineBuild, line: Line) -> Result<Self, LevelError> {
+    pub fn new(build: &EngineBuild, line: LineKind) -> Result<Self, LevelError> {
         let what = "a simulation";
-        let parts = [line_verilog(line, what), link_verilog(build, line, what), engine_verilog(build, what)];
+        let parts = [
+            line_verilog(line, what),
+            link_verilog(build, line, what),
+            engine_verilog(build, what),
+        ];
         // The exported files are Verilog-2005; the top level of the bench uses more.
-        let mut verilog = format!("{TOP}`begin_keywords \"1364-2005\"\n");
+        let top = bench::board()?;
+        let mut verilog = format!("{top}`begin_keywords \"1364-2005\"\n");
         for part in parts {
             verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
         }
         verilog += "`end_keywords\n";
         let axes = format!("-GAXES={}", build.axes());
-        let define = if line == Line::Spi { "-DSPI" } else { "-DUART" };
+        let define = if line == LineKind::Spi { "-DSPI" } else { "-DUART" };
         let options: &[&str] = &[&axes, define];
         let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn().map_err(tool::io("cannot start the simulation"))?;
-        let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else { return Err(gone("no pipes")) };
+        let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(gone("no pipes"));
+        };
         Ok(Self { child, to: BufWriter::new(to), from: BufReader::new(from) })
     }
 
@@ -95,12 +101,18 @@ impl BoardProcess {
     ///
     /// # Errors
     /// [`LevelError`] if the process has failed.
-    pub fn run(&mut self, stimuli: &[(u64, Levels)], to: &mut dyn FnMut(Did)) -> Result<Standing, LevelError> {
+    pub fn run(
+        &mut self,
+        stimuli: &[(u64, Levels)],
+        to: &mut dyn FnMut(Did),
+    ) -> Result<Standing, LevelError> {
         let last = stimuli.last().map(|&(_, levels)| (0, levels));
         for (count, Levels { rx, spi: [sck, select_n], estop, limit_min, limit_max }) in
             stimuli.iter().copied().chain(last)
         {
-            let bits = [estop, select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
+            let bits = [estop, select_n, sck, rx]
+                .into_iter()
+                .fold(0, |bits, pin| bits << 1 | u8::from(pin));
             writeln!(self.to, "{count} {bits:x} {limit_min:x} {limit_max:x}")
                 .map_err(tool::io("the simulation is gone"))?;
         }
@@ -145,12 +157,20 @@ fn parsed(line: &str) -> Option<Heard> {
         "." => {
             let (idle, halted, stopped) = (hex()? == 1, hex()? == 1, hex()? == 1);
             let fault = (cause(hex()?)?, hex()?);
-            return Some(Heard::Standing(Standing { cycle, idle, halted, fault: stopped.then_some(fault) }));
+            return Some(Heard::Standing(Standing {
+                cycle,
+                idle,
+                halted,
+                fault: stopped.then_some(fault),
+            }));
         }
         _ => return None,
     }))
 }
 
 fn gone(line: &str) -> LevelError {
-    LevelError::Tool { tool: VERILATOR.name, message: format!("the simulation of the board said {line:?}") }
+    LevelError::Tool {
+        tool: VERILATOR.name,
+        message: format!("the simulation of the board said {line:?}"),
+    }
 }

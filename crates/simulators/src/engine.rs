@@ -51,7 +51,8 @@ enum Act {
 pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
     let Some(left) = segment.ticks.checked_sub(1) else { return Vec::new() };
     let halves = |x: i64| [x as u32, (x >> 32) as u32];
-    let words = [[left].as_slice(), &halves(segment.v), &halves(segment.a), &halves(segment.j)].concat();
+    let words =
+        [[left].as_slice(), &halves(segment.v), &halves(segment.a), &halves(segment.j)].concat();
     let commit = Put { axis, word: COMMIT, data: u32::from(segment.last) };
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
@@ -76,6 +77,11 @@ pub enum Event {
     Home(u8),
     /// The host violates the segment protocol in this cycle.
     Broken,
+    /// The `reset` input is asserted, or released.
+    Reset(bool),
+    /// The host numbers its words wrongly from this cycle on: the bits of this mask are inverted in
+    /// the number of every word. 0 ends it.
+    WordError(u8),
 }
 
 /// Events, in the order of their cycles.
@@ -97,6 +103,7 @@ pub struct EngineHost {
     around: EngineInputs,
     estop_low: bool,
     limits_low: u8,
+    word_error: u8,
 }
 
 impl EngineHost {
@@ -106,7 +113,9 @@ impl EngineHost {
         let mut acts = Vec::new();
         for command in program {
             match *command {
-                Command::Segment { axis, segment } => acts.extend(puts(axis, &segment).into_iter().map(Act::Put)),
+                Command::Segment { axis, segment } => {
+                    acts.extend(puts(axis, &segment).into_iter().map(Act::Put));
+                }
                 Command::Start { mask } => acts.push(Act::Start(mask)),
                 Command::Wait { clocks } => acts.push(Act::Wait(clocks)),
                 Command::Clear => acts.push(Act::Clear),
@@ -128,7 +137,18 @@ impl EngineHost {
         let around = EngineInputs { enable: true, ..EngineInputs::default() };
         let limits_low = if guard.limits_low { 0xff } else { 0 };
         let estop_low = guard.estop_low;
-        let mut host = Self { acts, current, events, cycle: 0, awake, fault: false, around, estop_low, limits_low };
+        let mut host = Self {
+            acts,
+            current,
+            events,
+            cycle: 0,
+            awake,
+            fault: false,
+            around,
+            estop_low,
+            limits_low,
+            word_error: 0,
+        };
         host.happen();
         host
     }
@@ -146,6 +166,8 @@ impl EngineHost {
                 Event::Kick => self.around.kick = true,
                 Event::Home(axes) => self.around.home = Some(axes),
                 Event::Broken => self.around.broken = true,
+                Event::Reset(asserted) => self.around.reset = asserted,
+                Event::WordError(mask) => self.word_error = mask,
             }
         }
     }
@@ -159,7 +181,10 @@ impl EngineHost {
             ..self.around
         };
         match self.current {
-            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(put), ..inputs },
+            Some(Act::Put(put)) if !fault => {
+                let put = Put { word: put.word ^ self.word_error, ..put };
+                EngineInputs { put: Some(put), ..inputs }
+            }
             Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
             Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
             _ => inputs,
@@ -195,7 +220,10 @@ impl EngineHost {
     }
 
     /// The inputs of a core in this cycle, and the outputs that they cause.
-    pub fn meet(&mut self, mut core: impl FnMut(&EngineInputs) -> EngineOutputs) -> (EngineInputs, EngineOutputs) {
+    pub fn meet(
+        &mut self,
+        mut core: impl FnMut(&EngineInputs) -> EngineOutputs,
+    ) -> (EngineInputs, EngineOutputs) {
         let mut inputs = self.inputs(self.fault);
         let mut outputs = core(&inputs);
         // The host's inputs depend on the fault of the same cycle: evaluate again if the fault has
@@ -219,9 +247,13 @@ impl EngineHost {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let lasting = self.around.kick == self.awake && !self.around.broken && self.around.home.is_none();
+        let lasting =
+            self.around.kick == self.awake && !self.around.broken && self.around.home.is_none();
         // The cycle before an event must be simulated by `advance`.
-        let eventless = self.events.peek().map_or(u64::MAX, |(cycle, _)| (cycle - 1).saturating_sub(self.cycle));
+        let eventless = self
+            .events
+            .peek()
+            .map_or(u64::MAX, |(cycle, _)| (cycle - 1).saturating_sub(self.cycle));
         if lasting { blocked.min(eventless) } else { 0 }
     }
 

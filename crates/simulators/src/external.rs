@@ -66,7 +66,8 @@ pub(crate) fn observe(
             _ => odd = odd.or(Some(line)),
         }
     }
-    let status = child.wait().map_err(tool::io(format!("waiting for the {} simulation", tool.name)))?;
+    let status =
+        child.wait().map_err(tool::io(format!("waiting for the {} simulation", tool.name)))?;
     let failed = || LevelError::Tool {
         tool: tool.name,
         message: match &odd {
@@ -89,10 +90,19 @@ fn record(line: &str) -> Option<(char, u64, Outputs)> {
     let (step, dir) = (small()?, small()?);
     let idle = small()? == 1;
     let started = small()? == 1;
-    let faults = Faults { overrun: small()?, overspeed: small()?, underrun: small()?, protocol: small()? == 1 };
+    let faults = Faults {
+        overrun: small()?,
+        overspeed: small()?,
+        underrun: small()?,
+        protocol: small()? == 1,
+    };
     let position = words(fields.next()?)?.map(u32::cast_signed);
     let discarded = words(fields.next()?)?;
-    Some((letter, cycle, Outputs { seg_ready, start_ready, step, dir, position, discarded, idle, faults, started }))
+    Some((
+        letter,
+        cycle,
+        Outputs { seg_ready, start_ready, step, dir, position, discarded, idle, faults, started },
+    ))
 }
 
 /// Parses 192 bits in hexadecimal as six words; axis 0 is the lowest.

@@ -5,14 +5,14 @@ use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{Command, Program};
 
 /// A six-axis core that is simulated in Rust, clock by clock.
-pub trait Core {
+pub trait SimulatedCore {
     /// The outputs of this cycle for these inputs.
     fn outputs(&mut self, inputs: &Inputs) -> Outputs;
     /// Advances to the next cycle.
     fn clock(&mut self, inputs: &Inputs);
 }
 
-impl Core for carrystep_model::SixAxis {
+impl SimulatedCore for carrystep_model::SixAxis {
     fn outputs(&mut self, inputs: &Inputs) -> Outputs {
         Self::outputs(self, inputs)
     }
@@ -21,7 +21,7 @@ impl Core for carrystep_model::SixAxis {
     }
 }
 
-impl Core for carrystep_hdl::SixAxisSim {
+impl SimulatedCore for carrystep_hdl::SixAxisSim {
     fn outputs(&mut self, inputs: &Inputs) -> Outputs {
         self.settle(inputs)
     }
@@ -49,7 +49,9 @@ impl<'a> Host<'a> {
             Some(Command::Segment { axis, segment }) if !fault => {
                 Inputs { segment: Some((axis, segment)), ..Inputs::default() }
             }
-            Some(Command::Start { mask }) if !fault => Inputs { start: Some(mask), ..Inputs::default() },
+            Some(Command::Start { mask }) if !fault => {
+                Inputs { start: Some(mask), ..Inputs::default() }
+            }
             Some(Command::Clear) => Inputs { clear: true, ..Inputs::default() },
             _ => Inputs::default(),
         }
@@ -101,7 +103,7 @@ impl<'a> Host<'a> {
 }
 
 /// The first cycle after a start; `None` if no start is executed.
-pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
+pub(crate) fn first_start(core: &mut impl SimulatedCore, job: &Job<'_>) -> Option<u64> {
     let mut host = Host::new(job.program);
     for cycle in 0..job.max_clocks {
         let inputs = host.inputs(false);
@@ -116,7 +118,11 @@ pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
 }
 
 /// Feeds a core until the program is over and the outputs no longer change.
-pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+pub(crate) fn run(
+    core: &mut impl SimulatedCore,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
     let mut host = Host::new(job.program);
     let mut before = None;
     let mut fault = false;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 /// Stage of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum RunStage {
     /// The simulation runs, and reports its clock.
     Runs,
     /// The model runs first, clock by clock. The Verilog will be compared with it.
@@ -32,17 +32,17 @@ impl HowFar {
     }
 
     /// Begins another stage.
-    pub(crate) fn begin(&self, stage: Stage) {
+    pub(crate) fn begin(&self, stage: RunStage) {
         self.at(0);
         self.stage.store(stage as u8, Ordering::Relaxed);
     }
 
     /// The current stage.
-    pub fn stage(&self) -> Stage {
+    pub fn stage(&self) -> RunStage {
         match self.stage.load(Ordering::Relaxed) {
-            1 => Stage::ModelRuns,
-            2 => Stage::VerilogRuns,
-            _ => Stage::Runs,
+            1 => RunStage::ModelRuns,
+            2 => RunStage::VerilogRuns,
+            _ => RunStage::Runs,
         }
     }
 }

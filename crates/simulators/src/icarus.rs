@@ -6,17 +6,25 @@ use std::process::Command;
 
 const BENCH: &str = include_str!("../bench/six_axis_bench.v");
 
-pub(crate) fn run(verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+pub(crate) fn run(
+    verilog: &str,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
     tool::find(&ICARUS)?;
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     let path = |name: &str| folder.path().join(name);
-    let write =
-        |name: &str, text: &str| std::fs::write(path(name), text).map_err(tool::io(format!("cannot write {name}")));
+    let write = |name: &str, text: &str| {
+        std::fs::write(path(name), text).map_err(tool::io(format!("cannot write {name}")))
+    };
     write("core.v", verilog)?;
     write("bench.v", BENCH)?;
     write("program.txt", &external::program_text(job))?;
     let files = ["-o", "bench.vvp", "bench.v", "core.v"];
-    tool::complete(&ICARUS, Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder.path()))?;
+    tool::complete(
+        &ICARUS,
+        Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder.path()),
+    )?;
     let mut simulation = Command::new("vvp");
     simulation.args(["-n", "bench.vvp", "+program=program.txt"]).current_dir(folder.path());
     simulation.args([format!("+tail={}", job.tail), format!("+max={}", job.max_clocks)]);

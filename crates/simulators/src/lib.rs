@@ -5,6 +5,7 @@
 //! each cycle in which any of them changed. If two reports are equal, the pins are equal in every
 //! clock.
 
+mod bench;
 pub mod board;
 mod cache;
 pub mod engine;
@@ -28,10 +29,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
-pub use how_far::{HowFar, Stage};
+pub use how_far::{HowFar, RunStage};
 
 /// A level: the implementation on which a program is run. The fastest is the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Display, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Display, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Level {
     /// The fast model of `crates/model`, which computes from edge to edge.
@@ -85,8 +88,16 @@ impl<'a> Job<'a> {
     /// last pulse.
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        let slack = 4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
-        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack, halt: &[], how_far: None }
+        let slack = 4 * clocks
+            + build.pins.iter().map(|p| u64::from(p.step_high + p.step_low)).max().unwrap_or(0);
+        Self {
+            build,
+            program,
+            tail: slack,
+            max_clocks: (ticks + 8) * clocks + 4 * slack,
+            halt: &[],
+            how_far: None,
+        }
     }
 }
 
@@ -151,13 +162,17 @@ pub type Observer<'a> = dyn FnMut(u64, &Outputs) + 'a;
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, or if the run does not end.
-pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+pub fn run(
+    level: Level,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
     match level {
         Level::Fast => fast::replay(job, observer),
         Level::Model => host::run(&mut carrystep_model::SixAxis::new(job.build), job, observer),
         Level::RustHdl => {
-            let mut core =
-                carrystep_hdl::SixAxisSim::new(job.build).map_err(|e| LevelError::Gateware(e.to_string()))?;
+            let mut core = carrystep_hdl::SixAxisSim::new(job.build)
+                .map_err(|e| LevelError::Gateware(e.to_string()))?;
             host::run(&mut core, job, observer)
         }
         Level::Icarus | Level::Verilator => {
@@ -194,7 +209,8 @@ pub fn run_verilog(
 /// # Errors
 /// [`LevelError::Endless`] if the program has no start.
 pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
-    host::first_start(&mut carrystep_model::SixAxis::new(job.build), job).ok_or(LevelError::Endless(job.max_clocks))
+    host::first_start(&mut carrystep_model::SixAxis::new(job.build), job)
+        .ok_or(LevelError::Endless(job.max_clocks))
 }
 
 /// Checks that the tools of a level are installed.

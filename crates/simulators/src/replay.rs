@@ -10,14 +10,14 @@ use carrystep_model::fast::{Change, Edge, Edges};
 const NEVER: u64 = u64::MAX;
 
 /// Outputs that edges change.
-pub trait Shown: Copy + PartialEq + Default {
+pub trait ReplayedOutputs: Copy + PartialEq + Default {
     /// Levels of the STEP and DIR pins.
     fn pins(&mut self) -> (&mut u8, &mut u8);
     /// Counts a step of an axis, forward or backward.
     fn count(&mut self, axis: usize, backward: bool);
 }
 
-impl Shown for Outputs {
+impl ReplayedOutputs for Outputs {
     fn pins(&mut self) -> (&mut u8, &mut u8) {
         (&mut self.step, &mut self.dir)
     }
@@ -28,7 +28,7 @@ impl Shown for Outputs {
     }
 }
 
-impl Shown for EngineOutputs {
+impl ReplayedOutputs for EngineOutputs {
     fn pins(&mut self) -> (&mut u8, &mut u8) {
         (&mut self.step, &mut self.dir)
     }
@@ -39,7 +39,7 @@ impl Shown for EngineOutputs {
 /// Calls an observer for the cycles for which the clock-by-clock model would call it.
 pub struct Replay<'a, O> {
     observer: &'a mut (dyn FnMut(u64, &O) + 'a),
-    width: [u64; MAX_AXES],
+    step_high: [u64; MAX_AXES],
     /// Cycle of the next falling edge of each STEP.
     falls: [u64; MAX_AXES],
     first_fall: u64,
@@ -50,19 +50,32 @@ pub struct Replay<'a, O> {
     told: Option<O>,
 }
 
-impl<'a, O: Shown> Replay<'a, O> {
+impl<'a, O: ReplayedOutputs> Replay<'a, O> {
     /// A replay with all pins low and with these pulse widths.
     pub fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
-        let mut width = [0; MAX_AXES];
-        width.iter_mut().zip(pins).for_each(|(width, pins)| *width = pins.width.into());
-        Self { observer, width, falls: [NEVER; MAX_AXES], first_fall: NEVER, at: 0, now: O::default(), told: None }
+        let mut step_high = [0; MAX_AXES];
+        step_high
+            .iter_mut()
+            .zip(pins)
+            .for_each(|(step_high, pins)| *step_high = pins.step_high.into());
+        Self {
+            observer,
+            step_high,
+            falls: [NEVER; MAX_AXES],
+            first_fall: NEVER,
+            at: 0,
+            now: O::default(),
+            told: None,
+        }
     }
 
     /// Reports everything before this cycle, which is now known completely.
     pub fn reach(&mut self, cycle: u64) {
         while self.first_fall <= cycle {
             self.settle(self.first_fall);
-            for (axis, fall) in self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at) {
+            for (axis, fall) in
+                self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at)
+            {
                 *self.now.pins().0 &= !(1 << axis);
                 *fall = NEVER;
             }
@@ -82,23 +95,23 @@ impl<'a, O: Shown> Replay<'a, O> {
     }
 }
 
-impl<O: Shown> Edges for Replay<'_, O> {
+impl<O: ReplayedOutputs> Edges for Replay<'_, O> {
     fn edge(&mut self, edge: Edge) {
         self.reach(edge.clock);
         let axis = usize::from(edge.axis);
         match edge.change {
-            Change::Turn => *self.now.pins().1 ^= 1 << axis,
+            Change::DirChange => *self.now.pins().1 ^= 1 << axis,
             Change::Rise => {
                 *self.now.pins().0 |= 1 << axis;
                 self.now.count(axis, edge.backward);
-                self.falls[axis] = edge.clock + self.width[axis];
+                self.falls[axis] = edge.clock + self.step_high[axis];
                 self.first_fall = self.first_fall.min(self.falls[axis]);
             }
         }
     }
 }
 
-impl<O: Shown> Listener<O> for Replay<'_, O> {
+impl<O: ReplayedOutputs> Listener<O> for Replay<'_, O> {
     fn outputs(&mut self, cycle: u64, outputs: &O) {
         self.reach(cycle);
         self.now = *outputs;

@@ -14,7 +14,11 @@ pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
     if is_found {
         return Ok(());
     }
-    let started = Command::new(tool.name).args(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let started = Command::new(tool.name)
+        .args(tool.version)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
     started.map_err(|_| LevelError::Missing(*tool))?;
     if let Ok(mut found) = FOUND.lock() {
         found.push(tool.name);
@@ -29,7 +33,10 @@ pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelEr
         return Ok(());
     }
     let text = [output.stdout, output.stderr].concat();
-    Err(LevelError::Tool { tool: tool.name, message: String::from_utf8_lossy(&text).trim().to_owned() })
+    Err(LevelError::Tool {
+        tool: tool.name,
+        message: String::from_utf8_lossy(&text).trim().to_owned(),
+    })
 }
 
 /// An input or output error, with the operation that failed.

@@ -46,8 +46,11 @@ pub struct Vectors {
 
 impl Vectors {
     /// A recording without cycles.
-    pub const fn new(inputs: &'static [(&'static str, u32)], outputs: &'static [(&'static str, u32)]) -> Self {
-        let (inputs, outputs) = (Cow::Borrowed(inputs), Cow::Borrowed(outputs));
+    pub fn new(
+        inputs: impl Into<Cow<'static, [(&'static str, u32)]>>,
+        outputs: impl Into<Cow<'static, [(&'static str, u32)]>>,
+    ) -> Self {
+        let (inputs, outputs) = (inputs.into(), outputs.into());
         Self { clock: "clock", inputs, outputs, rows: Vec::new() }
     }
 
@@ -77,13 +80,17 @@ impl Vectors {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{count} {:x} {bits:x} {counts:x}", inputs.bits);
         }
-        for (name, text) in [("module.v", verilog), ("bench.v", &self.bench(module)), ("vectors.txt", &text)] {
-            std::fs::write(folder.path().join(name), text).map_err(tool::io(format!("cannot write {name}")))?;
+        for (name, text) in
+            [("module.v", verilog), ("bench.v", &self.bench(module)), ("vectors.txt", &text)]
+        {
+            std::fs::write(folder.path().join(name), text)
+                .map_err(tool::io(format!("cannot write {name}")))?;
         }
         let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
         tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
         let mut runs = Command::new("vvp");
-        let said = runs.args(["-n", "bench.vvp", "+vectors=vectors.txt"]).current_dir(&folder).output();
+        let said =
+            runs.args(["-n", "bench.vvp", "+vectors=vectors.txt"]).current_dir(&folder).output();
         let said = said.map_err(tool::io("cannot start the simulation"))?;
         let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
         Ok((said != format!("same {}", self.cycles())).then_some(said))
@@ -92,12 +99,18 @@ impl Vectors {
     fn bench(&self, module: &str) -> String {
         let mut connections = String::new();
         let mut widths = [0; 2];
-        for (side, (vector, ports)) in [("inputs", &self.inputs), ("outputs", &self.outputs)].into_iter().enumerate() {
+        for (side, (vector, ports)) in
+            [("inputs", &self.inputs), ("outputs", &self.outputs)].into_iter().enumerate()
+        {
             let mut below: u32 = ports.iter().map(|(_, width)| width).sum();
             widths[side] = below;
             for (name, width) in ports.iter() {
                 below -= width;
-                let _ = write!(connections, ",\n        .{name}({vector}[{}:{below}])", below + width - 1);
+                let _ = write!(
+                    connections,
+                    ",\n        .{name}({vector}[{}:{below}])",
+                    below + width - 1
+                );
             }
         }
         let [inputs, outputs] = widths.map(|width| width.to_string());

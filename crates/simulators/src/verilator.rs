@@ -12,14 +12,30 @@ use std::sync::Mutex;
 const BENCH: &str = include_str!("../bench/six_axis_bench.cpp");
 /// Verilator's makefile adds -Os behind all other flags, unless `OPT_FAST` is set. With -Os some
 /// simulations reach only a third of the speed.
-const OPTIONS: [&str; 9] =
-    ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-MAKEFLAGS", "OPT_FAST=-O2"];
+const OPTIONS: [&str; 9] = [
+    "--cc",
+    "--exe",
+    "--build",
+    "-O3",
+    "--x-assign",
+    "fast",
+    "-Wno-fatal",
+    "-MAKEFLAGS",
+    "OPT_FAST=-O2",
+];
 
-pub(crate) fn run(verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
-    let program_file = tempfile::NamedTempFile::new().map_err(tool::io("cannot make a temporary file"))?;
-    let six_axis = Simulation { name: "six_axis", top: "carrystep_six_axis", bench: BENCH, options: &[] };
+pub(crate) fn run(
+    verilog: &str,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
+    let program_file =
+        tempfile::NamedTempFile::new().map_err(tool::io("cannot make a temporary file"))?;
+    let six_axis =
+        Simulation { name: "six_axis", top: "carrystep_six_axis", bench: BENCH, options: &[] };
     let mut simulation = Command::new(six_axis.compiled(verilog)?);
-    std::fs::write(&program_file, external::program_text(job)).map_err(tool::io("cannot write the program"))?;
+    std::fs::write(&program_file, external::program_text(job))
+        .map_err(tool::io("cannot write the program"))?;
     simulation.arg(program_file.path()).args([job.tail.to_string(), job.max_clocks.to_string()]);
     external::observe(&VERILATOR, &mut simulation, job, observer)
 }
@@ -60,16 +76,25 @@ impl Simulation<'_> {
         let binary = cache.join(format!("{name}_{hash}"));
         let _one_at_a_time = COMPILER.lock();
         if !cache::holds(&binary)? {
-            let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
+            let folder =
+                tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
             tool::put(folder.path(), &[("core.v", verilog), ("bench.cpp", bench)])?;
             let mut command = Command::new(VERILATOR.name);
-            command.args(OPTIONS).args(options).args(["--top-module", top, "-o", "bench", "core.v", "bench.cpp"]);
+            command.args(OPTIONS).args(options).args([
+                "--top-module",
+                top,
+                "-o",
+                "bench",
+                "core.v",
+                "bench.cpp",
+            ]);
             tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
             let made = folder.path().join("obj_dir").join("bench");
             cache::only_ours(&made)?;
             // A rename is atomic: another process that looks for the file finds it complete or not
             // at all.
-            std::fs::rename(made, &binary).map_err(tool::io("cannot keep the compiled simulation"))?;
+            std::fs::rename(made, &binary)
+                .map_err(tool::io("cannot keep the compiled simulation"))?;
         }
         Ok(binary)
     }

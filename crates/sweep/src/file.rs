@@ -3,7 +3,7 @@
 //! Case i depends only on the file, the seed and i. Any change of the order in which values are
 //! chosen changes every case.
 
-use carrystep_files::{InputError, MoveFile, Source};
+use carrystep_files::{InputError, MoveFile, SourceText};
 use minijinja::{Environment, UndefinedBehavior};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -71,7 +71,7 @@ pub enum SweepError {
 
 /// A sweep that can create each of its cases.
 pub struct SweepFile {
-    source: Source,
+    source: SourceText,
     template: Environment<'static>,
     vary: BTreeMap<String, Choice>,
     sample: Option<u64>,
@@ -99,14 +99,19 @@ impl SweepFile {
         if sample == Some(0) {
             return Err(SweepError::NothingToTry);
         }
-        let source = Source::read(path)?;
-        let wrong = |message: String| SweepError::Format { path: path.display().to_string(), message };
+        let source = SourceText::read(path)?;
+        let wrong =
+            |message: String| SweepError::Format { path: path.display().to_string(), message };
         let raw: Raw = source.parse()?;
         for (name, choice) in &raw.vary {
             match choice {
-                Choice::List(list) if list.is_empty() => return Err(wrong(format!("{name}: an empty list"))),
+                Choice::List(list) if list.is_empty() => {
+                    return Err(wrong(format!("{name}: an empty list")));
+                }
                 Choice::Range { .. } if sample.is_none() => {
-                    return Err(wrong(format!("{name}: a range has no grid; give --sample, or a list")));
+                    return Err(wrong(format!(
+                        "{name}: a range has no grid; give --sample, or a list"
+                    )));
                 }
                 Choice::Range { from, to } if !(*from > 0.0 && from < to && to.is_finite()) => {
                     return Err(wrong(format!("{name}: a range needs 0 < from < to")));
@@ -116,14 +121,19 @@ impl SweepFile {
         }
         let mut template = Environment::new();
         template.set_undefined_behavior(UndefinedBehavior::Strict);
-        template.add_template_owned("move", raw.move_file).map_err(|error| wrong(error.to_string()))?;
+        template
+            .add_template_owned("move", raw.move_file)
+            .map_err(|error| wrong(error.to_string()))?;
         Ok(Self { source, template, vary: raw.vary, sample, seed })
     }
 
     /// Number of cases.
     pub fn cases(&self) -> u64 {
-        let grid =
-            || self.vary.values().map(|choice| if let Choice::List(list) = choice { list.len() as u64 } else { 1 });
+        let grid = || {
+            self.vary
+                .values()
+                .map(|choice| if let Choice::List(list) = choice { list.len() as u64 } else { 1 })
+        };
         self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
     }
 
@@ -161,11 +171,16 @@ impl SweepFile {
             };
             values.insert(name.clone(), value);
         }
-        let filled = values.iter().map(|(name, value)| (name.clone(), minijinja::Value::from(value.to_string())));
+        let filled = values
+            .iter()
+            .map(|(name, value)| (name.clone(), minijinja::Value::from(value.to_string())));
         let filled = minijinja::Value::from_pairs(filled);
         let text = self.template.get_template("move").and_then(|template| template.render(filled));
         let file = match text {
-            Ok(text) => MoveFile::from_source(Source { path: self.source.path.clone(), text: text.into() }),
+            Ok(text) => MoveFile::from_source(SourceText {
+                path: self.source.path.clone(),
+                text: text.into(),
+            }),
             Err(error) => Err(InputError::new(format!("{}: {error}", self.source.path.display()))),
         };
         Case { number, values, file }

@@ -10,6 +10,6 @@ mod run;
 mod shard;
 
 pub use file::{Case, SweepError, SweepFile, Values};
-pub use report::{Failed, Report, Verdict, Worst};
+pub use report::{CaseVerdict, FailedCase, SweepReport, Worst};
 pub use run::run;
 pub use shard::Shard;

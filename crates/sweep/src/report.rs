@@ -14,7 +14,7 @@ const SPELLED_OUT: usize = 20;
 
 /// The result of a case.
 #[derive(Debug, Clone)]
-pub enum Verdict {
+pub enum CaseVerdict {
     /// All checks hold. The figures are given by name; the greatest value of each is its worst.
     Passed(BTreeMap<&'static str, f64>),
     /// The planner refuses the move, with this message.
@@ -36,7 +36,7 @@ pub struct Worst {
 
 /// A case that failed.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
-pub struct Failed {
+pub struct FailedCase {
     /// The number of the case.
     pub case: u64,
     /// The values of its placeholders.
@@ -45,7 +45,7 @@ pub struct Failed {
     pub message: String,
 }
 
-impl Failed {
+impl FailedCase {
     /// The text `name = value` of each placeholder, separated by commas.
     pub fn filled(&self) -> String {
         filled(&self.values)
@@ -54,7 +54,7 @@ impl Failed {
 
 /// The report of a sweep or of some of its shards.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
-pub struct Report {
+pub struct SweepReport {
     /// Whether all cases passed or were refused by the planner; `None` if no case ran. An empty
     /// shard proves nothing, and neither do moves that the planner refuses.
     pub passed: Option<bool>,
@@ -73,10 +73,10 @@ pub struct Report {
     /// The worst value of each figure, by name.
     pub worst: BTreeMap<String, Worst>,
     /// The first cases that failed.
-    pub failures: Vec<Failed>,
+    pub failures: Vec<FailedCase>,
 }
 
-impl Report {
+impl SweepReport {
     /// A report of no case yet.
     pub fn new(sweep: &SweepFile, shard: Shard, core: &str) -> Self {
         Self {
@@ -93,14 +93,14 @@ impl Report {
     }
 
     /// Adds the result of one case.
-    pub(crate) fn add(&mut self, case: u64, values: &Values, verdict: Verdict) {
+    pub(crate) fn add(&mut self, case: u64, values: &Values, verdict: CaseVerdict) {
         match verdict {
-            Verdict::Refused(_) => self.cases_refused += 1,
-            Verdict::Failed(message) => {
+            CaseVerdict::Refused(_) => self.cases_refused += 1,
+            CaseVerdict::Failed(message) => {
                 self.cases_failed += 1;
-                self.failures.push(Failed { case, values: values.clone(), message });
+                self.failures.push(FailedCase { case, values: values.clone(), message });
             }
-            Verdict::Passed(figures) => {
+            CaseVerdict::Passed(figures) => {
                 self.cases_passed += 1;
                 for (name, value) in figures {
                     self.compare(name, Worst { value, case, values: values.clone() });
@@ -150,10 +150,14 @@ impl Report {
     /// occurs twice.
     pub fn merge(reports: impl IntoIterator<Item = Self>) -> Result<Self, SweepError> {
         let mut reports = reports.into_iter();
-        let mut whole = reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
+        let mut whole =
+            reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
         for report in reports {
             if report.sweep != whole.sweep {
-                return Err(SweepError::Merge(format!("{} and {} are not one sweep", whole.sweep, report.sweep)));
+                return Err(SweepError::Merge(format!(
+                    "{} and {} are not one sweep",
+                    whole.sweep, report.sweep
+                )));
             }
             whole.shards.extend(&report.shards);
             whole = whole.with(report);
@@ -163,7 +167,10 @@ impl Report {
         let wanted: Vec<Shard> = (1..=count).map(|number| Shard { number, count }).collect();
         if whole.shards != wanted {
             let there: Vec<String> = whole.shards.iter().map(Shard::to_string).collect();
-            return Err(SweepError::Merge(format!("each shard is needed once; here are {}", there.join(", "))));
+            return Err(SweepError::Merge(format!(
+                "each shard is needed once; here are {}",
+                there.join(", ")
+            )));
         }
         whole.shards = vec![Shard::WHOLE];
         Ok(whole)
@@ -172,7 +179,8 @@ impl Report {
 
 /// The text `name = value` of each placeholder, separated by commas.
 fn filled(values: &Values) -> String {
-    let parts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let parts: Vec<String> =
+        values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     parts.join(", ")
 }
 
@@ -186,7 +194,7 @@ impl fmt::Display for crate::file::Value {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shards: Vec<String> = self.shards.iter().map(Shard::to_string).collect();
         let (passed, refused, failed) = (self.cases_passed, self.cases_refused, self.cases_failed);
@@ -200,7 +208,7 @@ impl fmt::Display for Report {
         for (name, Worst { value, case, values }) in &self.worst {
             writeln!(f, "  worst {name:<16} {value:>10.3}  case {case}: {}", filled(values))?;
         }
-        for Failed { case, values, message } in &self.failures {
+        for FailedCase { case, values, message } in &self.failures {
             writeln!(f, "  FAILED case {case}: {}\n    {message}", filled(values))?;
         }
         f.write_str(match self.passed {

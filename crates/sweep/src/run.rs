@@ -1,7 +1,7 @@
 //! The cases of a shard over all processors.
 
 use crate::file::{Case, SweepFile};
-use crate::report::{Report, Verdict};
+use crate::report::{CaseVerdict, SweepReport};
 use crate::shard::Shard;
 use rayon::prelude::*;
 
@@ -11,20 +11,23 @@ pub fn run(
     sweep: &SweepFile,
     shard: Shard,
     core: &str,
-    judge: impl Fn(&Case) -> Verdict + Sync,
+    judge: impl Fn(&Case) -> CaseVerdict + Sync,
     done: impl Fn() + Sync,
-) -> Report {
+) -> SweepReport {
     let one = |number: u64| {
         let case = sweep.case(number);
         let verdict = match &case.file {
             Ok(_) => judge(&case),
-            Err(error) => Verdict::Failed(error.to_string()),
+            Err(error) => CaseVerdict::Failed(error.to_string()),
         };
-        let mut report = Report::new(sweep, shard, core);
+        let mut report = SweepReport::new(sweep, shard, core);
         report.add(number, &case.values, verdict);
         done();
         report
     };
     let cases: Vec<u64> = shard.cases(sweep.cases()).collect();
-    cases.into_par_iter().map(one).reduce(|| Report::new(sweep, shard, core), Report::with)
+    cases
+        .into_par_iter()
+        .map(one)
+        .reduce(|| SweepReport::new(sweep, shard, core), SweepReport::with)
 }

@@ -9,7 +9,9 @@ use std::str::FromStr;
 
 /// Shard `number` of `count`. It has every `count`-th case, so that easy and hard cases are spread
 /// evenly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize,
+)]
 pub struct Shard {
     /// The number of the shard, counted from 1.
     pub number: u64,
@@ -37,9 +39,13 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = text.split_once('/').map(|(number, count)| (number.parse::<u64>(), count.parse::<u64>()));
+        let numbers = text
+            .split_once('/')
+            .map(|(number, count)| (number.parse::<u64>(), count.parse::<u64>()));
         match numbers {
-            Some((Ok(number), Ok(count))) if (1..=count).contains(&number) => Ok(Self { number, count }),
+            Some((Ok(number), Ok(count))) if (1..=count).contains(&number) => {
+                Ok(Self { number, count })
+            }
             _ => Err(format!("'{text}' is no shard: 3/16 is the third of sixteen")),
         }
     }
@@ -51,10 +57,13 @@ mod tests {
 
     #[test]
     fn shards_together_have_every_case_once() {
-        let mut all: Vec<u64> = (1..=3).flat_map(|number| Shard { number, count: 3 }.cases(10)).collect();
+        let mut all: Vec<u64> =
+            (1..=3).flat_map(|number| Shard { number, count: 3 }.cases(10)).collect();
         all.sort_unstable();
         assert_eq!(all, (0..10).collect::<Vec<_>>());
         assert_eq!("3/16".parse(), Ok(Shard { number: 3, count: 16 }));
-        assert!(["0/3", "4/3", "3", "a/b", "1/0"].iter().all(|text| text.parse::<Shard>().is_err()));
+        assert!(
+            ["0/3", "4/3", "3", "a/b", "1/0"].iter().all(|text| text.parse::<Shard>().is_err())
+        );
     }
 }

@@ -104,7 +104,9 @@ pub enum TableError {
         unit: u32,
     },
     /// The table has more entries than the player can count.
-    #[error("the table would have {entries} entries, at most {most} can be: more pulses per entry would do")]
+    #[error(
+        "the table would have {entries} entries, at most {most} can be: more pulses per entry would do"
+    )]
     TooLong {
         /// Number of entries.
         entries: usize,
@@ -118,7 +120,9 @@ pub enum TableError {
         pulses: u64,
     },
     /// An entry lasts more pulses than the player can count.
-    #[error("an entry would last {pulses} pulses, at most 65535 can be: a time of at most {seconds:.6} s would do")]
+    #[error(
+        "an entry would last {pulses} pulses, at most 65535 can be: a time of at most {seconds:.6} s would do"
+    )]
     TooManyPerEntry {
         /// Number of pulses.
         pulses: u32,
@@ -126,13 +130,17 @@ pub enum TableError {
         seconds: f64,
     },
     /// An inverse table is requested for a ramp that does not start from rest.
-    #[error("the inverse table is for ramps from rest: start_frequency is {start}, 0 or no inverse table would do")]
+    #[error(
+        "the inverse table is for ramps from rest: start_frequency is {start}, 0 or no inverse table would do"
+    )]
     InverseFromRest {
         /// Start frequency, steps/s.
         start: f64,
     },
     /// The name is not a valid C identifier, or too long.
-    #[error("{name:?} is no name for a table: a letter, then up to 47 letters, digits or underscores")]
+    #[error(
+        "{name:?} is no name for a table: a letter, then up to 47 letters, digits or underscores"
+    )]
     Name {
         /// The requested name.
         name: String,
@@ -141,7 +149,11 @@ pub enum TableError {
 
 /// Checks that `value` is over 0 and at most `most`.
 pub(crate) fn positive(parameter: &'static str, value: f64, most: f64) -> Result<(), TableError> {
-    if value > 0.0 && value <= most { Ok(()) } else { Err(TableError::NotPositive { parameter, value, most }) }
+    if value > 0.0 && value <= most {
+        Ok(())
+    } else {
+        Err(TableError::NotPositive { parameter, value, most })
+    }
 }
 
 fn nearest(value: u32, least: u32, most: u32) -> u32 {

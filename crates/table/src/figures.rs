@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Figures of a table. "Real" figures are those of the rounded counts that the timer plays.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
-pub struct Figures {
+pub struct TableFigures {
     /// Timer counts per second.
     pub timer_hz: f64,
     /// Number of entries.
@@ -37,7 +37,7 @@ pub struct Figures {
     pub bytes: usize,
 }
 
-impl Figures {
+impl TableFigures {
     pub(crate) fn new(
         request: &TableRequest,
         ideal: &[f64],
@@ -50,14 +50,27 @@ impl Figures {
         let asked = request.top_frequency();
         let cruise = (timer_hz / asked).round();
         let error = |(&c, &i): (&u32, &f64)| (i / f64::from(c) - 1.0).abs();
-        let worst = counts.iter().zip(ideal).map(error).fold((timer_hz / (asked * cruise) - 1.0).abs(), f64::max);
+        let worst = counts
+            .iter()
+            .zip(ideal)
+            .map(error)
+            .fold((timer_hz / (asked * cruise) - 1.0).abs(), f64::max);
         Self {
             timer_hz,
             entries: counts.len(),
             ramp_pulses: sizes.iter().map(|&p| u64::from(p)).sum(),
-            ramp_seconds: counts.iter().zip(sizes).map(|(&c, &p)| u64::from(c) * u64::from(p)).sum::<u64>() as f64
+            ramp_seconds: counts
+                .iter()
+                .zip(sizes)
+                .map(|(&c, &p)| u64::from(c) * u64::from(p))
+                .sum::<u64>() as f64
                 / timer_hz,
-            ramp_seconds_ideal: ideal.iter().zip(sizes).map(|(c, &p)| c * f64::from(p)).sum::<f64>() / timer_hz,
+            ramp_seconds_ideal: ideal
+                .iter()
+                .zip(sizes)
+                .map(|(c, &p)| c * f64::from(p))
+                .sum::<f64>()
+                / timer_hz,
             first_speed: counts.first().map_or(timer_hz / cruise, |&c| timer_hz / f64::from(c)),
             top_speed_asked: asked,
             top_speed: timer_hz / cruise,
@@ -71,7 +84,8 @@ impl Figures {
 
 /// The acceleration (v2^2 - v1^2) / 2, divided by the steps between the middles of two entries.
 fn peak_acceleration(timer_hz: f64, ideal: &[f64], sizes: &[u32]) -> f64 {
-    let entries: Vec<(f64, f64)> = ideal.iter().zip(sizes).map(|(c, &p)| (timer_hz / c, f64::from(p))).collect();
+    let entries: Vec<(f64, f64)> =
+        ideal.iter().zip(sizes).map(|(c, &p)| (timer_hz / c, f64::from(p))).collect();
     let between = |pair: &[(f64, f64)]| {
         let ((v1, p1), (v2, p2)) = (pair[0], pair[1]);
         (v2 - v1) * (v2 + v1) / (p1 + p2)

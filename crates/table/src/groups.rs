@@ -29,13 +29,18 @@ pub(crate) fn stretch(counts: &[u32], pulses: &Pulses, timer: f64) -> Result<Vec
         Pulses::One => Ok(vec![1; counts.len()]),
         Pulses::ByTime(seconds) => {
             let dwell = dwell(*seconds, timer);
-            let lasting = |&c: &u32| u32::try_from(dwell.div_ceil(u64::from(c.max(1)))).unwrap_or(u32::MAX);
+            let lasting =
+                |&c: &u32| u32::try_from(dwell.div_ceil(u64::from(c.max(1)))).unwrap_or(u32::MAX);
             Ok(counts.iter().map(lasting).collect())
         }
         Pulses::ByGroup(groups) => {
             let unit = groups.len().max(1);
             if !counts.len().is_multiple_of(unit) {
-                return Err(TableError::Groups { what: "entries", length: narrow(counts.len()), unit: narrow(unit) });
+                return Err(TableError::Groups {
+                    what: "entries",
+                    length: narrow(counts.len()),
+                    unit: narrow(unit),
+                });
             }
             Ok(spread(groups, counts.len() / unit))
         }
@@ -105,7 +110,8 @@ pub(crate) fn runs(sizes: &[u32], longest: impl Fn(u32) -> f64) -> Result<Vec<Gr
     }
     let mut groups: Vec<Group> = Vec::new();
     for (i, &size) in sizes.iter().enumerate() {
-        let too_many = TableError::TooManyPerEntry { pulses: size, seconds: longest(u32::from(u16::MAX)) };
+        let too_many =
+            TableError::TooManyPerEntry { pulses: size, seconds: longest(u32::from(u16::MAX)) };
         let pulses = u16::try_from(size).map_err(|_| too_many)?;
         let end = u16::try_from(i + 1).unwrap_or(u16::MAX);
         match groups.last_mut() {
@@ -126,7 +132,8 @@ mod tests {
 
     #[test]
     fn entry_lasts_at_least_the_requested_time() {
-        let sizes = stretch(&[396, 250, 126, 125, 124, 19], &Pulses::ByTime(1e-3), 250_000.0).unwrap();
+        let sizes =
+            stretch(&[396, 250, 126, 125, 124, 19], &Pulses::ByTime(1e-3), 250_000.0).unwrap();
         assert_eq!(sizes, [1, 1, 2, 2, 3, 14]);
         assert_eq!(chunks(&[300.0, 200.0, 60.0, 100.0, 20.0], 250.0), [1, 2, 2]);
     }
@@ -138,7 +145,10 @@ mod tests {
         assert_eq!(merge(&[9.0; 30], &groups, 1.0).unwrap(), [5, 5, 10, 10]);
         assert!(matches!(stretch(&[9; 3], &groups, 1.0), Err(TableError::Groups { unit: 2, .. })));
         let error = merge(&[9.0; 31], &groups, 1.0).unwrap_err();
-        assert_eq!(error.to_string(), "31 ramp steps do not divide into groups of 15: 30 or 45 would do");
+        assert_eq!(
+            error.to_string(),
+            "31 ramp steps do not divide into groups of 15: 30 or 45 would do"
+        );
     }
 
     #[test]

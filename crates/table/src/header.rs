@@ -5,7 +5,7 @@
 use crate::error::TableError;
 use crate::request::{Arithmetic, Kind, Pulses, Speed, TableRequest};
 use crate::table::Table;
-use crate::timer::Mode;
+use crate::timer::TimerMode;
 use minijinja::{Environment, context};
 use std::fmt::Write;
 
@@ -61,7 +61,8 @@ impl Table {
     pub fn header(&self, options: &Options) -> String {
         let request = self.request();
         let figures = self.figures();
-        let groups: Vec<(u16, u16)> = self.groups().iter().map(|group| (group.end, group.pulses)).collect();
+        let groups: Vec<(u16, u16)> =
+            self.groups().iter().map(|group| (group.end, group.pulses)).collect();
         let text = context! {
             name => options.name(),
             upper => options.name.to_ascii_uppercase(),
@@ -72,7 +73,7 @@ impl Table {
             speeds => speeds(request),
             timer => timer(request),
             pulses => pulses(request),
-            ctc => request.timer.mode == Mode::Ctc,
+            ctc => request.timer.mode == TimerMode::Ctc,
             clock_hz => request.timer.clock_hz,
             prescaler => request.timer.prescaler,
             bits => request.timer.width.bits(),
@@ -100,23 +101,32 @@ fn curve(request: &TableRequest) -> String {
     match request.kind {
         Kind::Logistic { entries, steepness, centre } => {
             let centre = centre.unwrap_or(f64::from(entries) / 2.0);
-            format!("frequency logistic in the entry: {entries} entries, steepness (Fle) {steepness}, centre {centre}")
+            format!(
+                "frequency logistic in the entry: {entries} entries, steepness (Fle) {steepness}, centre {centre}"
+            )
         }
         Kind::Avr446 { ramp_steps, arithmetic } => {
             let arithmetic = match arithmetic {
                 Arithmetic::Float => "float",
                 Arithmetic::Integer => "integer, remainder kept",
             };
-            format!("constant acceleration by the recurrence of Austin and AVR446 ({arithmetic}): {ramp_steps} steps")
+            format!(
+                "constant acceleration by the recurrence of Austin and AVR446 ({arithmetic}): {ramp_steps} steps"
+            )
         }
-        Kind::Sine { ramp_steps, .. } => format!("acceleration 1 - cos over time: {ramp_steps} steps"),
+        Kind::Sine { ramp_steps, .. } => {
+            format!("acceleration 1 - cos over time: {ramp_steps} steps")
+        }
     }
 }
 
 fn speeds(request: &TableRequest) -> String {
     let motor = request.motor;
     let rpm = match request.top_speed {
-        Speed::Rpm(rpm) => format!(" ({rpm} rpm at {} degrees, {} microsteps)", motor.step_angle_deg, motor.microsteps),
+        Speed::Rpm(rpm) => format!(
+            " ({rpm} rpm at {} degrees, {} microsteps)",
+            motor.step_angle_deg, motor.microsteps
+        ),
         Speed::StepsPerSecond(_) => String::new(),
     };
     format!("from {} to {} steps/s{rpm}", request.start_frequency, request.top_frequency())
@@ -125,8 +135,8 @@ fn speeds(request: &TableRequest) -> String {
 fn timer(request: &TableRequest) -> String {
     let timer = &request.timer;
     let mode = match timer.mode {
-        Mode::Ctc => "clear on compare: a period is the value + 1",
-        Mode::FreeRunning => "free-running: add the value to the compare register",
+        TimerMode::Ctc => "clear on compare: a period is the value + 1",
+        TimerMode::FreeRunning => "free-running: add the value to the compare register",
     };
     format!("{} bits, {} Hz / {}, {mode}", timer.width.bits(), timer.clock_hz, timer.prescaler)
 }

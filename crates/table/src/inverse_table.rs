@@ -18,7 +18,8 @@ impl InverseTable {
     pub fn new(intervals: u32) -> Self {
         let curve = Sine { start: 0.0, top: 2.0, steps: 1.0 };
         let intervals = intervals.max(1);
-        let knots = (0..=intervals).map(|k| curve.crossing((f64::from(k) / f64::from(intervals)).powi(4)));
+        let knots =
+            (0..=intervals).map(|k| curve.crossing((f64::from(k) / f64::from(intervals)).powi(4)));
         Self { knots: knots.collect() }
     }
 

@@ -7,10 +7,11 @@
 //! writes the table as C, and [`PLAYER`] holds the C files that play it.
 //!
 //! ```
-//! use carrystep_table::{Kind, Mode, Motor, Options, Pulses, Speed, Table, TableRequest, Timer};
+//! use carrystep_table::{Kind, Motor, Options, Pulses, Speed, Table, TableRequest};
+//! use carrystep_table::{Timer, TimerMode};
 //!
 //! let request = TableRequest {
-//!     timer: Timer::avr16(16_000_000, 64, Mode::Ctc),
+//!     timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
 //!     motor: Motor { step_angle_deg: 1.8, microsteps: 8 },
 //!     start_frequency: 500.0,
 //!     top_speed: Speed::Rpm(500.0),
@@ -37,11 +38,11 @@ mod table;
 mod timer;
 
 pub use error::TableError;
-pub use figures::Figures;
+pub use figures::TableFigures;
 pub use groups::Group;
 pub use header::Options;
 pub use inverse_table::InverseTable;
 pub use player::PLAYER;
 pub use request::{Arithmetic, Kind, Motor, Pulses, Speed, TableRequest};
 pub use table::Table;
-pub use timer::{AVR_PRESCALERS, Mode, Timer, Width};
+pub use timer::{AVR_PRESCALERS, Timer, TimerMode, Width};

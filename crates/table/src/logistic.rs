@@ -29,7 +29,9 @@ impl Logistic {
     /// The acceleration f df/di with one pulse per entry, steps/s^2.
     pub fn acceleration(&self, i: f64) -> f64 {
         let share = self.share(i);
-        self.frequency(i) * (self.top - self.start) * self.steepness / self.centre * share * (1.0 - share)
+        self.frequency(i) * (self.top - self.start) * self.steepness / self.centre
+            * share
+            * (1.0 - share)
     }
 
     fn share(&self, i: f64) -> f64 {

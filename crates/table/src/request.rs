@@ -6,6 +6,7 @@ use crate::error::{TableError, positive};
 use crate::timer::Timer;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strum::IntoStaticStr;
 
 /// The greatest number of steps in a ramp. A table with one pulse per entry is also limited to 65
 /// 535 entries.
@@ -55,8 +56,9 @@ pub enum Speed {
 }
 
 /// The curve of a ramp, over the index of its entries or steps.
-#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
+#[derive(Debug, Clone, PartialEq, IntoStaticStr, JsonSchema, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Kind {
     /// [`crate::logistic`]: the frequency is a logistic function of the entry index.
     Logistic {
@@ -128,12 +130,8 @@ impl Motor {
 
 impl Kind {
     /// The name of the kind on the command line.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Logistic { .. } => "logistic",
-            Self::Avr446 { .. } => "avr446",
-            Self::Sine { .. } => "sine",
-        }
+    pub fn name(&self) -> &'static str {
+        self.into()
     }
 }
 
@@ -158,7 +156,9 @@ impl TableRequest {
             Pulses::ByTime(seconds) => positive("pulses by time", *seconds, 1e3),
             Pulses::ByGroup(pulses) => {
                 count("groups", u32::try_from(pulses.len()).unwrap_or(u32::MAX), 1, MAX_ENTRIES)?;
-                pulses.iter().try_for_each(|&p| count("pulses per entry", p, 1, u32::from(u16::MAX)))
+                pulses
+                    .iter()
+                    .try_for_each(|&p| count("pulses per entry", p, 1, u32::from(u16::MAX)))
             }
         }
     }
@@ -166,10 +166,18 @@ impl TableRequest {
     fn check_speeds(&self) -> Result<(), TableError> {
         let (start, top) = (self.start_frequency, self.top_frequency());
         if !SPEEDS.contains(&top) {
-            return Err(TableError::Unusable { parameter: "top speed, steps/s,", value: top, needed: "0.001 to 1e9" });
+            return Err(TableError::Unusable {
+                parameter: "top speed, steps/s,",
+                value: top,
+                needed: "0.001 to 1e9",
+            });
         }
         if !(start >= 0.0 && start.is_finite()) {
-            return Err(TableError::Unusable { parameter: "start_frequency", value: start, needed: "0 or more" });
+            return Err(TableError::Unusable {
+                parameter: "start_frequency",
+                value: start,
+                needed: "0 or more",
+            });
         }
         if start >= top {
             return Err(TableError::TopUnderStart { start, top, start_rpm: self.motor.rpm(start) });
@@ -199,5 +207,9 @@ impl TableRequest {
 }
 
 fn count(parameter: &'static str, value: u32, least: u32, most: u32) -> Result<(), TableError> {
-    if (least..=most).contains(&value) { Ok(()) } else { Err(TableError::Count { parameter, value, least, most }) }
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(TableError::Count { parameter, value, least, most })
+    }
 }

@@ -56,7 +56,8 @@ impl Sine {
                 low = u;
             }
             let newton = u - excess / (t * (self.start + rise * speed(u)));
-            let next = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
+            let next =
+                if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
             let moved = (next - u).abs();
             u = next;
             if moved <= f64::EPSILON * u {
@@ -70,7 +71,11 @@ impl Sine {
 /// S(u), 0 to 1/2 for u from 0 to 1. With x = pi u it is (x^2 - sin^2 x) / 2 pi^2.
 pub fn distance(u: f64) -> f64 {
     let x = PI * u;
-    let difference = if x < 1.0 { alternating(x.powi(4) / 3.0, 4, 4.0 * x * x) } else { (x - x.sin()) * (x + x.sin()) };
+    let difference = if x < 1.0 {
+        alternating(x.powi(4) / 3.0, 4, 4.0 * x * x)
+    } else {
+        (x - x.sin()) * (x + x.sin())
+    };
     difference / (2.0 * PI * PI)
 }
 

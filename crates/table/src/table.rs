@@ -4,7 +4,7 @@
 
 use crate::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use crate::error::TableError;
-use crate::figures::Figures;
+use crate::figures::TableFigures;
 use crate::groups::{self, Group};
 use crate::inverse_table::InverseTable;
 use crate::logistic::Logistic;
@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Table {
     request: TableRequest,
-    figures: Figures,
+    figures: TableFigures,
     compare: Vec<u16>,
     cruise: u16,
     groups: Vec<Group>,
@@ -71,10 +71,13 @@ impl Table {
         let compare = counts.iter().map(|&c| timer.word(c)).collect::<Result<Vec<_>, _>>()?;
         let cruise = timer.word(round(cruise_ideal))?;
         let inverse = match request.kind {
-            Kind::Sine { inverse, .. } => inverse.map(|intervals| InverseTable::new(intervals).words()),
+            Kind::Sine { inverse, .. } => {
+                inverse.map(|intervals| InverseTable::new(intervals).words())
+            }
             _ => None,
         };
-        let figures = Figures::new(&request, &ideal, &counts, &sizes, &groups, inverse.as_deref());
+        let figures =
+            TableFigures::new(&request, &ideal, &counts, &sizes, &groups, inverse.as_deref());
         Ok(Self { request, figures, compare, cruise, groups, inverse, ideal })
     }
 
@@ -84,7 +87,7 @@ impl Table {
     }
 
     /// The figures that a user needs to judge the table.
-    pub fn figures(&self) -> &Figures {
+    pub fn figures(&self) -> &TableFigures {
         &self.figures
     }
 
@@ -117,7 +120,9 @@ impl Table {
     pub fn ramp_entries(&self) -> impl Iterator<Item = usize> + '_ {
         let starts = std::iter::once(0).chain(self.groups.iter().map(|group| group.end));
         starts.zip(&self.groups).flat_map(|(start, group)| {
-            (start..group.end).flat_map(|entry| std::iter::repeat_n(usize::from(entry), usize::from(group.pulses)))
+            (start..group.end).flat_map(|entry| {
+                std::iter::repeat_n(usize::from(entry), usize::from(group.pulses))
+            })
         })
     }
 
@@ -129,7 +134,8 @@ impl Table {
     /// up and down. Both are symmetric.
     pub fn delays(&self, steps: u32) -> impl Iterator<Item = u32> + '_ {
         let needed = steps.div_ceil(2) as usize;
-        let ramp: Vec<u16> = self.ramp_entries().take(needed).filter_map(|e| self.compare.get(e).copied()).collect();
+        let ramp: Vec<u16> =
+            self.ramp_entries().take(needed).filter_map(|e| self.compare.get(e).copied()).collect();
         (0..steps).map(move |j| {
             let place = j.min(steps - 1 - j) as usize;
             self.request.timer.counts(ramp.get(place).copied().unwrap_or(self.cruise))
@@ -139,7 +145,8 @@ impl Table {
 
 fn logistic(request: &TableRequest, entries: u32, curve: &Logistic) -> Result<Entries, TableError> {
     let timer = &request.timer;
-    let ideal: Vec<f64> = (0..entries).map(|i| timer.frequency() / curve.frequency(f64::from(i))).collect();
+    let ideal: Vec<f64> =
+        (0..entries).map(|i| timer.frequency() / curve.frequency(f64::from(i))).collect();
     timer.fit(timer.frequency() / curve.top, longest(&ideal))?;
     let counts: Vec<u32> = ideal.iter().copied().map(round).collect();
     let sizes = groups::stretch(&counts, &request.pulses, timer.frequency())?;
@@ -173,7 +180,11 @@ fn avr446(
 
 /// Delays of the steps along the sine curve, counts.
 fn sine(request: &TableRequest, ramp_steps: u32) -> Vec<f64> {
-    let curve = Sine { start: request.start_frequency, top: request.top_frequency(), steps: f64::from(ramp_steps) };
+    let curve = Sine {
+        start: request.start_frequency,
+        top: request.top_frequency(),
+        steps: f64::from(ramp_steps),
+    };
     let crossings: Vec<f64> = (0..=ramp_steps).map(|n| curve.crossing(f64::from(n))).collect();
     let cruise = 1.0 / curve.top;
     // The last steps have nearly the delay of the cruise; the rounding of two times must not make
@@ -183,7 +194,11 @@ fn sine(request: &TableRequest, ramp_steps: u32) -> Vec<f64> {
 }
 
 /// Entries that each cover one step or more.
-fn merged(request: &TableRequest, ideal: &[f64], whole: Option<&[u32]>) -> Result<Entries, TableError> {
+fn merged(
+    request: &TableRequest,
+    ideal: &[f64],
+    whole: Option<&[u32]>,
+) -> Result<Entries, TableError> {
     let sizes = groups::merge(ideal, &request.pulses, request.timer.frequency())?;
     let means = groups::means(ideal, &sizes);
     let counts = match whole {

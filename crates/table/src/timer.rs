@@ -21,7 +21,7 @@ pub struct Timer {
     /// Width of the counter.
     pub width: Width,
     /// What happens at a compare match.
-    pub mode: Mode,
+    pub mode: TimerMode,
     /// Clocks that the interrupt needs from one pulse to the next; 0: not checked.
     pub interrupt_clocks: u32,
 }
@@ -39,7 +39,7 @@ pub enum Width {
 /// What the counter does at a compare match, which determines the meaning of a compare value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Mode {
+pub enum TimerMode {
     /// Clear timer on compare (CTC): a period is the compare value plus one.
     Ctc,
     /// The counter runs on, and the interrupt adds the value to the compare register.
@@ -58,7 +58,7 @@ impl Width {
 
 impl Timer {
     /// A 16-bit AVR timer, whose interrupt time is not checked.
-    pub fn avr16(clock_hz: u64, prescaler: u32, mode: Mode) -> Self {
+    pub fn avr16(clock_hz: u64, prescaler: u32, mode: TimerMode) -> Self {
         let prescalers = AVR_PRESCALERS.to_vec();
         Self { clock_hz, prescaler, prescalers, width: Width::Bits16, mode, interrupt_clocks: 0 }
     }
@@ -73,8 +73,8 @@ impl Timer {
     pub const fn most_counts(&self) -> u32 {
         let full = 1 << self.width.bits();
         match self.mode {
-            Mode::Ctc => full,
-            Mode::FreeRunning => full - 1,
+            TimerMode::Ctc => full,
+            TimerMode::FreeRunning => full - 1,
         }
     }
 
@@ -113,8 +113,8 @@ impl Timer {
 
     const fn offset(&self) -> u32 {
         match self.mode {
-            Mode::Ctc => 1,
-            Mode::FreeRunning => 0,
+            TimerMode::Ctc => 1,
+            TimerMode::FreeRunning => 0,
         }
     }
 
@@ -151,7 +151,12 @@ impl Timer {
         if !fits(&self.prescaler).0 {
             let finest = available.first().copied().unwrap_or(1);
             let speed = clock / (f64::from(finest) * f64::from(self.least_counts_with(finest)));
-            return Err(TableError::TooFast { counts: shortest, least: self.least_counts(), prescaler, speed });
+            return Err(TableError::TooFast {
+                counts: shortest,
+                least: self.least_counts(),
+                prescaler,
+                speed,
+            });
         }
         let coarsest = available.iter().rfind(|p| fits(p).0).copied().unwrap_or(self.prescaler);
         let start = clock / (f64::from(coarsest) * f64::from(self.most_counts()));
@@ -179,8 +184,8 @@ mod tests {
 
     #[test]
     fn compare_value_of_ctc_is_one_less_than_the_counts() {
-        let ctc = Timer::avr16(16_000_000, 64, Mode::Ctc);
-        let free = Timer { mode: Mode::FreeRunning, ..ctc.clone() };
+        let ctc = Timer::avr16(16_000_000, 64, TimerMode::Ctc);
+        let free = Timer { mode: TimerMode::FreeRunning, ..ctc.clone() };
         assert_eq!(
             (ctc.compare(0), ctc.compare(1), ctc.compare(65_536), ctc.compare(65_537)),
             (None, Some(0), Some(65_535), None)
@@ -195,9 +200,11 @@ mod tests {
 
     #[test]
     fn error_names_the_smallest_prescaler_that_works() {
-        let timer = Timer::avr16(16_000_000, 1, Mode::Ctc);
+        let timer = Timer::avr16(16_000_000, 1, TimerMode::Ctc);
         let advice = |shortest, longest| match timer.fit(shortest, longest) {
-            Err(TableError::TooSlow { prescaler, .. } | TableError::TooFast { prescaler, .. }) => prescaler,
+            Err(TableError::TooSlow { prescaler, .. } | TableError::TooFast { prescaler, .. }) => {
+                prescaler
+            }
             other => panic!("{other:?}"),
         };
         assert_eq!(timer.fit(1.0, 65_536.4), Ok(()));

@@ -69,7 +69,8 @@ static const carrystep_table {{ name }}_table = {
 };
 {%- endif %}
 
-/* If the compiler rejects a line below, the array lacks values or uint16_t is not 16 bits wide. */
+/* The compiler rejects a line below if the declared length of the array is not {{ upper }}_ENTRIES,
+ * or if uint16_t is not 16 bits wide. It does not notice missing values: C sets these to 0. */
 typedef char {{ name }}_check_length[sizeof {{ name }}_compare / sizeof {{ name }}_compare[0] == {{ upper }}_ENTRIES ? 1 : -1];
 typedef char {{ name }}_check_width[(uint16_t)-1 == 65535u ? 1 : -1];
 

@@ -4,13 +4,14 @@
 mod support;
 
 use carrystep_table::{
-    Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, Timer, Width,
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, Timer,
+    TimerMode, Width,
 };
 use proptest::prelude::*;
 use support::source;
 
 fn refusal(change: impl FnOnce(&mut TableRequest)) -> String {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     change(&mut request);
     Table::new(request).expect_err("a refusal").to_string()
 }
@@ -19,14 +20,26 @@ fn refusal(change: impl FnOnce(&mut TableRequest)) -> String {
 fn every_refusal_names_a_value_that_works() {
     let logistic = |entries, steepness, centre| Kind::Logistic { entries, steepness, centre };
     let said = [
-        (refusal(|r| r.kind = logistic(0, 6.0, None)), "entries is 0: 1 to 65535 is needed; the nearest is 1"),
+        (
+            refusal(|r| r.kind = logistic(0, 6.0, None)),
+            "entries is 0: 1 to 65535 is needed; the nearest is 1",
+        ),
         (
             refusal(|r| r.kind = logistic(70_000, 6.0, None)),
             "entries is 70000: 1 to 65535 is needed; the nearest is 65535",
         ),
-        (refusal(|r| r.kind = logistic(9, 0.0, None)), "steepness is 0: over 0 and at most 1000 is needed"),
-        (refusal(|r| r.kind = logistic(9, f64::NAN, None)), "steepness is NaN: over 0 and at most 1000 is needed"),
-        (refusal(|r| r.kind = logistic(9, 6.0, Some(9.5))), "centre is 9.5: over 0 and at most 9 is needed"),
+        (
+            refusal(|r| r.kind = logistic(9, 0.0, None)),
+            "steepness is 0: over 0 and at most 1000 is needed",
+        ),
+        (
+            refusal(|r| r.kind = logistic(9, f64::NAN, None)),
+            "steepness is NaN: over 0 and at most 1000 is needed",
+        ),
+        (
+            refusal(|r| r.kind = logistic(9, 6.0, Some(9.5))),
+            "centre is 9.5: over 0 and at most 9 is needed",
+        ),
         (
             refusal(|r| r.kind = Kind::Avr446 { ramp_steps: 0, arithmetic: Arithmetic::Float }),
             "ramp_steps is 0: 1 to 1000000 is needed; the nearest is 1",
@@ -44,13 +57,28 @@ fn every_refusal_names_a_value_that_works() {
             "a top speed of 400 steps/s is not over the start frequency of 500 steps/s: a top speed over 500 steps/s \
              (18.75 rpm) or a start frequency under 400 steps/s would do",
         ),
-        (refusal(|r| r.top_speed = Speed::Rpm(0.0)), "top speed, steps/s, is 0: 0.001 to 1e9 is needed"),
+        (
+            refusal(|r| r.top_speed = Speed::Rpm(0.0)),
+            "top speed, steps/s, is 0: 0.001 to 1e9 is needed",
+        ),
         (refusal(|r| r.start_frequency = -1.0), "start_frequency is -1: 0 or more is needed"),
-        (refusal(|r| r.motor.microsteps = 0), "microsteps is 0: 1 to 65536 is needed; the nearest is 1"),
-        (refusal(|r| r.motor.step_angle_deg = 0.0), "step_angle_deg is 0: over 0 and at most 180 is needed"),
+        (
+            refusal(|r| r.motor.microsteps = 0),
+            "microsteps is 0: 1 to 65536 is needed; the nearest is 1",
+        ),
+        (
+            refusal(|r| r.motor.step_angle_deg = 0.0),
+            "step_angle_deg is 0: over 0 and at most 180 is needed",
+        ),
         (refusal(|r| r.timer.clock_hz = 0), "clock_hz is 0: 1 to 1e10 is needed"),
-        (refusal(|r| r.timer.prescaler = 32), "the timer has no prescaler 32: it has 1, 8, 64, 256, 1024"),
-        (refusal(|r| r.pulses = Pulses::ByGroup(vec![])), "groups is 0: 1 to 65535 is needed; the nearest is 1"),
+        (
+            refusal(|r| r.timer.prescaler = 32),
+            "the timer has no prescaler 32: it has 1, 8, 64, 256, 1024",
+        ),
+        (
+            refusal(|r| r.pulses = Pulses::ByGroup(vec![])),
+            "groups is 0: 1 to 65535 is needed; the nearest is 1",
+        ),
         (
             refusal(|r| r.pulses = Pulses::ByGroup(vec![1, 0])),
             "pulses per entry is 0: 1 to 65535 is needed; the nearest is 1",
@@ -59,13 +87,18 @@ fn every_refusal_names_a_value_that_works() {
             refusal(|r| r.pulses = Pulses::ByGroup(vec![1, 2, 3])),
             "1000 entries do not divide into groups of 3: 999 or 1002 would do",
         ),
-        (refusal(|r| r.pulses = Pulses::ByTime(0.0)), "pulses by time is 0: over 0 and at most 1000 is needed"),
+        (
+            refusal(|r| r.pulses = Pulses::ByTime(0.0)),
+            "pulses by time is 0: over 0 and at most 1000 is needed",
+        ),
         (
             refusal(|r| r.pulses = Pulses::ByTime(10.0)),
             "an entry would last 65790 pulses, at most 65535 can be: a time of at most 4.915125 s would do",
         ),
         (
-            refusal(|r| r.kind = Kind::Avr446 { ramp_steps: 70_000, arithmetic: Arithmetic::Float }),
+            refusal(|r| {
+                r.kind = Kind::Avr446 { ramp_steps: 70_000, arithmetic: Arithmetic::Float }
+            }),
             "the table would have 70000 entries, at most 65535 can be: more pulses per entry would do",
         ),
         (
@@ -101,15 +134,18 @@ fn value_that_does_not_fit_names_a_prescaler_that_works() {
 
 #[test]
 fn start_frequency_is_named_where_no_prescaler_works() {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     request.timer.width = Width::Bits8;
     request.start_frequency = 2.0;
     request.kind = Kind::Logistic { entries: 1000, steepness: 14.0, centre: None };
-    let Err(TableError::TooSlow { prescaler: None, start: Some(start), .. }) = Table::new(request.clone()) else {
+    let Err(TableError::TooSlow { prescaler: None, start: Some(start), .. }) =
+        Table::new(request.clone())
+    else {
         panic!("{:?}", Table::new(request));
     };
     request.start_frequency = start;
-    let Err(TableError::TooSlow { prescaler: Some(prescaler), .. }) = Table::new(request.clone()) else {
+    let Err(TableError::TooSlow { prescaler: Some(prescaler), .. }) = Table::new(request.clone())
+    else {
         panic!("{:?}", Table::new(request));
     };
     request.timer.prescaler = prescaler;
@@ -118,9 +154,11 @@ fn start_frequency_is_named_where_no_prescaler_works() {
 
 #[test]
 fn top_speed_too_fast_for_the_interrupt_is_refused() {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     request.timer.interrupt_clocks = 1500; // 24 counts; the top speed needs 18.75
-    let Err(TableError::TooFast { prescaler: None, least: 24, speed, .. }) = Table::new(request.clone()) else {
+    let Err(TableError::TooFast { prescaler: None, least: 24, speed, .. }) =
+        Table::new(request.clone())
+    else {
         panic!("{:?}", Table::new(request));
     };
     request.top_speed = Speed::StepsPerSecond(speed);
@@ -131,22 +169,22 @@ fn top_speed_too_fast_for_the_interrupt_is_refused() {
 
 fn any_request() -> impl Strategy<Value = TableRequest> {
     let float = || prop_oneof![1 => prop::num::f64::ANY, 9 => 1e-3..1e4, 1 => Just(0.0), 1 => Just(f64::INFINITY)];
-    let steps = || prop_oneof![1 => any::<u32>(), 9 => 0_u32..2000, 1 => Just(65_535), 1 => Just(65_536)];
+    let steps =
+        || prop_oneof![1 => any::<u32>(), 9 => 0_u32..2000, 1 => Just(65_535), 1 => Just(65_536)];
     let kind = prop_oneof![
-        (steps(), float(), prop::option::of(float())).prop_map(|(entries, steepness, centre)| Kind::Logistic {
-            entries,
-            steepness,
-            centre
-        }),
+        (steps(), float(), prop::option::of(float()))
+            .prop_map(|(entries, steepness, centre)| Kind::Logistic { entries, steepness, centre }),
         (steps(), any::<bool>()).prop_map(|(ramp_steps, float)| Kind::Avr446 {
             ramp_steps,
             arithmetic: if float { Arithmetic::Float } else { Arithmetic::Integer },
         }),
-        (steps(), prop::option::of(0_u32..5000)).prop_map(|(ramp_steps, inverse)| Kind::Sine { ramp_steps, inverse }),
+        (steps(), prop::option::of(0_u32..5000))
+            .prop_map(|(ramp_steps, inverse)| Kind::Sine { ramp_steps, inverse }),
     ];
     let pulses = prop_oneof![
         Just(Pulses::One),
-        prop::collection::vec(prop_oneof![1 => any::<u32>(), 9 => 1_u32..3], 0..4).prop_map(Pulses::ByGroup),
+        prop::collection::vec(prop_oneof![1 => any::<u32>(), 9 => 1_u32..3], 0..4)
+            .prop_map(Pulses::ByGroup),
         float().prop_map(Pulses::ByTime),
     ];
     let timer = (
@@ -157,14 +195,21 @@ fn any_request() -> impl Strategy<Value = TableRequest> {
     );
     let motor = (float(), any::<u32>());
     (timer, motor, float(), float(), kind, pulses).prop_map(
-        |((clock_hz, mut prescalers, interrupt, [ctc, small, slow]), (angle, microsteps), start, top, kind, pulses)| {
+        |(
+            (clock_hz, mut prescalers, interrupt, [ctc, small, slow]),
+            (angle, microsteps),
+            start,
+            top,
+            kind,
+            pulses,
+        )| {
             prescalers.push(64);
             let timer = Timer {
                 clock_hz,
                 prescaler: prescalers[0],
                 prescalers,
                 width: if small { Width::Bits8 } else { Width::Bits16 },
-                mode: if ctc { Mode::Ctc } else { Mode::FreeRunning },
+                mode: if ctc { TimerMode::Ctc } else { TimerMode::FreeRunning },
                 interrupt_clocks: if slow { interrupt } else { 0 },
             };
             let motor = if slow {

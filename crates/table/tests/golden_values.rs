@@ -1,10 +1,14 @@
 //! Tests all golden values of the timer tables, of the Austin recurrence and of the small inverse
 //! table.
 
-use carrystep_table::austin::{ConstantAcceleration, FIRST_DELAY, FloatRecurrence, IntegerRecurrence};
+use carrystep_table::austin::{
+    ConstantAcceleration, FIRST_DELAY, FloatRecurrence, IntegerRecurrence,
+};
 use carrystep_table::logistic::Logistic;
 use carrystep_table::sine::{self, Sine};
-use carrystep_table::{InverseTable, Kind, Mode, Motor, Pulses, Speed, Table, TableRequest, Timer};
+use carrystep_table::{
+    InverseTable, Kind, Motor, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
+};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::f64::consts::PI;
@@ -26,7 +30,10 @@ fn sinusoid() -> Value {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().or_else(|| value.as_str()?.parse().ok()).unwrap_or_else(|| panic!("{value} is no number"))
+    value
+        .as_f64()
+        .or_else(|| value.as_str()?.parse().ok())
+        .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 #[track_caller]
@@ -55,11 +62,12 @@ fn whole(value: &Value) -> Vec<u32> {
 const MOTOR: Motor = Motor { step_angle_deg: 1.8, microsteps: 8 };
 const F: f64 = 250_000.0;
 
-fn logistic(start_frequency: f64, entries: u32, mode: Mode, pulses: Pulses) -> Table {
+fn logistic(start_frequency: f64, entries: u32, mode: TimerMode, pulses: Pulses) -> Table {
     let kind = Kind::Logistic { entries, steepness: 6.0, centre: None };
     let timer = Timer::avr16(16_000_000, 64, mode);
     let top_speed = Speed::Rpm(500.0);
-    Table::new(TableRequest { timer, motor: MOTOR, start_frequency, top_speed, kind, pulses }).expect("a table")
+    Table::new(TableRequest { timer, motor: MOTOR, start_frequency, top_speed, kind, pulses })
+        .expect("a table")
 }
 
 fn counts(table: &Table) -> Vec<u32> {
@@ -76,7 +84,10 @@ fn speeds_and_compare_values_equal_the_golden_values() {
     close(MOTOR.rpm(F / 19.0), &golden["real_rpm_with_19_counts"]);
     close(MOTOR.rpm(F / 20.0), &golden["real_rpm_if_OCR1A=19 (CTC period OCR+1=20)"]);
     assert_eq!(golden["integer_OCR_500rpm"], (F / MOTOR.steps_per_second(500.0)).round() as u32);
-    close(MOTOR.rpm(40_000.0 / 3.0), &timer_table()["wrong_lines"]["rpm_check_13333.33Hz_1.8_div8"]);
+    close(
+        MOTOR.rpm(40_000.0 / 3.0),
+        &timer_table()["wrong_lines"]["rpm_check_13333.33Hz_1.8_div8"],
+    );
     // The values that follow from the constants 9.55 and 31.4 of the source.
     let share = 9.55 * PI / 30.0;
     close(250.0 * share, &golden["300rpm_div1_9.55"]);
@@ -90,17 +101,24 @@ fn speeds_and_compare_values_equal_the_golden_values() {
 #[test]
 fn logistic_table_equals_the_golden_values() {
     let golden = &timer_table()["table_Fle_6"];
-    let curve = Logistic { start: 500.0, top: MOTOR.steps_per_second(500.0), steepness: 6.0, centre: 500.0 };
+    let curve = Logistic {
+        start: 500.0,
+        top: MOTOR.steps_per_second(500.0),
+        steepness: 6.0,
+        centre: 500.0,
+    };
     for i in [0, 500, 999] {
         close(curve.frequency(f64::from(i)), &golden[format!("f_{i}")]);
     }
     close(curve.frequency(0.0) / 500.0, &golden["start_jump_over_fmin"]);
-    let peak =
-        (0..1000).map(|i| (curve.acceleration(f64::from(i)), i)).max_by(|a, b| a.0.total_cmp(&b.0)).expect("a peak");
+    let peak = (0..1000)
+        .map(|i| (curve.acceleration(f64::from(i)), i))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .expect("a peak");
     close(peak.0, &golden["peak_accel_steps_s2"]);
     assert_eq!(golden["peak_at_index"], peak.1);
 
-    let free = logistic(500.0, 1000, Mode::FreeRunning, Pulses::One);
+    let free = logistic(500.0, 1000, TimerMode::FreeRunning, Pulses::One);
     let ocr: Vec<u32> = free.compare().iter().copied().map(u32::from).collect();
     assert_eq!(ocr[..10], whole(&golden["OCR_0..9"]));
     for i in [100, 250, 500, 750, 999] {
@@ -108,12 +126,13 @@ fn logistic_table_equals_the_golden_values() {
     }
     assert_eq!(golden["sum_OCR_0..999"], ocr.iter().sum::<u32>());
     let text: Vec<String> = ocr.iter().map(u32::to_string).collect();
-    let hash: String = Sha256::digest(text.join(",")).iter().map(|byte| format!("{byte:02x}")).collect();
+    let hash: String =
+        Sha256::digest(text.join(",")).iter().map(|byte| format!("{byte:02x}")).collect();
     assert_eq!(golden["sha256_0..999"], hash);
 
     // The same delays for CTC: each value is one less. The values of a free-running timer would
     // make the ramp 4 ms longer.
-    let ctc = logistic(500.0, 1000, Mode::Ctc, Pulses::One);
+    let ctc = logistic(500.0, 1000, TimerMode::Ctc, Pulses::One);
     assert!(ctc.compare().iter().zip(&ocr).all(|(&c, &f)| u32::from(c) + 1 == f));
     close(ctc.figures().ramp_seconds, &golden["ramp_time_OCR_s"]);
     close(ctc.figures().ramp_seconds + 1000.0 / F, &golden["ramp_time_if_OCR+1_s"]);
@@ -127,11 +146,11 @@ fn logistic_table_equals_the_golden_values() {
 #[test]
 fn pulses_by_group_and_by_time_equal_the_golden_values() {
     let golden = &timer_table()["update_2018_08"];
-    let bands = logistic(600.0, 600, Mode::Ctc, Pulses::ByGroup(whole(&golden["bands"])));
+    let bands = logistic(600.0, 600, TimerMode::Ctc, Pulses::ByGroup(whole(&golden["bands"])));
     assert_eq!(golden["total_pulses_bands"], bands.figures().ramp_pulses);
     close(bands.figures().ramp_seconds, &golden["time_bands_s"]);
 
-    let table = logistic(600.0, 600, Mode::Ctc, Pulses::ByTime(1e-3));
+    let table = logistic(600.0, 600, TimerMode::Ctc, Pulses::ByTime(1e-3));
     let mut sizes = vec![0_u32; 600];
     table.ramp_entries().for_each(|entry| sizes[entry] += 1);
     assert_eq!(sizes[..10], whole(&golden["cstep_first10"]));
@@ -186,9 +205,14 @@ fn avr446_in_integers_equals_the_golden_values() {
     assert_eq!(golden["c_100"], delays[100]);
     let ramp = ConstantAcceleration { timer: 1e6, acceleration: 1000.0 };
     close(ramp.exact_delay(1000.0), &golden["exact_c_1000"]);
-    let printed = FloatRecurrence::new(0.676 * ramp.exact_delay(0.0), 0.0).nth(1000).expect("c_1000");
+    let printed =
+        FloatRecurrence::new(0.676 * ramp.exact_delay(0.0), 0.0).nth(1000).expect("c_1000");
     close(printed, &golden["float_rec_0.676_c_1000"]);
-    assert!((f64::from(delays[1000]) - printed).abs() < 2.0, "the remainder is kept: {}", delays[1000]);
+    assert!(
+        (f64::from(delays[1000]) - printed).abs() < 2.0,
+        "the remainder is kept: {}",
+        delays[1000]
+    );
     // The recurrence without the remainder.
     let lossy: Vec<u32> = (1..=1000)
         .scan(first, |c, n| {
@@ -225,7 +249,8 @@ fn inverse_tables_have_the_golden_errors() {
     let file = sinusoid();
     let curve = Sine { start: 0.0, top: 2.0, steps: 1.0 };
     let worst = |lookup: &dyn Fn(f64) -> f64| {
-        let error = |n: u32| (lookup(f64::from(n) / 1000.0) - curve.crossing(f64::from(n) / 1000.0)).abs();
+        let error =
+            |n: u32| (lookup(f64::from(n) / 1000.0) - curve.crossing(f64::from(n) / 1000.0)).abs();
         (0..=1000).map(|n| (error(n), n)).max_by(|a, b| a.0.total_cmp(&b.0)).expect("a worst step")
     };
     for intervals in [64_u32, 256, 1024] {

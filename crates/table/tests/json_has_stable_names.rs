@@ -2,13 +2,13 @@
 
 mod support;
 
-use carrystep_table::{Mode, Pulses, Table};
+use carrystep_table::{Pulses, Table, TimerMode};
 use serde_json::{Value, json};
 use support::source;
 
 #[test]
 fn json_of_the_source_table_has_stable_names() {
-    let table = Table::new(source(Mode::Ctc, 4, Pulses::ByGroup(vec![1, 3]))).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 4, Pulses::ByGroup(vec![1, 3]))).unwrap();
     let mut value: Value = serde_json::to_value(&table).unwrap();
     let figures = value.as_object_mut().unwrap().remove("figures").unwrap();
     assert_eq!(

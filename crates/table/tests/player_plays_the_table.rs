@@ -3,7 +3,9 @@
 
 mod support;
 
-use carrystep_table::{Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableError, TableRequest};
+use carrystep_table::{
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, TimerMode,
+};
 use carrystep_table::{Timer, Width};
 use proptest::prelude::*;
 use support::{Bench, Move, ideal_delays, judge, lengths, source};
@@ -24,7 +26,8 @@ fn check(table: &Table, extra: &[u32]) {
     let bench = Bench::of(table);
     for latency in [0, (fastest - 1).min(7)] {
         for (steps, pulses) in lengths.iter().copied().zip(bench.play(latency, &moves)) {
-            judge(table, steps, &pulses, per_pulse(table)).unwrap_or_else(|words| panic!("{words}"));
+            judge(table, steps, &pulses, per_pulse(table))
+                .unwrap_or_else(|words| panic!("{words}"));
             let mut clock = 0;
             let exact: Vec<u64> = table
                 .delays(steps)
@@ -40,11 +43,12 @@ fn check(table: &Table, extra: &[u32]) {
 
 #[test]
 fn source_table_is_played_exactly_in_both_modes() {
-    for mode in [Mode::Ctc, Mode::FreeRunning] {
+    for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
         let table = Table::new(source(mode, 1000, Pulses::One)).unwrap();
         check(&table, &[40_000]);
         // Each delay is the rounded one, and not only close to it.
-        let rounded: Vec<u32> = ideal_delays(&table, 2500).iter().map(|c| c.round() as u32).collect();
+        let rounded: Vec<u32> =
+            ideal_delays(&table, 2500).iter().map(|c| c.round() as u32).collect();
         assert!(table.delays(2500).eq(rounded));
     }
 }
@@ -53,7 +57,7 @@ fn source_table_is_played_exactly_in_both_modes() {
 fn tables_by_group_and_by_time_are_played_exactly() {
     let bands = vec![5, 5, 10, 10, 20, 20, 30, 30, 40, 40];
     for pulses in [Pulses::ByGroup(bands), Pulses::ByTime(1e-3)] {
-        for mode in [Mode::Ctc, Mode::FreeRunning] {
+        for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
             check(&Table::new(source(mode, 600, pulses.clone())).unwrap(), &[17, 4444]);
         }
     }
@@ -62,19 +66,22 @@ fn tables_by_group_and_by_time_are_played_exactly() {
 #[test]
 fn player_reads_nothing_outside_its_table() {
     for pulses in [Pulses::One, Pulses::ByTime(1e-3), Pulses::ByGroup(vec![3, 1, 2])] {
-        let table = Table::new(source(Mode::Ctc, 60, pulses)).unwrap();
+        let table = Table::new(source(TimerMode::Ctc, 60, pulses)).unwrap();
         let moves: Vec<Move> = lengths(&table).into_iter().map(Move::of).collect();
-        let bench = Bench::of(&table).flag("-fsanitize=address,undefined").flag("-fno-sanitize-recover=all");
+        let bench = Bench::of(&table)
+            .flag("-fsanitize=address,undefined")
+            .flag("-fno-sanitize-recover=all");
         assert_eq!(bench.play(0, &moves), Bench::of(&table).play(0, &moves));
     }
 }
 
 #[test]
 fn stop_follows_the_ramp_down() {
-    let table = Table::new(source(Mode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
     let ramp = u32::try_from(table.figures().ramp_pulses).unwrap();
     let stops = [1, 2, ramp / 2, ramp, ramp + 1, ramp + 50, 4 * ramp - 3, 4 * ramp];
-    let moves: Vec<Move> = stops.iter().map(|&stop| Move { steps: 4 * ramp, stop: Some(stop) }).collect();
+    let moves: Vec<Move> =
+        stops.iter().map(|&stop| Move { steps: 4 * ramp, stop: Some(stop) }).collect();
     for (stop, pulses) in stops.into_iter().zip(Bench::of(&table).play(0, &moves)) {
         // The delay before pulse `stop` was the last one on the way up. The delays below it follow
         // in reverse.
@@ -84,7 +91,8 @@ fn stop_follows_the_ramp_down() {
             .take(stop as usize)
             .scan(0, |before, &now| Some(now - std::mem::replace(before, now)))
             .collect();
-        let falling: Vec<u64> = pulses.windows(2).map(|p| p[1] - p[0]).skip(stop as usize - 1).collect();
+        let falling: Vec<u64> =
+            pulses.windows(2).map(|p| p[1] - p[0]).skip(stop as usize - 1).collect();
         assert_eq!(falling.len() as u32, down, "stopped at pulse {stop}: {} pulses", pulses.len());
         let whole: Vec<u64> = table.delays(4 * ramp).map(u64::from).collect();
         assert_eq!(rising, whole[..stop as usize]);
@@ -94,7 +102,7 @@ fn stop_follows_the_ramp_down() {
 
 #[test]
 fn table_for_an_8_bit_timer_is_played_exactly() {
-    for mode in [Mode::Ctc, Mode::FreeRunning] {
+    for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
         let mut request = source(mode, 50, Pulses::One);
         request.timer = Timer { width: Width::Bits8, ..Timer::avr16(1_000_000, 8, mode) };
         request.start_frequency = 400.0;
@@ -108,7 +116,7 @@ fn table_for_an_8_bit_timer_is_played_exactly() {
 
 #[test]
 fn table_in_program_memory_is_read_with_pgm_read_word_only() {
-    let table = Table::new(source(Mode::Ctc, 60, Pulses::ByTime(1e-3))).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 60, Pulses::ByTime(1e-3))).unwrap();
     let header = table.header(&Options::new("ramp").unwrap().program_memory(true));
     // Every word in "program memory" is scrambled, and only pgm_read_word restores it.
     let mut inside = false;
@@ -124,31 +132,45 @@ fn table_in_program_memory_is_read_with_pgm_read_word_only() {
             Ok(value) => piece.replace(&value.to_string(), &(value ^ 0x5A5A).to_string()),
             Err(_) => piece.to_owned(),
         };
-        if inside { line.split(',').map(word).collect::<Vec<_>>().join(",") } else { line.to_owned() }
+        if inside {
+            line.split(',').map(word).collect::<Vec<_>>().join(",")
+        } else {
+            line.to_owned()
+        }
     });
     let scrambled: Vec<String> = scrambled.collect();
     assert_ne!(scrambled.join("\n") + "\n", header);
     let bench = Bench::new(&(scrambled.join("\n") + "\n")).flag("-DCARRYSTEP_PROGMEM");
     bench.write("avr/pgmspace.h", "#include <stdint.h>\n#define PROGMEM\nstatic inline uint16_t pgm_read_word(const uint16_t *word) { return (uint16_t)(*word ^ 0x5A5Au); }\n");
-    for (steps, pulses) in [1, 50, 5000].into_iter().zip(bench.play(0, &[1, 50, 5000].map(Move::of))) {
+    for (steps, pulses) in
+        [1, 50, 5000].into_iter().zip(bench.play(0, &[1, 50, 5000].map(Move::of)))
+    {
         judge(&table, steps, &pulses, 0.5).unwrap_or_else(|words| panic!("{words}"));
     }
 }
 
 #[test]
 fn compiler_refuses_a_header_for_another_clock_or_memory() {
-    let table = Table::new(source(Mode::Ctc, 20, Pulses::One)).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 20, Pulses::One)).unwrap();
     let options = || Options::new("ramp").unwrap();
     let words = |bench: Bench| bench.compile(&["timer_bench.c", "carrystep_player.c"]).unwrap_err();
-    assert!(words(Bench::of(&table).flag("-DF_CPU=8000000UL")).contains("ramp was made for a clock of 16000000 Hz"));
-    Bench::of(&table).flag("-DF_CPU=16000000UL").compile(&["timer_bench.c", "carrystep_player.c"]).unwrap();
+    assert!(
+        words(Bench::of(&table).flag("-DF_CPU=8000000UL"))
+            .contains("ramp was made for a clock of 16000000 Hz")
+    );
+    Bench::of(&table)
+        .flag("-DF_CPU=16000000UL")
+        .compile(&["timer_bench.c", "carrystep_player.c"])
+        .unwrap();
     let flash = Bench::new(&table.header(&options().program_memory(true)));
     flash.write("avr/pgmspace.h", "#define PROGMEM\n");
     assert!(words(flash).contains("compile all files with -DCARRYSTEP_PROGMEM"));
     let plain = Bench::of(&table).flag("-DCARRYSTEP_PROGMEM");
     plain.write("avr/pgmspace.h", "#define pgm_read_word(word) (*(word))\n");
     assert!(words(plain).contains("compile all files without CARRYSTEP_PROGMEM"));
-    // A line lost from the array would leave a hole, which C fills with zeros without a message.
+    // A declared length that is not the number of entries would leave a hole, which C fills with
+    // zeros without a message. (Values that are missing from an array of the right length are not
+    // noticed.)
     let header = table.header(&options());
     let holed = header.replace("ramp_compare[20]", "ramp_compare[21]");
     assert!(words(Bench::new(&holed)).contains("ramp_check_length"));
@@ -162,30 +184,39 @@ fn compiler_refuses_a_header_for_another_clock_or_memory() {
 }
 
 fn requests() -> impl Strategy<Value = TableRequest> {
-    let kind =
-        (0..4, 1_u32..150, 0.5..12.0, 0.2..1.0, any::<bool>()).prop_map(|(kind, steps, steepness, centre, off)| {
-            match kind {
-                0 => Kind::Logistic { entries: steps, steepness, centre: off.then_some(centre * f64::from(steps)) },
-                1 => Kind::Avr446 { ramp_steps: steps, arithmetic: Arithmetic::Float },
-                2 => Kind::Avr446 { ramp_steps: steps, arithmetic: Arithmetic::Integer },
-                _ => Kind::Sine { ramp_steps: steps, inverse: None },
-            }
-        });
+    let kind = (0..4, 1_u32..150, 0.5..12.0, 0.2..1.0, any::<bool>()).prop_map(
+        |(kind, steps, steepness, centre, off)| match kind {
+            0 => Kind::Logistic {
+                entries: steps,
+                steepness,
+                centre: off.then_some(centre * f64::from(steps)),
+            },
+            1 => Kind::Avr446 { ramp_steps: steps, arithmetic: Arithmetic::Float },
+            2 => Kind::Avr446 { ramp_steps: steps, arithmetic: Arithmetic::Integer },
+            _ => Kind::Sine { ramp_steps: steps, inverse: None },
+        },
+    );
     let pulses = prop_oneof![
         Just(Pulses::One),
         prop::collection::vec(1_u32..6, 1..4).prop_map(Pulses::ByGroup),
         (1e-4..5e-3).prop_map(Pulses::ByTime),
     ];
     let start = prop_oneof![Just(0.0), 50.0..800.0];
-    let timer =
-        (prop::sample::select(vec![1_000_000, 8_000_000, 16_000_000, 20_000_000]), any::<bool>(), any::<bool>());
-    (kind, pulses, start, 1.02..30.0, timer).prop_map(|(kind, pulses, start, ratio, (clock, ctc, small))| {
-        let mut timer = Timer::avr16(clock, 8, if ctc { Mode::Ctc } else { Mode::FreeRunning });
-        timer.width = if small { Width::Bits8 } else { Width::Bits16 };
-        let top_speed = Speed::StepsPerSecond(f64::max(start, 60.0) * ratio);
-        let motor = Motor { step_angle_deg: 1.8, microsteps: 1 };
-        TableRequest { timer, motor, start_frequency: start, top_speed, kind, pulses }
-    })
+    let timer = (
+        prop::sample::select(vec![1_000_000, 8_000_000, 16_000_000, 20_000_000]),
+        any::<bool>(),
+        any::<bool>(),
+    );
+    (kind, pulses, start, 1.02..30.0, timer).prop_map(
+        |(kind, pulses, start, ratio, (clock, ctc, small))| {
+            let mut timer =
+                Timer::avr16(clock, 8, if ctc { TimerMode::Ctc } else { TimerMode::FreeRunning });
+            timer.width = if small { Width::Bits8 } else { Width::Bits16 };
+            let top_speed = Speed::StepsPerSecond(f64::max(start, 60.0) * ratio);
+            let motor = Motor { step_angle_deg: 1.8, microsteps: 1 };
+            TableRequest { timer, motor, start_frequency: start, top_speed, kind, pulses }
+        },
+    )
 }
 
 /// The table of the request, after it was changed as the errors advise.
@@ -193,7 +224,10 @@ fn advised(mut request: TableRequest) -> Option<Table> {
     for _ in 0..4 {
         match Table::new(request.clone()) {
             Ok(table) => return Some(table),
-            Err(TableError::TooSlow { prescaler: Some(p), .. } | TableError::TooFast { prescaler: Some(p), .. }) => {
+            Err(
+                TableError::TooSlow { prescaler: Some(p), .. }
+                | TableError::TooFast { prescaler: Some(p), .. },
+            ) => {
                 assert_ne!(request.timer.prescaler, p, "advice that changes nothing: {request:?}");
                 request.timer.prescaler = p;
             }
@@ -201,7 +235,9 @@ fn advised(mut request: TableRequest) -> Option<Table> {
                 let length = length.max(unit).next_multiple_of(unit);
                 match &mut request.kind {
                     Kind::Logistic { entries, .. } => *entries = length,
-                    Kind::Avr446 { ramp_steps, .. } | Kind::Sine { ramp_steps, .. } => *ramp_steps = length,
+                    Kind::Avr446 { ramp_steps, .. } | Kind::Sine { ramp_steps, .. } => {
+                        *ramp_steps = length;
+                    }
                 }
             }
             Err(TableError::TooSlow { prescaler: None, .. }) => return None,

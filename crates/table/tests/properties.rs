@@ -4,7 +4,9 @@ mod support;
 
 use carrystep_table::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use carrystep_table::sine::{Sine, distance, speed};
-use carrystep_table::{Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableRequest, Timer};
+use carrystep_table::{
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
+};
 use proptest::prelude::*;
 use support::{Bench, run};
 
@@ -47,7 +49,7 @@ proptest! {
     /// Both arithmetics give one ramp, and it ends at the top speed.
     #[test]
     fn avr446_ramp_ends_at_the_top_speed_in_both_arithmetics(ramp_steps in 2_u32..2000, start in prop_oneof![Just(0.0), 10.0..400.0], top in 500.0..4000.0) {
-        let timer = Timer::avr16(2_000_000, 8, Mode::Ctc);
+        let timer = Timer::avr16(2_000_000, 8, TimerMode::Ctc);
         let make = |arithmetic| Table::new(TableRequest {
             timer: timer.clone(),
             motor: Motor { step_angle_deg: 1.8, microsteps: 1 },
@@ -75,7 +77,7 @@ proptest! {
 #[test]
 fn ramp_computed_on_the_controller_stays_within_its_error_bound() {
     let request = TableRequest {
-        timer: Timer::avr16(16_000_000, 64, Mode::Ctc),
+        timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
         motor: Motor { step_angle_deg: 1.8, microsteps: 8 },
         start_frequency: 0.0,
         top_speed: Speed::StepsPerSecond(10_000.0),
@@ -86,11 +88,18 @@ fn ramp_computed_on_the_controller_stays_within_its_error_bound() {
     let bench = Bench::new(&table.header(&Options::new("ramp").unwrap()));
     bench.write("sine.c", include_str!("bench/sine_bench.c"));
     let program = bench.compile(&["sine.c", "carrystep_sine.c", "carrystep_player.c"]).unwrap();
-    for (steps, counts) in
-        [(1, 5), (2, 60_000), (10, 60_000), (1000, 50_000), (1000, 250_000), (777, 31_111), (20_000, 1_000_000)]
-    {
+    for (steps, counts) in [
+        (1, 5),
+        (2, 60_000),
+        (10, 60_000),
+        (1000, 50_000),
+        (1000, 250_000),
+        (777, 31_111),
+        (20_000, 1_000_000),
+    ] {
         let text = run(&program, &[steps.to_string(), counts.to_string()]).unwrap();
-        let delays: Vec<u32> = text.lines().map(|line| line.parse().unwrap_or_else(|_| panic!("{line}"))).collect();
+        let delays: Vec<u32> =
+            text.lines().map(|line| line.parse().unwrap_or_else(|_| panic!("{line}"))).collect();
         assert_eq!(delays.len() as u32, steps);
         let curve = Sine { start: 0.0, top: 2.0, steps: 1.0 };
         let bound = (1.2e-5 + 0.5 / 65_535.0) * f64::from(counts) + 0.5;
@@ -98,7 +107,10 @@ fn ramp_computed_on_the_controller_stays_within_its_error_bound() {
         for (n, delay) in delays.into_iter().enumerate() {
             sum += delay + 1; // CTC
             let ideal = f64::from(counts) * curve.crossing((n + 1) as f64 / f64::from(steps));
-            assert!((f64::from(sum) - ideal).abs() <= bound, "{steps} steps in {counts}: step {n} at {sum}, {ideal}");
+            assert!(
+                (f64::from(sum) - ideal).abs() <= bound,
+                "{steps} steps in {counts}: step {n} at {sum}, {ideal}"
+            );
         }
         assert_eq!(sum, counts);
     }

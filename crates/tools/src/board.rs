@@ -3,7 +3,7 @@
 pub mod page;
 
 use crate::SynthesisError;
-use crate::ice40::{self, Part, Placed, Size};
+use crate::ice40::{self, NextpnrPart, PlacedDesign, Size};
 use crate::tool::{self, ICEPACK, ICETIME};
 
 /// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
@@ -12,7 +12,7 @@ pub const SEEDS: [u32; 5] = [1, 2, 3, 4, 5];
 
 /// A design to be built.
 #[derive(Debug, Clone, Copy)]
-pub struct Job<'a> {
+pub struct BuildJob<'a> {
     /// Verilog of all modules.
     pub verilog: &'a str,
     /// Name of the top module.
@@ -20,7 +20,7 @@ pub struct Job<'a> {
     /// Constraints that assign each port to a pin.
     pub pcf: &'a str,
     /// The part.
-    pub part: Part<'a>,
+    pub part: NextpnrPart<'a>,
     /// Clock, Hz.
     pub clock_hz: u64,
 }
@@ -51,16 +51,18 @@ impl Built {
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or refuses the design. If the design is too large, the
 /// tool is nextpnr.
-pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
+pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     stage("yosys");
     let netlist = ice40::synthesise_tight(job.verilog, job.top)?;
-    let mut best: Option<(u32, Placed)> = None;
+    let mut best: Option<(u32, PlacedDesign)> = None;
     let mut failed = None;
     for seed in SEEDS {
         stage(&format!("nextpnr-ice40, seed {seed}"));
         // If a part is nearly full, only some seeds lead to a placement.
         match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
-            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => best = Some((seed, placed)),
+            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => {
+                best = Some((seed, placed));
+            }
             Ok(_) => {}
             Err(error @ SynthesisError::Tool { .. }) => failed = Some(error),
             Err(error) => return Err(error),
@@ -85,16 +87,25 @@ pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, Synthe
     )?;
     stage("icepack");
     tool::run(&ICEPACK, folder.path(), &["top.asc", "top.bin"])?;
-    let bitstream = std::fs::read(folder.path().join("top.bin"))
-        .map_err(|source| SynthesisError::Io { context: "cannot read top.bin".to_owned(), source })?;
-    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: slowest_path(&said)?, bitstream })
+    let bitstream = std::fs::read(folder.path().join("top.bin")).map_err(|source| {
+        SynthesisError::Io { context: "cannot read top.bin".to_owned(), source }
+    })?;
+    Ok(Built {
+        size: placed.size,
+        seed,
+        mhz: placed.mhz,
+        icetime_mhz: slowest_path(&said)?,
+        bitstream,
+    })
 }
 
 /// Reads the line `Total path delay: 11.64 ns (85.92 MHz)`.
 fn slowest_path(said: &str) -> Result<f64, SynthesisError> {
-    let mhz =
-        said.lines().find_map(|line| line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)"));
-    let unread = || SynthesisError::Unread { tool: ICETIME.name, what: "the slowest path".to_owned() };
+    let mhz = said.lines().find_map(|line| {
+        line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)")
+    });
+    let unread =
+        || SynthesisError::Unread { tool: ICETIME.name, what: "the slowest path".to_owned() };
     mhz.and_then(|mhz| mhz.parse().ok()).ok_or_else(unread)
 }
 
@@ -104,8 +115,7 @@ mod tests {
 
     #[test]
     fn output_of_icetime_is_parsed() {
-        let said =
-            "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
+        let said = "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
         assert_eq!(slowest_path(said).unwrap(), 85.92);
         assert!(slowest_path("").is_err());
     }

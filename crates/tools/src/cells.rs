@@ -34,14 +34,18 @@ pub(crate) fn with_models(verilog: &str) -> Result<String, SynthesisError> {
 /// The models of those cells of a design that the library has.
 pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, SynthesisError> {
     let known = text(library)?;
-    let (head, _) = known.split_once("\nmodule ").ok_or_else(|| unread("a module in its models".to_owned()))?;
+    let (head, _) =
+        known.split_once("\nmodule ").ok_or_else(|| unread("a module in its models".to_owned()))?;
     let mut text = format!("{}{head}\n", library.head);
     let cell = pattern(library.cells);
     for name in cell.find_iter(verilog).map(|found| found.as_str()).collect::<BTreeSet<_>>() {
         // The names of cells also occur within the names of wires; only those of modules count.
-        let begin = [" (", "("].iter().find_map(|ports| known.find(&format!("\nmodule {name}{ports}")));
+        let begin =
+            [" (", "("].iter().find_map(|ports| known.find(&format!("\nmodule {name}{ports}")));
         let Some(begin) = begin else { continue };
-        let end = known[begin..].find("\nendmodule").ok_or_else(|| unread(format!("the end of {name}")))?;
+        let end = known[begin..]
+            .find("\nendmodule")
+            .ok_or_else(|| unread(format!("the end of {name}")))?;
         text += &known[begin..begin + end];
         text += "\nendmodule\n";
     }
@@ -52,7 +56,8 @@ fn text(library: &Library) -> Result<String, SynthesisError> {
     let yosys = which::which_global(YOSYS.name).ok();
     let file = yosys.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(library.file);
     let context = || format!("cannot read yosys' models, {}", file.display());
-    std::fs::read_to_string(&file).map_err(|source| SynthesisError::Io { context: context(), source })
+    std::fs::read_to_string(&file)
+        .map_err(|source| SynthesisError::Io { context: context(), source })
 }
 
 fn unread(what: String) -> SynthesisError {

@@ -9,10 +9,10 @@ mod host;
 mod ports;
 mod tools;
 
-pub use access::{Access, Refusal, obstacle};
-pub use host::{Host, User};
+pub use access::{AccessRefusal, PortAccess, obstacle};
+pub use host::{Computer, User};
 pub use ports::{SerialPort, UsbDevice, serial_ports, usb_devices};
-pub use tools::{Found, tools};
+pub use tools::{FoundTool, tools};
 
 use carrystep_boards::Board;
 use schemars::JsonSchema;
@@ -20,19 +20,23 @@ use serde::Serialize;
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
-pub struct Report {
+pub struct DoctorReport {
     /// The tools that are needed, installed or not.
-    pub tools: Vec<Found>,
+    pub tools: Vec<FoundTool>,
     /// Serial ports of USB devices.
     pub serial_ports: Vec<SerialPort>,
     /// USB devices whose vendor and product id are those of a board.
     pub usb_devices: Vec<UsbDevice>,
 }
 
-impl Report {
+impl DoctorReport {
     /// Inspects this machine. With a board, it looks for what that board needs.
-    pub fn of(host: &Host, board: Option<&Board>) -> Self {
-        Self { tools: tools(host, board), serial_ports: serial_ports(host), usb_devices: usb_devices(host) }
+    pub fn of(host: &Computer, board: Option<&Board>) -> Self {
+        Self {
+            tools: tools(host, board),
+            serial_ports: serial_ports(host),
+            usb_devices: usb_devices(host),
+        }
     }
 
     /// Whether no tool is missing.
@@ -43,6 +47,8 @@ impl Report {
     /// Whether every port and device may be opened.
     pub fn has_all_access(&self) -> bool {
         let serial = self.serial_ports.iter().map(|port| &port.access);
-        serial.chain(self.usb_devices.iter().map(|device| &device.access)).all(|access| *access == Access::Granted)
+        serial
+            .chain(self.usb_devices.iter().map(|device| &device.access))
+            .all(|access| *access == PortAccess::Granted)
     }
 }

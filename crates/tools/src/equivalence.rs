@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 
 /// Result of a proof.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum EquivalenceVerdict {
     /// This number of pairs of wires is proved to be equal at all times.
     Proved(u32),
     /// The first number is how many pairs could not be proved to be equal; the second is the number
@@ -37,7 +37,11 @@ pub enum Verdict {
 ///
 /// # Errors
 /// [`SynthesisError`] if yosys is missing, or if a name that the proof needs has been lost.
-pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Result<Verdict, SynthesisError> {
+pub fn verilog_and_netlist(
+    core: &str,
+    netlist: &Netlist,
+    verilog: &str,
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
     let gold = format!(
         "read_verilog core.v; {}; opt_expr -mux_undef; {CUT}; \
@@ -47,7 +51,10 @@ pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Resu
     );
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", core)?;
-    tool::yosys(folder.path(), &format!("read_verilog core.v; {}; write_json words.json", to_words(top)))?;
+    tool::yosys(
+        folder.path(),
+        &format!("read_verilog core.v; {}; write_json words.json", to_words(top)),
+    )?;
     let words = tool::read(folder.path(), "words.json")?;
     prove(top, &gold, core, &with_inverses(verilog, &words, netlist.json()))
 }
@@ -56,7 +63,10 @@ pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Resu
 ///
 /// # Errors
 /// [`SynthesisError`] if yosys is missing, or if a name that the proof needs has been lost.
-pub fn netlist_and_bitstream(netlist: &Netlist, read_back: &str) -> Result<Verdict, SynthesisError> {
+pub fn netlist_and_bitstream(
+    netlist: &Netlist,
+    read_back: &str,
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
     prove(top, &cells_in("core.v", top), &netlist.verilog, read_back)
 }
@@ -88,7 +98,10 @@ pub fn memories(verilog: &str) -> Memories {
     let parameter = pattern(r"\.(\w+)\((?:\d+'[hd])?(\w+)\)");
     let all = memory.captures_iter(verilog).map(|found| {
         let all = parameter.captures_iter(&found[1]);
-        (found[2].to_owned(), all.map(|one| (one[1].to_owned(), one[2].replace('x', "0"))).collect())
+        (
+            found[2].to_owned(),
+            all.map(|one| (one[1].to_owned(), one[2].replace('x', "0"))).collect(),
+        )
     });
     all.collect()
 }
@@ -106,10 +119,17 @@ fn cells_in(file: &str, top: &str) -> String {
 }
 
 /// Proves that two designs are equivalent.
-fn prove(top: &str, gold: &str, gold_text: &str, gate_text: &str) -> Result<Verdict, SynthesisError> {
+fn prove(
+    top: &str,
+    gold: &str,
+    gold_text: &str,
+    gate_text: &str,
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let folder = tool::folder()?;
     let both = format!("{gold_text}{gate_text} SB_RAM40_4K");
-    for (name, text) in [("core.v", gold_text), ("gate.v", gate_text), ("cells.v", &cells::models(&ICE40, &both)?)] {
+    for (name, text) in
+        [("core.v", gold_text), ("gate.v", gate_text), ("cells.v", &cells::models(&ICE40, &both)?)]
+    {
         tool::write(folder.path(), name, text)?;
     }
     let gate = cells_in("gate.v", top);
@@ -124,8 +144,8 @@ fn prove(top: &str, gold: &str, gold_text: &str, gate_text: &str) -> Result<Verd
         .captures(&status)
         .and_then(|found| Some((found[1].parse().ok()?, found[2].parse().ok()?)));
     match counts {
-        Some((proved, 0)) if proved > 0 => Ok(Verdict::Proved(proved)),
-        Some((proved, open)) if open > 0 => Ok(Verdict::Open(open, proved + open)),
+        Some((proved, 0)) if proved > 0 => Ok(EquivalenceVerdict::Proved(proved)),
+        Some((proved, open)) if open > 0 => Ok(EquivalenceVerdict::Open(open, proved + open)),
         _ => Err(SynthesisError::Unread { tool: YOSYS.name, what: "the verdict".to_owned() }),
     }
 }

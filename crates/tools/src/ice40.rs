@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// A part: nextpnr's names of its device and of its package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part<'a> {
+pub struct NextpnrPart<'a> {
     /// Device, such as `hx8k` or `up5k`.
     pub device: &'a str,
     /// Package, such as `ct256`.
@@ -29,7 +29,10 @@ pub struct Size {
 impl Size {
     /// Parses nextpnr's log.
     fn of(log: &str) -> Result<Self, SynthesisError> {
-        Ok(Self { logic_cells: used(log, "ICESTORM_LC:")?, block_rams: used(log, "ICESTORM_RAM:")? })
+        Ok(Self {
+            logic_cells: used(log, "ICESTORM_LC:")?,
+            block_rams: used(log, "ICESTORM_RAM:")?,
+        })
     }
 }
 
@@ -44,7 +47,7 @@ pub struct Netlist {
 }
 
 /// A placed and routed design.
-pub struct Placed {
+pub struct PlacedDesign {
     /// Configuration bits as text, one tile after the other.
     pub asc: String,
     /// Greatest clock, MHz, at which every path between flip-flops and memories meets its timing,
@@ -108,7 +111,7 @@ impl Netlist {
     ///
     /// # Errors
     /// [`SynthesisError`] if nextpnr is missing or fails.
-    pub fn size(&self, part: Part<'_>) -> Result<Size, SynthesisError> {
+    pub fn size(&self, part: NextpnrPart<'_>) -> Result<Size, SynthesisError> {
         let (_, log) = self.nextpnr(part, None, &["--pack-only"])?;
         Size::of(&log)
     }
@@ -118,7 +121,12 @@ impl Netlist {
     ///
     /// # Errors
     /// [`SynthesisError`] if nextpnr is missing, or if the part is too small.
-    pub fn place(&self, part: Part<'_>, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+    pub fn place(
+        &self,
+        part: NextpnrPart<'_>,
+        clock_hz: u64,
+        seed: u32,
+    ) -> Result<PlacedDesign, SynthesisError> {
         self.placed(part, None, clock_hz, seed)
     }
 
@@ -127,16 +135,37 @@ impl Netlist {
     ///
     /// # Errors
     /// [`SynthesisError`] if nextpnr is missing, if the part is too small, or if a port has no pin.
-    pub fn place_on(&self, part: Part<'_>, pcf: &str, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+    pub fn place_on(
+        &self,
+        part: NextpnrPart<'_>,
+        pcf: &str,
+        clock_hz: u64,
+        seed: u32,
+    ) -> Result<PlacedDesign, SynthesisError> {
         self.placed(part, Some(pcf), clock_hz, seed)
     }
 
-    fn placed(&self, part: Part<'_>, pcf: Option<&str>, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+    fn placed(
+        &self,
+        part: NextpnrPart<'_>,
+        pcf: Option<&str>,
+        clock_hz: u64,
+        seed: u32,
+    ) -> Result<PlacedDesign, SynthesisError> {
         let (mhz, seed) = ((clock_hz as f64 / 1e6).to_string(), seed.to_string());
-        let more = ["--freq", &mhz, "--seed", &seed, "--timing-allow-fail", "--asc", "placed.asc", "--write"];
+        let more = [
+            "--freq",
+            &mhz,
+            "--seed",
+            &seed,
+            "--timing-allow-fail",
+            "--asc",
+            "placed.asc",
+            "--write",
+        ];
         let (folder, log) = self.nextpnr(part, pcf, &[&more[..], &["placed.json"]].concat())?;
         let placement = serde_json::from_str(&tool::read(folder.path(), "placed.json")?);
-        Ok(Placed {
+        Ok(PlacedDesign {
             asc: tool::read(folder.path(), "placed.asc")?,
             mhz: greatest_clock(&log)?,
             size: Size::of(&log)?,
@@ -147,16 +176,26 @@ impl Netlist {
     /// Runs nextpnr. Returns its directory and its log.
     fn nextpnr(
         &self,
-        part: Part<'_>,
+        part: NextpnrPart<'_>,
         pcf: Option<&str>,
         more: &[&str],
     ) -> Result<(tempfile::TempDir, String), SynthesisError> {
         let folder = tool::folder()?;
         tool::write(folder.path(), "core.json", &self.json)?;
         tool::write(folder.path(), "core.pcf", pcf.unwrap_or_default())?;
-        let pins: &[&str] = if pcf.is_some() { &["--pcf", "core.pcf"] } else { &["--pcf-allow-unconstrained"] };
+        let pins: &[&str] =
+            if pcf.is_some() { &["--pcf", "core.pcf"] } else { &["--pcf-allow-unconstrained"] };
         let device = format!("--{}", part.device);
-        let common = [&device, "--package", part.package, "--json", "core.json", "--quiet", "--log", "log.txt"];
+        let common = [
+            &device,
+            "--package",
+            part.package,
+            "--json",
+            "core.json",
+            "--quiet",
+            "--log",
+            "log.txt",
+        ];
         tool::run(&NEXTPNR, folder.path(), &[&common[..], pins, more].concat())?;
         let log = tool::read(folder.path(), "log.txt")?;
         Ok((folder, log))
@@ -168,9 +207,9 @@ impl Netlist {
     }
 }
 
-impl Placed {
+impl PlacedDesign {
     /// Reads the bitstream of these configuration bits back as Verilog. Of the netlist, only the
-    /// ports and the names of its flip-flops and memories are used. `asc` is [`Placed::asc`],
+    /// ports and the names of its flip-flops and memories are used. `asc` is [`PlacedDesign::asc`],
     /// possibly with a bit changed.
     ///
     /// # Errors
@@ -189,7 +228,9 @@ impl Placed {
 /// its table lacks is added.
 fn icebox_vlog(folder: &Path) -> Result<String, SynthesisError> {
     match tool::run(&ICEBOX_VLOG, folder, &["-S", "back.asc"]) {
-        Err(SynthesisError::Tool { message, .. }) if message.contains("KeyError: 'SHIFTREG_DIV_MODE'") => {
+        Err(SynthesisError::Tool { message, .. })
+            if message.contains("KeyError: 'SHIFTREG_DIV_MODE'") =>
+        {
             tool::write(folder, "mended.py", include_str!("icebox_vlog.py"))?;
             tool::run(&PYTHON, folder, &["mended.py", "-S", "back.asc"])
         }
@@ -212,7 +253,8 @@ fn unread(what: String) -> SynthesisError {
 /// The number behind a name in nextpnr's report on packing.
 fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
     let line = log.lines().find(|line| line.contains(name) && line.contains('%'));
-    let number = line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
+    let number =
+        line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
     number.ok_or_else(|| unread(name.to_owned()))
 }
 
@@ -220,7 +262,11 @@ fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
 fn greatest_clock(log: &str) -> Result<f64, SynthesisError> {
     let clock = pattern(r"Max frequency for clock +'(\S+)': ([0-9.]+) MHz");
     // The last figure of each clock counts; the slowest clock is the design's.
-    let last: HashMap<&str, f64> =
-        clock.captures_iter(log).filter_map(|found| Some((found.get(1)?.as_str(), found[2].parse().ok()?))).collect();
-    last.into_values().min_by(f64::total_cmp).ok_or_else(|| unread("Max frequency for clock".to_owned()))
+    let last: HashMap<&str, f64> = clock
+        .captures_iter(log)
+        .filter_map(|found| Some((found.get(1)?.as_str(), found[2].parse().ok()?)))
+        .collect();
+    last.into_values()
+        .min_by(f64::total_cmp)
+        .ok_or_else(|| unread("Max frequency for clock".to_owned()))
 }

@@ -17,14 +17,20 @@ type Named = (String, usize, usize);
 /// JSON. `verilog` is the netlist, or what was made from it.
 pub(crate) fn with_inverses(verilog: &str, words: &str, netlist: &str) -> String {
     let inverse = pattern(r"(?m)^  wire \\?((\w+(?:\.\w+)*)_\$_NOT__Y_A) ?;$");
-    let names = inverse.captures_iter(verilog).map(|found| (found[1].to_owned(), found[2].to_owned()));
-    let missing =
-        names.filter(|(_, name)| !verilog.contains(&format!(" {name};")) && !verilog.contains(&format!("\\{name} ;")));
-    let mut wires: String =
-        missing.map(|(inverse, name)| format!("  (* keep *) wire \\{name} = ~\\{inverse} ;\n")).collect();
+    let names =
+        inverse.captures_iter(verilog).map(|found| (found[1].to_owned(), found[2].to_owned()));
+    let missing = names.filter(|(_, name)| {
+        !verilog.contains(&format!(" {name};")) && !verilog.contains(&format!("\\{name} ;"))
+    });
+    let mut wires: String = missing
+        .map(|(inverse, name)| format!("  (* keep *) wire \\{name} = ~\\{inverse} ;\n"))
+        .collect();
     if let Some((register, inverse)) = nameless(words, netlist) {
-        wires +=
-            &format!("  (* keep *) wire nameless = ~{};\n  assign {} = nameless;\n", bit(&inverse), bit(&register));
+        wires += &format!(
+            "  (* keep *) wire nameless = ~{};\n  assign {} = nameless;\n",
+            bit(&inverse),
+            bit(&register)
+        );
     }
     verilog.replacen("endmodule", &format!("{wires}endmodule"), 1)
 }
@@ -35,21 +41,29 @@ fn nameless(words: &str, netlist: &str) -> Option<(Named, Named)> {
     let (words, netlist) = (Design::of(words)?, Design::of(netlist)?);
     let driven = |(name, place, _): &Named| {
         let inverse = format!("{name}_$_NOT__Y_A");
-        netlist.wires.get(name).and_then(|bits| bits.get(*place)).is_some_and(|bit| netlist.driven.contains(bit))
+        netlist
+            .wires
+            .get(name)
+            .and_then(|bits| bits.get(*place))
+            .is_some_and(|bit| netlist.driven.contains(bit))
             || netlist.wires.contains_key(&inverse)
     };
     let registers = words.ones.iter().map(|bit| words.names(*bit));
-    let lost: Vec<_> = registers.filter(|names| !names.is_empty() && !names.iter().any(driven)).collect();
+    let lost: Vec<_> =
+        registers.filter(|names| !names.is_empty() && !names.iter().any(driven)).collect();
     let made_up = |(name, ..): &Named| name.contains("_$_") || name.contains("_SB_");
     let is_inverse = |(name, ..): &Named| name.ends_with("_$_NOT__Y_A");
     let flip_flops = netlist.registers.iter().map(|bit| netlist.names(*bit));
-    let orphans: Vec<_> =
-        flip_flops.filter(|names| names.iter().all(made_up) && !names.iter().any(is_inverse)).collect();
+    let orphans: Vec<_> = flip_flops
+        .filter(|names| names.iter().all(made_up) && !names.iter().any(is_inverse))
+        .collect();
     match (&lost[..], &orphans[..]) {
         ([register], [flip_flop]) => {
             // The netlist may use a shorter one of the register's names.
             let known = register.iter().find(|(name, ..)| netlist.wires.contains_key(name))?;
-            let alias = netlist.wires[&known.0].get(known.1).and_then(|bit| netlist.names(*bit).into_iter().next())?;
+            let alias = netlist.wires[&known.0]
+                .get(known.1)
+                .and_then(|bit| netlist.names(*bit).into_iter().next())?;
             Some((alias, flip_flop.first()?.clone()))
         }
         _ => None,
@@ -77,7 +91,11 @@ impl Design {
         let modules = json["modules"].as_object()?;
         let top = modules.values().find(|module| module["attributes"].get("top").is_some())?;
         let bits = |bits: &Value| -> Vec<u64> {
-            bits.as_array().into_iter().flatten().map(|bit| bit.as_u64().unwrap_or(u64::MAX)).collect()
+            bits.as_array()
+                .into_iter()
+                .flatten()
+                .map(|bit| bit.as_u64().unwrap_or(u64::MAX))
+                .collect()
         };
         let wires = top["netnames"].as_object()?;
         let mut ones = BTreeSet::new();
@@ -94,7 +112,9 @@ impl Design {
             driven.extend(bits(&port["bits"]));
         }
         for cell in top["cells"].as_object()?.values() {
-            for (port, _) in cell["port_directions"].as_object()?.iter().filter(|(_, way)| *way == "output") {
+            for (port, _) in
+                cell["port_directions"].as_object()?.iter().filter(|(_, way)| *way == "output")
+            {
                 driven.extend(bits(&cell["connections"][port]));
             }
             if cell["type"].as_str()?.to_lowercase().contains("dff") {

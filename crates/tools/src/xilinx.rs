@@ -18,7 +18,8 @@ use carrystep_boards::Mapped;
 pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Mapped, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
-    let script = format!("read_verilog core.v; {}; tee -o stat.txt stat", synthesis(family, "", top));
+    let script =
+        format!("read_verilog core.v; {}; tee -o stat.txt stat", synthesis(family, "", top));
     tool::yosys(folder.path(), &script)?;
     count(&tool::read(folder.path(), "stat.txt")?)
 }
@@ -49,7 +50,9 @@ fn count(stat: &str) -> Result<Mapped, SynthesisError> {
     let mut cells = Mapped::default();
     for line in stat.lines() {
         let mut words = line.split_whitespace();
-        let (Some(name), Some(number), None) = (words.next(), words.next(), words.next()) else { continue };
+        let (Some(name), Some(number), None) = (words.next(), words.next(), words.next()) else {
+            continue;
+        };
         let Ok(number) = number.parse::<u32>() else { continue };
         match name {
             "INV" => cells.luts += number,

@@ -20,10 +20,13 @@ fn builds(name: &str) {
 
 #[test]
 fn page_shows_the_committed_figures() {
-    let all: AllMeasured =
-        boards().iter().map(|board| (board.name.clone(), board.measured().expect("figures"))).collect();
+    let all: AllMeasured = boards()
+        .iter()
+        .map(|board| (board.name.clone(), board.measured().expect("figures")))
+        .collect();
     let committed =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(PAGE)).expect(PAGE);
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(PAGE))
+            .expect(PAGE);
     assert!(committed == page(&all), "{PAGE}: run `cargo xtask long boards`");
 }
 

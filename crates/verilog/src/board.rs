@@ -12,8 +12,11 @@ pub use gateware::{Gateware, shipped_machine};
 pub(crate) use page::pages;
 
 use crate::ExportError;
+use crate::prefix::Prefix;
 use crate::write::TextFile;
-use carrystep_boards::{Board, BoardError, OSCILLATOR, PORTS, Part, Place, Port, Tie, Way, Wire};
+use carrystep_boards::{
+    Board, BoardError, BoardPort, OSCILLATOR, PORTS, Part, Place, Tie, Way, Wire,
+};
 use carrystep_core::link::Uart;
 use carrystep_core::tick::mhz;
 use minijinja::syntax::SyntaxConfig;
@@ -33,6 +36,8 @@ pub struct Design<'a> {
     pub uart: Option<Uart>,
     /// Name of the top module, and base name of all files.
     pub top: String,
+    /// The beginning of the name of the clock module.
+    pub prefix: &'a Prefix,
     /// Names of the Verilog files, in the directory of the script.
     pub sources: &'a [&'a str],
     /// The bits of the top level's ports, such as `uart_rx` or `step[0]`, out of those of
@@ -41,7 +46,7 @@ pub struct Design<'a> {
     pub ports: &'a [String],
 }
 
-/// Name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
+/// Usual name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
 /// and `clock` (out).
 pub const CLOCK_NAME: &str = "carrystep_clock";
 
@@ -63,8 +68,9 @@ impl Design<'_> {
     /// # Errors
     /// [`ExportError::Board`] if the board cannot make the clock.
     pub fn clock(&self) -> Result<TextFile, ExportError> {
-        let text = clock::verilog(self.board, self.clock_hz)?;
-        Ok(TextFile::new(format!("{CLOCK_NAME}.v"), text))
+        let name = self.prefix.name(CLOCK_NAME);
+        let text = clock::verilog(self.board, self.clock_hz, &name)?;
+        Ok(TextFile::new(format!("{name}.v"), text))
     }
 
     /// The constraint file, which assigns each port to a pin.
@@ -146,18 +152,25 @@ impl Design<'_> {
 
     /// The wire of a port. If a bus has one bit only, its port name has no number.
     fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
-        self.board.wire(port).or_else(|error| self.board.wire(&format!("{port}[0]")).map_err(|_| error))
+        self.board
+            .wire(port)
+            .or_else(|error| self.board.wire(&format!("{port}[0]")).map_err(|_| error))
     }
 }
 
 /// Renders a template of `templates/board`. Lines of block tags leave no empty lines; a name that has
 /// no value is an error.
 fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
-    #[allow(unused_qualifications, elided_lifetimes_in_paths, reason = "in the text of minijinja-embed")]
+    #[allow(
+        unused_qualifications,
+        elided_lifetimes_in_paths,
+        reason = "in the text of minijinja-embed"
+    )]
     static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
         let mut environment = Environment::new();
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
-        environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
+        environment
+            .set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
         minijinja_embed::load_templates!(environment);
         environment
     });
@@ -170,7 +183,7 @@ fn place(wire: &Wire) -> (&str, &str) {
 }
 
 /// The port of [`PORTS`] to which a wire belongs.
-fn kind(wire: &Wire) -> Option<&'static Port> {
+fn kind(wire: &Wire) -> Option<&'static BoardPort> {
     let name = wire.port.split('[').next();
     PORTS.iter().find(|port| Some(port.name) == name)
 }

@@ -1,13 +1,16 @@
 //! Writes a core as one file: a header, and then every module once, children first.
 
-use crate::ExportError;
-use crate::guard;
-use crate::module::module_text;
+use crate::docs::{self, wrapped};
+use crate::module::{COLUMNS, module_text};
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
+use crate::prefix::Prefix;
+use crate::synchronizers::{self, Synchronizer};
 use crate::write::{TextFile, write};
-use carrystep_core::link::Line;
+use crate::{ExportError, guard, instances, parameters};
+use carrystep_core::link::{BYTE_PORTS, LineKind};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
@@ -27,44 +30,127 @@ pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
 /// Verilator's waivers for the engine, each with its reason.
 pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 
+/// Verilator's waivers for the host link, each with its reason.
+const LINK_WAIVERS: &str = include_str!("carrystep_link.vlt");
+
+/// Verilator's waivers for the UART, each with its reason.
+const UART_WAIVERS: &str = include_str!("carrystep_uart.vlt");
+
 /// The version that the workspace pins.
 const RUST_HDL: &str = "0.46.0";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 33] = [
-    ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
-    ("carrystep_sequencer", "The running and the waiting segment of an axis."),
-    ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
-    ("carrystep_axis", "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched."),
-    ("carrystep_shaper", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
-    (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
-    ("carrystep_turn", "Whose turn it is: one axis after the other, thirteen beats each."),
-    ("carrystep_adder", "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection."),
-    ("carrystep_control", "The control words of the axes."),
-    ("carrystep_lasts", "Which segments are the last of their move."),
-    ("carrystep_queue", "Which segment an axis runs, and which ones wait."),
-    ("carrystep_segments", "Segments, which are also registers, and what an axis keeps between moves."),
-    ("carrystep_store", "Where everything is in the memory of the axes."),
-    ("carrystep_rim", "What the pins do in each phase of four ticks."),
-    ("carrystep_wheel", "Events on their way to the pins."),
-    ("carrystep_pulser", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
-    ("carrystep_switches", "What is believed of each limit switch."),
-    ("carrystep_limits", "The limit switches, one look in a turn."),
-    ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
-    ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
-    ("carrystep_uart_in", "Bytes from the line."),
-    ("carrystep_uart_out", "Bytes to the line."),
-    ("carrystep_uart", "A UART, both directions."),
-    ("carrystep_spi", "SPI mode 0, the host's clock up to a fifth of this one."),
-    ("carrystep_check", "The CRC of frames."),
-    ("carrystep_machine", "The little machine that reads requests and writes answers."),
-    ("carrystep_instructions", "What it does."),
-    ("carrystep_facts", "What can be read."),
-    ("carrystep_known", "Facts of the build, and what the engine has last said of its axes."),
-    ("carrystep_data", "A request and the answer to it, constants, and what is remembered."),
-    ("carrystep_ring", "Received bytes that wait."),
-    (LINK_NAME, "The host link: bytes in, words of segments out."),
-    (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
+const PURPOSES: [(&str, &str); 35] = [
+    (
+        "carrystep_tick",
+        "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
+    ),
+    ("carrystep_sequencer", "Holds the running segment of an axis and one waiting segment."),
+    (
+        "carrystep_step_edge",
+        "Finds the phase of a step in its tick by bisection; requests the step in that phase.",
+    ),
+    (
+        "carrystep_axis",
+        "One axis: P, V, A, J. Each carry of P is a step. The last five ports are for observation.",
+    ),
+    (
+        "carrystep_shaper",
+        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
+    ),
+    (
+        CORE_NAME,
+        "Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
+    ),
+    (
+        "carrystep_time_slot",
+        "The schedule: in each tick every axis has a time slot of thirteen clocks (beats).",
+    ),
+    (
+        "carrystep_adder",
+        "The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.",
+    ),
+    ("carrystep_control", "Memory of the control words: the queue state and flags of each axis."),
+    ("carrystep_lasts", "Memory of one bit per segment: the segment is the last of its move."),
+    (
+        "carrystep_queue",
+        "The segment queue of each axis: which segment runs, and which segments wait.",
+    ),
+    (
+        "carrystep_segments",
+        "Memory of the segments, also used as registers, and of an axis' state between moves.",
+    ),
+    (
+        "carrystep_store",
+        "The segment memory with its address selection: reads and writes the words of a time slot.",
+    ),
+    (
+        "carrystep_event_memory",
+        "Memory of the event wheel: the steps of all axes in each phase of four ticks.",
+    ),
+    (
+        "carrystep_event_wheel",
+        "The event wheel: holds the pending steps of all axes, ordered by tick and phase.",
+    ),
+    (
+        "carrystep_pulser",
+        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
+    ),
+    (
+        "carrystep_switches",
+        "Memory of the debounced state of each limit switch, and its count of deviating samples.",
+    ),
+    (
+        "carrystep_limits",
+        "Samples and debounces the limit switches, each in the time slot of its axis.",
+    ),
+    (
+        "carrystep_resets",
+        "The reset: freezes the engine, waits for rest, and restores the state at configuration.",
+    ),
+    (
+        "carrystep_homing_control",
+        "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
+    ),
+    (
+        "carrystep_stops",
+        "Latches the first cause of a stop, and controls the stop until the host clears it.",
+    ),
+    (
+        "carrystep_supervisor",
+        "Monitors the e-stop and the host (watchdog), and times the power of the drivers.",
+    ),
+    ("carrystep_uart_in", "The UART receiver: eight data bits, no parity, one stop bit."),
+    ("carrystep_uart_out", "The UART transmitter: eight data bits, no parity, one stop bit."),
+    ("carrystep_uart", "A UART: receiver and transmitter."),
+    ("carrystep_spi", "An SPI peripheral in mode 0; SCK may be up to a fifth of the clock."),
+    (
+        "carrystep_crc",
+        "Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.",
+    ),
+    (
+        "carrystep_processor",
+        "A small processor that reads the host's requests, executes them and writes the answers.",
+    ),
+    ("carrystep_instructions", "Program memory of the processor carrystep_processor."),
+    (
+        "carrystep_register_mirror",
+        "What the host can read: constants of the build, and the last known state of each axis.",
+    ),
+    (
+        "carrystep_known",
+        "Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.",
+    ),
+    (
+        "carrystep_data",
+        "Data memory of carrystep_processor: the request, its answer, constants and variables.",
+    ),
+    ("carrystep_ring", "Ring buffer of the received bytes that the processor has not read yet."),
+    (
+        LINK_NAME,
+        "The host link: receives requests, passes segments to the engine and sends answers.",
+    ),
+    (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
 ];
 
 /// The six-axis core of this build as Verilog-2005 with the top module [`CORE_NAME`]. `description`
@@ -73,8 +159,7 @@ const PURPOSES: [(&str, &str); 33] = [
 /// # Errors
 /// [`ExportError`] if the core cannot be generated.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
-    file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
+    Ok(six_axis(build, &Prefix::default(), description)?.text)
 }
 
 /// The engine of this build as Verilog-2005 with the top module [`ENGINE_NAME`]. Otherwise as
@@ -83,8 +168,7 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
-    file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
+    Ok(engine_of(build, &Prefix::default(), description)?.text)
 }
 
 /// The host link of this build as Verilog-2005 with the top module [`LINK_NAME`]. Otherwise as
@@ -92,12 +176,12 @@ pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, 
 ///
 /// # Errors
 /// [`ExportError`] if the link cannot be generated.
-pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Result<String, ExportError> {
-    let id = line.build_id(build);
-    let lines =
-        format!("// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n", build.timebase.clock_hz());
-    let facts = Facts { title: "the host link of an engine".to_owned(), lines, pins: &[] };
-    file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
+pub fn link_verilog(
+    build: &EngineBuild,
+    line: LineKind,
+    description: &str,
+) -> Result<String, ExportError> {
+    Ok(link_of(build, line, &Prefix::default(), description)?.text)
 }
 
 /// The line to the host as Verilog-2005 with the top module [`line_name`]. Otherwise as
@@ -105,21 +189,101 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
 ///
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
-pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
-    let facts =
-        Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n"), pins: &[] };
-    let mut module: Box<dyn Block> = match line {
-        Line::Uart(uart) => Box::new(UartLine::new(uart)),
-        Line::Spi => Box::new(Spi::new()),
+pub fn line_verilog(line: LineKind, description: &str) -> Result<String, ExportError> {
+    Ok(line_of(line, &Prefix::default(), description)?.text)
+}
+
+/// The six-axis core, exported.
+pub(crate) fn six_axis(
+    build: &Build,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
+    let top = Top { name: CORE_NAME, kind: "SixAxis", waivers: Some(CORE_WAIVERS) };
+    Exported::new(&mut SixAxis::new(build)?, top, prefix, &facts, description)
+}
+
+/// The engine, exported.
+pub(crate) fn engine_of(
+    build: &EngineBuild,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
+    let top = Top { name: ENGINE_NAME, kind: "Engine", waivers: Some(ENGINE_WAIVERS) };
+    Exported::new(engine(build)?.as_mut(), top, prefix, &facts, description)
+}
+
+/// The host link, exported.
+pub(crate) fn link_of(
+    build: &EngineBuild,
+    line: LineKind,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let id = line.build_id(build);
+    let lines = format!(
+        "// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n",
+        build.timebase.clock_hz()
+    );
+    let facts = Facts { title: "the host link of an engine".to_owned(), lines };
+    let top = Top { name: LINK_NAME, kind: "Link", waivers: Some(LINK_WAIVERS) };
+    Exported::new(link(build, id)?.as_mut(), top, prefix, &facts, description)
+}
+
+/// The line to the host, exported.
+pub(crate) fn line_of(
+    line: LineKind,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let facts = Facts {
+        title: "the line to the host".to_owned(),
+        lines: format!("// Line         {line}\n"),
     };
-    file_text(module.as_mut(), line_name(line), &facts, description)
+    let (kind, waivers) = match line {
+        LineKind::Uart(_) => ("UartLine", Some(UART_WAIVERS)),
+        LineKind::Spi => ("Spi", None),
+    };
+    let top = Top { name: line_name(line), kind, waivers };
+    Exported::new(line_block(line).as_mut(), top, prefix, &facts, description)
+}
+
+fn line_block(line: LineKind) -> Box<dyn Block> {
+    match line {
+        LineKind::Uart(uart) => Box::new(UartLine::new(uart)),
+        LineKind::Spi => Box::new(Spi::new()),
+    }
+}
+
+/// The parameters of a build's modules, with its values.
+#[derive(Debug)]
+pub(crate) struct Overrides {
+    pub(crate) line: Vec<ParameterValue>,
+    pub(crate) link: Vec<ParameterValue>,
+    pub(crate) engine: Vec<ParameterValue>,
+}
+
+impl Overrides {
+    pub(crate) fn of(build: &EngineBuild, line: LineKind) -> Result<Self, ExportError> {
+        let of = |block: &mut dyn Block| {
+            block.connect_all();
+            parameters::of(&netlist::read(block)?)
+        };
+        Ok(Self {
+            line: of(line_block(line).as_mut())?,
+            link: of(link(build, line.build_id(build))?.as_mut())?,
+            engine: of(engine(build)?.as_mut())?,
+        })
+    }
 }
 
 /// Name of a line's top module and of its file.
-pub const fn line_name(line: Line) -> &'static str {
+pub const fn line_name(line: LineKind) -> &'static str {
     match line {
-        Line::Uart(_) => "carrystep_uart",
-        Line::Spi => "carrystep_spi",
+        LineKind::Uart(_) => "carrystep_uart",
+        LineKind::Spi => "carrystep_spi",
     }
 }
 
@@ -127,93 +291,161 @@ pub const fn line_name(line: Line) -> &'static str {
 pub(crate) type Ports = Vec<(String, usize)>;
 
 /// The ports between link and line, and the ports between link and engine.
-pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Ports), ExportError> {
+pub(crate) fn link_ports(
+    build: &EngineBuild,
+    line: LineKind,
+) -> Result<(Ports, Ports), ExportError> {
     let mut link = link(build, line.build_id(build))?;
     link.connect_all();
     let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
     let ports = ports.filter(|port| port.name != "clock").map(|port| (port.name, port.width));
-    Ok(ports.partition(|(name, _)| name.starts_with("received") || name.starts_with("answer")))
+    Ok(ports.partition(|(name, _)| BYTE_PORTS.iter().any(|port| port.name == name.as_str())))
 }
 
 /// Contents of the header.
-struct Facts<'a> {
+struct Facts {
     title: String,
     lines: String,
-    pins: &'a [PinTiming],
 }
 
-fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
-    core.connect_all();
-    check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
-    let mut top = netlist::read(core)?;
-    top.instance = name.trim_start_matches("carrystep_").into();
-    let mut library = Library { build, modules: Vec::new() };
-    library.add(&top)?;
-    let mut text = header(name, build, description);
-    for (name, module) in &library.modules {
-        let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
-        text.push_str(&format!("\n// {purpose}\n{module}"));
+/// A top module that can be exported.
+struct Top {
+    /// Its usual name.
+    name: &'static str,
+    /// The struct that it is in Rust.
+    kind: &'static str,
+    waivers: Option<&'static str>,
+}
+
+/// A core as Verilog, and what else its files are made from.
+pub(crate) struct Exported {
+    /// Name of the top module and of the files.
+    pub(crate) name: String,
+    /// The Verilog.
+    pub(crate) text: String,
+    pub(crate) top: Module,
+    pub(crate) synchronizers: Vec<Synchronizer>,
+    prefix: Prefix,
+    waivers: Option<&'static str>,
+}
+
+impl Exported {
+    fn new(
+        core: &mut dyn Block,
+        Top { name: usual, kind, waivers }: Top,
+        prefix: &Prefix,
+        build: &Facts,
+        description: &str,
+    ) -> Result<Self, ExportError> {
+        core.connect_all();
+        check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+        let mut top = netlist::read(core)?;
+        top.instance = usual.trim_start_matches("carrystep_").into();
+        docs::describe(&mut top, kind)?;
+        let synchronizers = synchronizers::of(&top)?;
+        let mut library = Library { prefix, modules: Vec::new() };
+        let name = library.add(&top)?;
+        let mut text = header(&name, build, description);
+        for Written { usual, text: module, .. } in &library.modules {
+            let (_, purpose) = PURPOSES
+                .iter()
+                .find(|(kind, _)| usual == kind)
+                .ok_or_else(|| ExportError::undescribed(usual, "the module"))?;
+            let purpose = wrapped(&prefix.in_text(purpose), "// ", COLUMNS).join("\n");
+            text.push_str(&format!("\n{purpose}\n{module}"));
+        }
+        text.push_str("\n`default_nettype wire\n");
+        Ok(Self { name, text, top, synchronizers, prefix: prefix.clone(), waivers })
     }
-    text.push_str("\n`default_nettype wire\n");
-    Ok(text)
+
+    /// The Verilog as a file.
+    pub(crate) fn verilog(self) -> TextFile {
+        TextFile::new(format!("{}.v", self.name), self.text)
+    }
+
+    /// All files: the Verilog, its waivers, a template of an instance, and the constraints of its
+    /// synchronizers if it has any.
+    pub(crate) fn files(&self) -> Result<Vec<TextFile>, ExportError> {
+        let Self { name, prefix, synchronizers, .. } = self;
+        let file = |extension: &str, text| TextFile::new(format!("{name}.{extension}"), text);
+        let mut files: Vec<TextFile> =
+            self.waivers.iter().map(|waivers| file("vlt", prefix.in_text(waivers))).collect();
+        files.push(file("veo", instances::template(&self.top, name)?));
+        if !synchronizers.is_empty() {
+            files.push(file("xdc", instances::xdc(name, synchronizers)));
+            files.push(file("sdc", instances::sdc(name, prefix, synchronizers)));
+        }
+        files.insert(0, file("v", self.text.clone()));
+        Ok(files)
+    }
 }
 
-/// Writes the six-axis core's Verilog and its waivers into `dir`. Each file appears completely or
-/// not at all.
+/// Writes the six-axis core into `dir`: its Verilog, its waivers and a template of an instance. Each
+/// file appears completely or not at all.
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated or a file cannot be written.
-pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
-    write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
+pub fn write_core(
+    dir: &Path,
+    build: &Build,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Vec<PathBuf>, ExportError> {
+    write(dir, &six_axis(build, prefix, description)?.files()?)
 }
 
-/// Writes the engine's Verilog and its waivers into `dir`. Otherwise as [`write_core`].
+/// Writes the engine into `dir`, with the constraints of its synchronizers. Otherwise as
+/// [`write_core`].
 ///
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated or a file cannot be written.
-pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
-    write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
-}
-
-fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
-    [TextFile::new(format!("{name}.v"), verilog), TextFile::new(format!("{name}.vlt"), waivers)]
+pub fn write_engine(
+    dir: &Path,
+    build: &EngineBuild,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Vec<PathBuf>, ExportError> {
+    write(dir, &engine_of(build, prefix, description)?.files()?)
 }
 
 /// The modules collected so far, children first.
 struct Library<'a> {
-    build: &'a Facts<'a>,
-    modules: Vec<(String, String)>,
+    prefix: &'a Prefix,
+    modules: Vec<Written>,
+}
+
+/// A module in Verilog.
+struct Written {
+    /// Its name with the usual prefix.
+    usual: String,
+    /// Its text without the values of its parameters.
+    neutral: String,
+    /// Its text; its parameters have the values of its first instance.
+    text: String,
 }
 
 impl Library<'_> {
     /// Adds a module and its children, and returns the module's name.
     fn add(&mut self, module: &Module) -> Result<String, ExportError> {
-        let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
-        let name = self.name(&module.instance);
-        let text = module_text(module, &name, &kinds)?;
-        match self.modules.iter().find(|(known, _)| *known == name) {
-            None => self.modules.push((name.clone(), text)),
-            Some((_, known)) if *known == text => {}
+        let kinds =
+            module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
+        let usual = format!("carrystep_{}", split_index(&module.instance).0);
+        let name = self.prefix.name(&usual);
+        let neutral = module_text(&module.without_values(), &name, &kinds)?;
+        match self.modules.iter().find(|known| known.usual == usual) {
+            None => {
+                let text = module_text(module, &name, &kinds)?;
+                self.modules.push(Written { usual, neutral, text });
+            }
+            Some(known) if known.neutral == neutral => {}
             Some(_) => return Err(ExportError::SameName(name)),
         }
         Ok(name)
     }
-
-    /// The name of an instance's module. The instances of an array share one module, except for
-    /// shapers and pulsers, which are named by their timing.
-    fn name(&self, instance: &str) -> String {
-        let (base, index) = split_index(instance);
-        match index.and_then(|index| self.build.pins.get(index)) {
-            Some(pins) if base == "shaper" || base == "pulser" => {
-                format!("carrystep_{base}_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
-            }
-            _ => format!("carrystep_{base}"),
-        }
-    }
 }
 
-impl<'a> Facts<'a> {
-    fn of_axes(time: &Timebase, phase: StartPhase, pins: &'a [PinTiming], guard: &str) -> Self {
+impl Facts {
+    fn of_axes(time: &Timebase, phase: StartPhase, pins: &[PinTiming], guard: &str) -> Self {
         let start = match phase {
             StartPhase::Half => "half a step",
             StartPhase::Zero => "0",
@@ -232,26 +464,42 @@ impl<'a> Facts<'a> {
             phases = time.phases(),
             latency = time.latency_clocks(),
         );
-        for (axis, PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
-            lines.push_str(&format!("//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"));
+        for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in
+            pins.iter().enumerate()
+        {
+            lines.push_str(&format!(
+                "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
+            ));
         }
-        let count = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
+        let count =
+            ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
         let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
-        Self { title, lines: lines + guard, pins }
+        Self { title, lines: lines + guard }
     }
 }
 
-fn header(name: &str, facts: &Facts<'_>, description: &str) -> String {
+fn header(name: &str, facts: &Facts, description: &str) -> String {
     let description = description.replace(['\n', '\r'], " ");
-    let Facts { title, lines, .. } = facts;
+    let Facts { title, lines } = facts;
     format!(
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// {name}: {title}. Generated: change the generator, not this file.
+// {name}: {title}.
+// This file is generated: change the generator instead.
 //
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
+//
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
+//
 {lines}
 `default_nettype none
 ",

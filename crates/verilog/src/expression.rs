@@ -8,7 +8,10 @@
 use crate::ExportError;
 use crate::names::{Names, slice};
 use crate::netlist::Number;
-use rust_hdl::prelude::ast::{VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary};
+use carrystep_hdl::engine::layout;
+use rust_hdl::prelude::ast::{
+    VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary,
+};
 
 /// Text and width of an expression, and its precedence.
 #[derive(Debug, Clone)]
@@ -42,7 +45,9 @@ impl Translator<'_> {
     pub(crate) fn flat(&self, signal: &str) -> String {
         let signal = signal.trim_end_matches("$next");
         match self.counter {
-            Some((variable, value)) => signal.replace(&format!("[{variable}]"), &format!("${value}")),
+            Some((variable, value)) => {
+                signal.replace(&format!("[{variable}]"), &format!("${value}"))
+            }
             None => signal.to_owned(),
         }
     }
@@ -65,19 +70,30 @@ impl Translator<'_> {
                 _ => self.unary(&Unary::Not, &self.expression(inner)?),
             },
             Expression::Unary(op, inner) => self.unary(op, &self.expression(inner)?),
-            Expression::Binary(left, op, right) => self.binary(&self.expression(left)?, op, &self.expression(right)?),
-            Expression::Index(signal, index) => self.part(&self.expression(signal)?, self.number(index)?, 1),
-            Expression::Slice(signal, width, low) => self.part(&self.expression(signal)?, self.number(low)?, *width),
-            Expression::Signed(_) | Expression::Unsigned(_) => Err(self.unsupported("signed arithmetic")),
+            Expression::Binary(left, op, right) => {
+                self.binary(&self.expression(left)?, op, &self.expression(right)?)
+            }
+            Expression::Index(signal, index) => {
+                self.part(&self.expression(signal)?, self.number(index)?, 1)
+            }
+            Expression::Slice(signal, width, low) => {
+                self.part(&self.expression(signal)?, self.number(low)?, *width)
+            }
+            Expression::Signed(_) | Expression::Unsigned(_) => {
+                Err(self.unsupported("signed arithmetic"))
+            }
             Expression::IndexReplace(..) => Err(self.unsupported("replace_bit")),
         }
     }
 
-    /// The value of an index: a literal or the loop variable.
+    /// The value of an index: a literal, the loop variable, or a constant of the engine's layout.
     fn number(&self, index: &Expression) -> Result<usize, ExportError> {
         match (index, self.counter) {
             (Expression::Literal(literal), _) => Ok(literal.as_usize()),
             (Expression::Signal(name), Some((variable, value))) if name == variable => Ok(value),
+            (Expression::Signal(name), _) => {
+                layout::index(name).ok_or_else(|| self.unsupported(&format!("the index {name}")))
+            }
             _ => Err(self.unsupported("an index that is not a number")),
         }
     }
@@ -103,7 +119,11 @@ impl Translator<'_> {
     fn against_zero(&self, inner: &Expression, sign: &'static str) -> Result<Text, ExportError> {
         let inner = self.expression(inner)?;
         let zero = Number { width: inner.width, value: 0 };
-        Ok(Text { text: format!("{} {sign} {zero}", inner.closed()), width: 1, bond: Bond::Open(sign) })
+        Ok(Text {
+            text: format!("{} {sign} {zero}", inner.closed()),
+            width: 1,
+            bond: Bond::Open(sign),
+        })
     }
 
     fn unary(&self, op: &Unary, inner: &Text) -> Result<Text, ExportError> {

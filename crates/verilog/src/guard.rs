@@ -2,27 +2,28 @@
 //! the machine file.
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{Between, Limits};
+use carrystep_core::engine::{Between, LimitWiring};
 
 /// The lines of the header.
 pub(crate) fn lines(build: &EngineBuild) -> String {
     let figures = build.guard_figures();
     let between = |time: Between, unit| format!("{} to {} {unit}", time.least, time.most);
-    let watchdog = figures
-        .watchdog_ms
-        .map_or("none".into(), |time| format!("{} without a sign of the host: ramp", between(time, "ms")));
-    let enable = figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
-        format!("{} from ENABLE to the first start", between(time, "ms"))
+    let watchdog = figures.watchdog_ms.map_or("none".into(), |time| {
+        format!("{} without a valid frame of the host: ramp", between(time, "ms"))
     });
+    let enable =
+        figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
+            format!("{} from ENABLE to the first start", between(time, "ms"))
+        });
     let wiring = match figures.limits {
-        Limits::None => None,
-        Limits::Pair => Some("two an axis"),
-        Limits::Each => Some("one an axis"),
-        Limits::One => Some("one for all axes, bit 0 of limit_min"),
+        LimitWiring::None => None,
+        LimitWiring::Pair => Some("two per axis"),
+        LimitWiring::Each => Some("one per axis"),
+        LimitWiring::One => Some("one for all axes, bit 0 of limit_min"),
     };
     let limits = wiring.zip(figures.debounce_us).map_or("none".into(), |(wiring, time)| {
         let (level, stop) = (figures.limit_level, figures.limit_stop);
-        format!("{wiring}, active {level}, believed after {}: {stop}", between(time, "us"))
+        format!("{wiring}, active {level}, debounced for {}: {stop}", between(time, "us"))
     });
     let mut text = format!(
         "\

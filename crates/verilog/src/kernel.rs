@@ -49,18 +49,28 @@ impl Kernel {
             return Err(translator.unsupported(&format!("a read of {signal} between two writes")));
         }
         for group in groups {
-            let registers = group.iter().all(|(_, step)| step.targets().iter().all(|name| name.role == Role::Next));
+            let registers = group
+                .iter()
+                .all(|(_, step)| step.targets().iter().all(|name| name.role == Role::Next));
             match group.as_slice() {
                 _ if registers => clocked.extend(group),
-                [(_, Step::Assign { target, value })] => kernel.wires.push((target.clone(), value.clone())),
-                _ if group.iter().any(|(_, step)| step.targets().iter().any(|name| name.role == Role::Next)) => {
-                    return Err(translator.unsupported("an `if` that drives registers and other signals"));
+                [(_, Step::Assign { target, value })] => {
+                    kernel.wires.push((target.clone(), value.clone()));
+                }
+                _ if group
+                    .iter()
+                    .any(|(_, step)| step.targets().iter().any(|name| name.role == Role::Next)) =>
+                {
+                    return Err(
+                        translator.unsupported("an `if` that drives registers and other signals")
+                    );
                 }
                 _ => kernel.blocks.push(group.into_iter().map(|(_, step)| step).collect()),
             }
         }
         clocked.sort_by_key(|(place, _)| *place);
-        kernel.clocked = clocked.into_iter().map(|(_, step)| step).filter(|step| !step.is_hold()).collect();
+        kernel.clocked =
+            clocked.into_iter().map(|(_, step)| step).filter(|step| !step.is_hold()).collect();
         Ok(kernel)
     }
 
@@ -77,7 +87,8 @@ impl Kernel {
     /// Whether anything reads the signal.
     pub(crate) fn reads(&self, signal: &str) -> bool {
         let steps = self.blocks.iter().flatten().chain(&self.clocked);
-        self.wires.iter().any(|(_, value)| mentions(value, signal)) || steps.into_iter().any(|s| s.reads(signal))
+        self.wires.iter().any(|(_, value)| mentions(value, signal))
+            || steps.into_iter().any(|s| s.reads(signal))
     }
 
     /// The signals that the combinational blocks write.
@@ -93,7 +104,9 @@ impl Step {
     fn targets(&self) -> Vec<Name> {
         match self {
             Self::Assign { target, .. } => vec![target.clone()],
-            Self::If { then, otherwise, .. } => then.iter().chain(otherwise).flat_map(Self::targets).collect(),
+            Self::If { then, otherwise, .. } => {
+                then.iter().chain(otherwise).flat_map(Self::targets).collect()
+            }
         }
     }
 
@@ -105,7 +118,8 @@ impl Step {
         match self {
             Self::Assign { value, .. } => mentions(value, signal),
             Self::If { test, then, otherwise } => {
-                mentions(test, signal) || then.iter().chain(otherwise).any(|step| step.reads(signal))
+                mentions(test, signal)
+                    || then.iter().chain(otherwise).any(|step| step.reads(signal))
             }
         }
     }
@@ -118,7 +132,7 @@ impl Step {
 }
 
 /// Whether the text contains the signal's name.
-fn mentions(text: &str, signal: &str) -> bool {
+pub(crate) fn mentions(text: &str, signal: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
 }
 
@@ -126,7 +140,9 @@ fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, E
     let mut steps = Vec::new();
     for statement in code {
         match statement {
-            Statement::Assignment(target, value) => steps.extend(assignment(translator, target, value)?),
+            Statement::Assignment(target, value) => {
+                steps.extend(assignment(translator, target, value)?);
+            }
             Statement::If(condition) => steps.push(conditional(translator, condition)?),
             Statement::Macro(inner) => steps.extend(block(translator, inner)?),
             Statement::Loop(counted) => {
@@ -136,7 +152,9 @@ fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, E
                 }
             }
             Statement::Comment(_) => {}
-            Statement::SliceAssignment { .. } => return Err(translator.unsupported("assignment to some bits")),
+            Statement::SliceAssignment { .. } => {
+                return Err(translator.unsupported("assignment to some bits"));
+            }
             Statement::Match(_) => return Err(translator.unsupported("match")),
             Statement::Link(_) => return Err(translator.unsupported("link or join")),
         }
@@ -156,16 +174,25 @@ fn assignment(
     let target = translator.names.get(translator.module, &translator.flat(signal))?;
     let value = translator.expression(value)?;
     if target.role == Role::Clock {
-        return if value.text == "clock" { Ok(None) } else { Err(translator.unsupported("a derived clock")) };
+        return if value.text == "clock" {
+            Ok(None)
+        } else {
+            Err(translator.unsupported("a derived clock"))
+        };
     }
     if target.width != value.width {
-        return Err(translator
-            .unsupported(&format!("{} ({} bits) = {} ({} bits)", target.text, target.width, value.text, value.width)));
+        return Err(translator.unsupported(&format!(
+            "{} ({} bits) = {} ({} bits)",
+            target.text, target.width, value.text, value.width
+        )));
     }
     Ok(Some(Step::Assign { target: target.clone(), value: value.text }))
 }
 
-fn conditional(translator: Translator<'_>, condition: &VerilogConditional) -> Result<Step, ExportError> {
+fn conditional(
+    translator: Translator<'_>,
+    condition: &VerilogConditional,
+) -> Result<Step, ExportError> {
     let otherwise = match &condition.otherwise {
         Otherwise::Block(code) => block(translator, code)?,
         Otherwise::Conditional(statement) => match statement.as_ref() {
@@ -206,7 +233,8 @@ type Group = Vec<(usize, Step)>;
 fn groups(steps: Vec<Step>) -> Vec<Group> {
     let mut groups: Vec<(BTreeSet<String>, Group)> = Vec::new();
     for (place, step) in steps.into_iter().enumerate() {
-        let mut written: BTreeSet<String> = step.targets().into_iter().map(|name| name.text).collect();
+        let mut written: BTreeSet<String> =
+            step.targets().into_iter().map(|name| name.text).collect();
         let mut group = vec![(place, step)];
         groups.retain_mut(|(other_written, other)| {
             let apart = other_written.is_disjoint(&written);
@@ -226,14 +254,19 @@ fn groups(steps: Vec<Step>) -> Vec<Group> {
 /// The groups become parallel blocks, so a group may read a signal of another one only after its
 /// last write. Returns a signal for which this is not so.
 fn read_between_writes(groups: &[Group]) -> Option<String> {
-    let last_write =
-        |group: &Group, signal: &str| group.iter().rev().find(|(_, step)| step.writes(signal)).map(|(place, _)| *place);
+    let last_write = |group: &Group, signal: &str| {
+        group.iter().rev().find(|(_, step)| step.writes(signal)).map(|(place, _)| *place)
+    };
     for (owner, group) in groups.iter().enumerate() {
         let signals: BTreeSet<String> =
             group.iter().flat_map(|(_, step)| step.targets()).map(|name| name.text).collect();
         for signal in signals {
             let last = last_write(group, &signal);
-            let others = groups.iter().enumerate().filter(|(other, _)| *other != owner).flat_map(|(_, group)| group);
+            let others = groups
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != owner)
+                .flat_map(|(_, group)| group);
             if others.into_iter().any(|(place, step)| Some(*place) < last && step.reads(&signal)) {
                 return Some(signal);
             }

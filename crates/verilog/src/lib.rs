@@ -12,29 +12,36 @@
 
 mod board;
 mod core;
+mod docs;
 mod expression;
+mod fusesoc;
 mod generated;
 mod guard;
+mod instances;
 mod kernel;
 mod module;
 mod names;
 mod netlist;
+mod parameters;
+mod prefix;
 mod registers;
+mod synchronizers;
 #[cfg(test)]
 mod tests;
 mod write;
 
 pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
 pub use crate::core::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, line_name, line_verilog,
-    link_verilog, six_axis_verilog, write_core, write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, line_name,
+    line_verilog, link_verilog, six_axis_verilog, write_core, write_engine,
 };
 pub use crate::generated::{generated_files, write_generated_files};
+pub use crate::prefix::{Prefix, PrefixError};
 pub use crate::write::{TextFile, write};
 
 use carrystep_boards::BoardError;
 use carrystep_core::link::BaudError;
-use carrystep_files::InputError;
+use carrystep_files::{InputError, TooManyAxes};
 use carrystep_hdl::HdlError;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -53,6 +60,14 @@ pub enum ExportError {
         /// The construct.
         what: String,
     },
+    /// A module or a port has no description, which the Verilog would repeat.
+    #[error("module {module}: {what} has no description")]
+    Undescribed {
+        /// Instance name of the module.
+        module: String,
+        /// The module or the port.
+        what: String,
+    },
     /// Two different modules would have the same name.
     #[error("two different modules would be called {0}")]
     SameName(String),
@@ -65,6 +80,9 @@ pub enum ExportError {
     /// The machine file is not valid.
     #[error(transparent)]
     Machine(#[from] InputError),
+    /// The parallel core has too few axes for the machine file.
+    #[error(transparent)]
+    Axes(#[from] TooManyAxes),
     /// A template uses a value that does not exist.
     #[error("a template: {0}")]
     Template(#[from] minijinja::Error),
@@ -81,5 +99,9 @@ pub enum ExportError {
 impl ExportError {
     pub(crate) fn unsupported(module: &str, what: impl Into<String>) -> Self {
         Self::Unsupported { module: module.to_owned(), what: what.into() }
+    }
+
+    pub(crate) fn undescribed(module: &str, what: impl Into<String>) -> Self {
+        Self::Undescribed { module: module.to_owned(), what: what.into() }
     }
 }

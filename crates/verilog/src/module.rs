@@ -1,24 +1,36 @@
 //! Writes one module as text: Verilog-2005, ANSI ports, registers with initial values.
 
 use crate::ExportError;
+use crate::docs::wrapped;
 use crate::kernel::{Kernel, Step};
-use crate::names::{Names, Role, plain};
+use crate::names::{Constant, Names, Role, plain};
 use crate::netlist::Module;
+use crate::parameters;
+use carrystep_hdl::primitives::constant::ERROR;
+use carrystep_hdl::primitives::formula::ParameterValue;
 use rust_hdl::prelude::{AtomKind, Verilog};
 
+/// The greatest length of a line of comment.
+pub(crate) const COLUMNS: usize = 100;
+
 /// The text of `module` under the name `name`; `kinds` are the module names of its children.
-pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Result<String, ExportError> {
+pub(crate) fn module_text(
+    module: &Module,
+    name: &str,
+    kinds: &[String],
+) -> Result<String, ExportError> {
     let names = Names::new(module)?;
     if let Verilog::Custom(body) = &module.code {
-        return Ok(primitive(&names, name, body));
+        return primitive(module, &names, name, body);
     }
     let kernel = Kernel::new(module, &names)?;
     let mut page = Page::default();
-    page.open(&format!("module {name} ("));
+    head(&mut page, module, &names, name)?;
     ports(&mut page, &names, &kernel);
     page.close(");");
     page.indent += 1;
-    constants(&mut page, &names);
+    constants(&mut page, module, &names);
+    refusals(&mut page, &names);
     declarations(&mut page, module, &names, &kernel)?;
     wires(&mut page, &names, &kernel);
     for block in &kernel.blocks {
@@ -37,9 +49,14 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
 }
 
 /// A module that has its own body, such as a memory.
-fn primitive(names: &Names, name: &str, body: &str) -> String {
+fn primitive(
+    module: &Module,
+    names: &Names,
+    name: &str,
+    body: &str,
+) -> Result<String, ExportError> {
     let mut page = Page::default();
-    page.open(&format!("module {name} ("));
+    head(&mut page, module, names, name)?;
     ports(&mut page, names, &Kernel::default());
     page.close(");");
     page.indent += 1;
@@ -47,7 +64,33 @@ fn primitive(names: &Names, name: &str, body: &str) -> String {
         if line.is_empty() { page.gap() } else { page.line(line) }
     }
     page.close("endmodule");
-    page.text
+    Ok(page.text)
+}
+
+/// The beginning of a module, with its parameters if it has any.
+fn head(page: &mut Page, module: &Module, names: &Names, name: &str) -> Result<(), ExportError> {
+    let parameters = parameters::of(module)?;
+    let is_twice = |one: &&ParameterValue| {
+        names.constants.iter().any(|own| own.name == one.name && own.text != one.name)
+    };
+    if let Some(one) = parameters.iter().find(is_twice) {
+        let what = format!("a constant with the name of the parameter {}", one.name);
+        return Err(ExportError::unsupported(&module.instance, what));
+    }
+    if parameters.is_empty() {
+        page.open(&format!("module {name} ("));
+        return Ok(());
+    }
+    page.open(&format!("module {name} #("));
+    for line in parameters::head(&parameters) {
+        match line.strip_prefix("// ") {
+            Some(comment) => page.comment(comment),
+            None => page.line(&line),
+        }
+    }
+    page.close(") (");
+    page.indent += 1;
+    Ok(())
 }
 
 fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
@@ -59,22 +102,56 @@ fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
         };
         let comma = if place + 1 < names.ports.len() { "," } else { "" };
         let range = if port.width == 1 { String::new() } else { format!("[{}:0]", port.width - 1) };
+        page.comment(port.about.unwrap_or_default());
         page.line(&format!("{kind} {range:>7} {}{comma}", port.name));
     }
 }
 
-fn constants(page: &mut Page, names: &Names) {
-    for (name, value) in &names.constants {
-        page.line(&format!("localparam {}{name} = {value};", range(value.width)));
+fn constants(page: &mut Page, module: &Module, names: &Names) {
+    let initials = module
+        .registers
+        .iter()
+        .filter_map(|register| register.note.as_ref())
+        .map(|note| note.text.as_str());
+    let texts: Vec<&str> =
+        names.constants.iter().map(|constant| constant.text.as_str()).chain(initials).collect();
+    for line in parameters::functions(&texts) {
+        page.line(&line);
     }
+    for Constant { name, width, text } in &names.constants {
+        page.line(&format!("localparam {}{name} = {text};", range(*width)));
+    }
+}
+
+/// Instantiates a module that does not exist where a parameter is out of range: Verilog-2005 knows no other way to
+/// stop the elaboration.
+fn refusals(page: &mut Page, names: &Names) {
+    if names.refusals.is_empty() {
+        return;
+    }
+    page.gap();
+    page.open("generate");
+    for (name, condition) in &names.refusals {
+        page.open(&format!("if ({condition}) begin : {name}"));
+        page.line(&format!("{ERROR}{name} error ();"));
+        page.close("end");
+    }
+    page.close("endgenerate");
 }
 
 /// Declares the registers, the signals that combinational blocks write, and the outputs of children
 /// that the kernel reads.
-fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel) -> Result<(), ExportError> {
+fn declarations(
+    page: &mut Page,
+    module: &Module,
+    names: &Names,
+    kernel: &Kernel,
+) -> Result<(), ExportError> {
     page.gap();
     for register in &module.registers {
-        page.line(&format!("reg {}{} = {};", range(register.width), plain(&register.name), register.initial));
+        let initial =
+            register.note.as_ref().map_or(register.initial.to_string(), |note| note.text.clone());
+        page.line(&format!("reg {}{} = {initial};", range(register.width), plain(&register.name)));
     }
     for target in kernel.block_targets() {
         if names.ports.iter().all(|port| port.name != target.text) {
@@ -84,7 +161,8 @@ fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel
     page.gap();
     for child in &module.children {
         for output in child.atoms.iter().filter(|atom| atom.kind == AtomKind::OutputParameter) {
-            let name = names.get(&module.instance, &format!("{}${}", child.instance, output.name))?;
+            let name =
+                names.get(&module.instance, &format!("{}${}", child.instance, output.name))?;
             if kernel.reads(&name.text) {
                 page.line(&format!("wire {}{};", range(name.width), name.text));
             }
@@ -97,7 +175,8 @@ fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel
 fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     let is_local = |text: &str| names.locals.iter().any(|local| local == text);
     let driven = kernel.wires.iter().filter(|(target, _)| target.role == Role::Driven);
-    let (locals, mut outputs): (Vec<_>, Vec<_>) = driven.partition(|(target, _)| is_local(&target.text));
+    let (locals, mut outputs): (Vec<_>, Vec<_>) =
+        driven.partition(|(target, _)| is_local(&target.text));
     page.gap();
     for (target, value) in locals {
         page.line(&format!("wire {}{} = {value};", range(target.width), target.text));
@@ -112,8 +191,29 @@ fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     }
 }
 
-fn instance(page: &mut Page, names: &Names, kernel: &Kernel, child: &Module, kind: &str) -> Result<(), ExportError> {
-    page.open(&format!("{kind} {} (", plain(&child.instance)));
+fn instance(
+    page: &mut Page,
+    names: &Names,
+    kernel: &Kernel,
+    child: &Module,
+    kind: &str,
+) -> Result<(), ExportError> {
+    let given = parameters::of(child)?;
+    if given.is_empty() {
+        page.open(&format!("{kind} {} (", plain(&child.instance)));
+    } else {
+        page.open(&format!("{kind} #("));
+        for (place, one) in given.iter().enumerate() {
+            let comma = if place + 1 < given.len() { "," } else { "" };
+            page.line(&format!(
+                ".{}({}){comma}",
+                one.name,
+                parameters::in_parent(&child.instance, &one.name)
+            ));
+        }
+        page.close(&format!(") {} (", plain(&child.instance)));
+        page.indent += 1;
+    }
     let ports = Names::new(child)?.ports;
     for (place, port) in ports.iter().enumerate() {
         let name = names.get(&child.instance, &format!("{}${}", child.instance, port.name))?;
@@ -145,7 +245,8 @@ fn steps(page: &mut Page, list: &[Step], sign: &str) {
     for step in list {
         match step {
             Step::Assign { target, value } => {
-                let name = if sign == "<=" { target.text.trim_end_matches("_next") } else { &target.text };
+                let name =
+                    if sign == "<=" { target.text.trim_end_matches("_next") } else { &target.text };
                 page.line(&format!("{name} {sign} {value};"));
             }
             Step::If { .. } => conditional(page, step, "", sign),
@@ -186,6 +287,13 @@ impl Page {
         self.text.extend(std::iter::repeat_n("    ", self.indent));
         self.text.push_str(line);
         self.text.push('\n');
+    }
+
+    /// Adds a comment; nothing if the text is empty.
+    fn comment(&mut self, text: &str) {
+        for line in wrapped(text, "// ", COLUMNS - 4 * self.indent) {
+            self.line(&line);
+        }
     }
 
     fn open(&mut self, line: &str) {

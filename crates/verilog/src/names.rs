@@ -3,7 +3,7 @@
 //! port).
 
 use crate::ExportError;
-use crate::netlist::{Module, Number};
+use crate::netlist::{Module, Wire};
 use rust_hdl::prelude::AtomKind;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -38,6 +38,16 @@ pub(crate) struct Port {
     pub(crate) name: String,
     pub(crate) width: usize,
     pub(crate) output: bool,
+    /// Its doc comment in Rust.
+    pub(crate) about: Option<&'static str>,
+}
+
+/// A constant of the module in Verilog.
+#[derive(Debug, Clone)]
+pub(crate) struct Constant {
+    pub(crate) name: String,
+    pub(crate) width: usize,
+    pub(crate) text: String,
 }
 
 /// All names of a module.
@@ -45,7 +55,9 @@ pub(crate) struct Port {
 pub(crate) struct Names {
     pub(crate) ports: Vec<Port>,
     pub(crate) locals: Vec<String>,
-    pub(crate) constants: Vec<(String, Number)>,
+    pub(crate) constants: Vec<Constant>,
+    /// Conditions under which the module refuses its parameters, with the error's name.
+    pub(crate) refusals: Vec<(String, String)>,
     known: BTreeMap<String, Name>,
 }
 
@@ -54,7 +66,8 @@ impl Names {
         let mut names = Self::default();
         for atom in &module.atoms {
             let (base, index) = split_index(&atom.name);
-            let elements = module.atoms.iter().filter(|other| split_index(&other.name).0 == base).count();
+            let elements =
+                module.atoms.iter().filter(|other| split_index(&other.name).0 == base).count();
             match atom.kind {
                 AtomKind::InputParameter | AtomKind::OutputParameter => {
                     let output = atom.kind == AtomKind::OutputParameter;
@@ -63,7 +76,7 @@ impl Names {
                         (_, true) => Role::Driven,
                         _ => Role::Given,
                     };
-                    let text = names.port(base, index.filter(|_| elements > 1), atom.width, output);
+                    let text = names.port(atom, index.filter(|_| elements > 1));
                     names.add(&atom.name, text, atom.width, role);
                 }
                 AtomKind::LocalSignal => {
@@ -71,12 +84,30 @@ impl Names {
                     names.locals.push(text.clone());
                     names.add(&atom.name, text, atom.width, Role::Driven);
                 }
-                AtomKind::Constant => {
-                    let text = plain(&atom.name).to_uppercase();
-                    names.constants.push((text.clone(), atom.value));
-                    names.add(&atom.name, text, atom.width, Role::Given);
+                AtomKind::Constant => match &atom.note {
+                    Some(note) if note.is_refusal && note.given.is_empty() => {}
+                    Some(note) if note.is_refusal => {
+                        names.refusals.push((plain(&atom.name), note.text.clone()));
+                    }
+                    note => {
+                        let name = plain(&atom.name).to_uppercase();
+                        let text = note
+                            .as_ref()
+                            .map_or_else(|| atom.value.to_string(), |note| note.text.clone());
+                        names.constants.push(Constant {
+                            name: name.clone(),
+                            width: atom.width,
+                            text,
+                        });
+                        names.add(&atom.name, name, atom.width, Role::Given);
+                    }
+                },
+                _ => {
+                    return Err(ExportError::unsupported(
+                        &module.instance,
+                        format!("signal {}", atom.name),
+                    ));
                 }
-                _ => return Err(ExportError::unsupported(&module.instance, format!("signal {}", atom.name))),
             }
         }
         for register in &module.registers {
@@ -110,15 +141,18 @@ impl Names {
     }
 
     /// Adds a port, or an element to a vector, and returns the text of a reference to it.
-    fn port(&mut self, base: &str, index: Option<usize>, width: usize, output: bool) -> String {
-        let name = plain(base);
+    fn port(&mut self, atom: &Wire, index: Option<usize>) -> String {
+        let name = plain(split_index(&atom.name).0);
+        let Wire { width, about, .. } = *atom;
+        let output = atom.kind == AtomKind::OutputParameter;
+        let port = Port { name: name.clone(), width, output, about };
         let Some(index) = index else {
-            self.ports.push(Port { name: name.clone(), width, output });
+            self.ports.push(port);
             return name;
         };
         match self.ports.iter_mut().find(|port| port.name == name) {
             Some(port) => port.width += width,
-            None => self.ports.push(Port { name: name.clone(), width, output }),
+            None => self.ports.push(port),
         }
         slice(&name, index * width, width)
     }
@@ -126,7 +160,8 @@ impl Names {
     /// Checks that no two things have the same name.
     fn check(&self, module: &str) -> Result<(), ExportError> {
         let mut seen = BTreeSet::new();
-        let signals = self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
+        let signals =
+            self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
         for text in signals {
             if !seen.insert(text) {
                 return Err(ExportError::unsupported(module, format!("two signals called {text}")));

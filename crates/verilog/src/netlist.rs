@@ -2,6 +2,8 @@
 //! module.
 
 use crate::ExportError;
+use carrystep_hdl::primitives::formula::Note;
+use carrystep_hdl::primitives::register::NOTE;
 use rust_hdl::prelude::{Atom, AtomKind, Block, Probe, Verilog, VerilogLiteral};
 
 /// One instance of a module.
@@ -24,6 +26,10 @@ pub(crate) struct Wire {
     pub(crate) is_clock: bool,
     /// Value after configuration.
     pub(crate) value: Number,
+    /// Of a constant that follows from parameters.
+    pub(crate) note: Option<Note>,
+    /// The doc comment of a port.
+    pub(crate) about: Option<&'static str>,
 }
 
 /// A register.
@@ -32,6 +38,8 @@ pub(crate) struct Flop {
     pub(crate) name: String,
     pub(crate) width: usize,
     pub(crate) initial: Number,
+    /// Of an initial value that follows from parameters.
+    pub(crate) note: Option<Note>,
 }
 
 /// Width and value of a literal.
@@ -81,11 +89,13 @@ impl Module {
     /// Recognises a register: a block with d, q and clock whose Verilog is given as text.
     fn as_register(&self) -> Option<Flop> {
         let names: Vec<&str> = self.atoms.iter().map(|atom| atom.name.as_str()).collect();
-        if !matches!(self.code, Verilog::Custom(_)) || names != ["d", "q", "clock"] {
+        let Verilog::Custom(text) = &self.code else { return None };
+        if names != ["d", "q", "clock"] {
             return None;
         }
         let q = &self.atoms[1];
-        Some(Flop { name: self.instance.clone(), width: q.width, initial: q.value })
+        let note = text.split_once(NOTE).and_then(|(_, note)| Note::read(note));
+        Some(Flop { name: self.instance.clone(), width: q.width, initial: q.value, note })
     }
 }
 
@@ -116,6 +126,8 @@ impl Probe for Reader {
                 width: signal.bits(),
                 is_clock: signal.descriptor().name == "clock",
                 value,
+                note: Note::read(&signal.descriptor().name),
+                about: None,
             });
         }
     }

@@ -2,8 +2,8 @@
 //! a page of documentation.
 
 use crate::ExportError;
-use carrystep_core::link::registers::{self, Access, PER_AXIS, REGISTERS};
-use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
+use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
+use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Field, LinkConstant, WRITE};
 use minijinja::{Environment, Value, context};
 
 /// The generated files: path in the workspace, and template.
@@ -24,7 +24,7 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
         registers => REGISTERS.iter().map(|row| context! {
             name => row.name,
             address => format!("{:#04x}", row.address),
-            access => access(row.access),
+            access => row.access.to_string(),
             per_axis => row.per_axis,
             what => row.what,
         }).collect::<Vec<_>>(),
@@ -38,16 +38,8 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
     FILES.into_iter().map(render).collect()
 }
 
-const fn access(access: Access) -> &'static str {
-    match access {
-        Access::Read => "read",
-        Access::Write => "write",
-        Access::WriteSegment => "write, 8 words",
-    }
-}
-
 /// The values of a constant. Lengths are decimal, all other values hexadecimal.
-fn constant(row: &Constant) -> Value {
+fn constant(row: &LinkConstant) -> Value {
     let (rust, c) = match row.kind {
         "u8" => (format!("{:#04x}", row.value), format!("{:#04x}u", row.value)),
         "u32" => {

@@ -3,6 +3,7 @@
 
 use crate::module::module_text;
 use crate::netlist;
+use crate::synchronizers::{self, Synchronizer};
 use carrystep_hdl::primitives::constant::Literal;
 use carrystep_hdl::primitives::register::{Input, Register};
 use carrystep_hdl::primitives::word::{Word, bit_cast};
@@ -146,4 +147,76 @@ impl Logic for Literals {
 #[test]
 fn literal_without_a_width_is_refused() {
     assert!(refusal(Literals::default()).contains("a (8 bits) + 32'd1 (32 bits)"));
+}
+
+#[derive(LogicBlock, Default)]
+struct Pins {
+    clock: Input<Clock>,
+    pin: Input<Bit>,
+    logic: Input<Bit>,
+    twice: Input<Bit>,
+    through: Input<Bit>,
+    nowhere: Input<Bit>,
+    other: Input<Bit>,
+    out: Signal<Out, Bit>,
+    past: Signal<Out, Bit>,
+    first: Register<Bit>,
+    second: Register<Bit>,
+    logic_1: Register<Bit>,
+    logic_2: Register<Bit>,
+    twice_1: Register<Bit>,
+    twice_2: Register<Bit>,
+    twice_3: Register<Bit>,
+}
+
+impl Logic for Pins {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, first, second, logic_1, logic_2, twice_1, twice_2, twice_3);
+        self.first.d.next = self.pin.val() ^ self.other.val();
+        self.second.d.next = self.first.q.val();
+        self.logic_1.d.next = self.logic.val();
+        if self.other.val() {
+            self.logic_2.d.next = self.logic_1.q.val();
+        }
+        self.twice_1.d.next = self.twice.val();
+        self.twice_2.d.next = self.twice_1.q.val();
+        self.twice_3.d.next = self.twice_1.q.val();
+        self.past.next = self.through.val() & self.other.val();
+        self.out.next = self.second.q.val()
+            & self.logic_2.q.val()
+            & self.twice_2.q.val()
+            & self.twice_3.q.val();
+    }
+}
+
+/// The synchronizers of `Pins` if this input is asynchronous.
+fn synchronizers_of(input: &str) -> Result<Vec<Synchronizer>, String> {
+    let mut block = Pins::default();
+    block.connect_all();
+    let mut module = netlist::read(&block).unwrap();
+    let port = module.atoms.iter_mut().find(|atom| atom.name == input).unwrap();
+    port.about = Some("A pin; asynchronous.");
+    synchronizers::of(&module).map_err(|error| error.to_string())
+}
+
+#[test]
+fn synchronizer_is_two_registers_with_nothing_between_them() {
+    let found = synchronizers_of("pin").unwrap();
+    let [Synchronizer { pins, path, first, second, .. }] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((pins.as_slice(), path.len()), (&["pin".to_owned()][..], 0));
+    assert_eq!((first.name.as_str(), second.name.as_str()), ("first", "second"));
+}
+
+#[test]
+fn asynchronous_input_without_a_synchronizer_is_refused() {
+    for (input, says) in [
+        ("logic", "the register logic_1, behind which there is logic"),
+        ("twice", "the register twice_1, which not exactly one other register reads"),
+        ("through", "the output past"),
+        ("nowhere", "no register"),
+    ] {
+        let error = synchronizers_of(input).unwrap_err();
+        assert!(error.contains(&format!("{input}, which reaches {says}")), "{error}");
+    }
 }

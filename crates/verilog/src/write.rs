@@ -1,7 +1,7 @@
 //! Writes files that appear completely or not at all.
 
 use crate::ExportError;
-use carrystep_files::{Claim, NewFile, OutputFailure};
+use carrystep_files::{NewFile, OutputClaim, OutputFailure};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -29,14 +29,18 @@ impl TextFile {
 /// # Errors
 /// [`ExportError::Io`] names the file that cannot be written.
 pub fn write(dir: &Path, files: &[TextFile]) -> Result<Vec<PathBuf>, ExportError> {
-    let claims = files.iter().map(|file| Claim::new(&dir.join(&file.name))).collect::<Result<Vec<_>, _>>()?;
-    let made = |(claim, file): (Claim, &TextFile)| {
+    let claims = files
+        .iter()
+        .map(|file| OutputClaim::new(&dir.join(&file.name)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let made = |(claim, file): (OutputClaim, &TextFile)| {
         let mut new = claim.begin(file.executable)?;
         let written = new.write_all(file.text.as_bytes());
         written.map_err(|source| OutputFailure { path: new.path().to_owned(), source })?;
         Ok(new)
     };
-    let made: Vec<NewFile> = claims.into_iter().zip(files).map(made).collect::<Result<_, OutputFailure>>()?;
+    let made: Vec<NewFile> =
+        claims.into_iter().zip(files).map(made).collect::<Result<_, OutputFailure>>()?;
     Ok(made.into_iter().map(NewFile::appear).collect::<Result<_, _>>()?)
 }
 

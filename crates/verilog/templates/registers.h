@@ -1,6 +1,8 @@
-/* What the gateware and its clients agree on: constants, the register map, the answer's fields.
+/* The protocol between the gateware and its hosts: constants, the register map, and the fields of
+ * an answer.
  *
- * Generated from crates/core/src/link by `cargo xtask generate`: change that, not this. */
+ * This file is generated from crates/core/src/link by `cargo xtask generate`: change that source
+ * instead. */
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
 
@@ -10,19 +12,19 @@
 #define CARRYSTEP_{{ row.name }} {{ row.c }}
 {%- endfor %}
 
-/* The map; for an axis, its register is CARRYSTEP_OF_AXIS(register, axis). */
+/* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
 #define CARRYSTEP_OF_AXIS(register, axis) ((register) + CARRYSTEP_PER_AXIS * (axis))
 {% for row in registers %}
 /* {{ row.what }} ({{ row.access }}{{ ", axis 0" if row.per_axis }}) */
 #define CARRYSTEP_{{ row.name }} {{ row.address }}u
 {%- endfor %}
 
-/* Why the axes were stopped, by the number in an answer. */
+/* The causes of a stop, by their number in the field `cause` of an answer. */
 {%- for cause in causes %}
 #define CARRYSTEP_CAUSE_{{ cause | upper | replace("-", "") }} {{ loop.index0 }}u
 {%- endfor %}
 
-/* Fields of an answer, of its bytes without END and ESC. */
+/* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 {% for row in fields %}
 /* {{ row.what }} */
 #define CARRYSTEP_ANSWER_{{ row.name | upper }}(answer) {{ row.c }}

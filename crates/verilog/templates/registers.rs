@@ -1,6 +1,8 @@
-//! What the gateware and its clients agree on: constants, the register map, the answer's fields.
+//! The protocol between the gateware and its hosts: constants, the register map, and the fields of
+//! an answer.
 //!
-//! Generated from `crates/core/src/link` by `cargo xtask generate`: change that, not this.
+//! This file is generated from `crates/core/src/link` by `cargo xtask generate`: change that source
+//! instead.
 {% for row in constants %}
 /// {{ row.what }}
 pub const {{ row.name }}: {{ row.kind }} = {{ row.rust }};
@@ -10,7 +12,7 @@ pub const {{ row.name }}: {{ row.kind }} = {{ row.rust }};
 pub const {{ row.name }}: u8 = {{ row.address }};
 {%- endfor %}
 
-/// Why the axes were stopped, by the number in an answer.
+/// The causes of a stop, by their number in the field `cause` of an answer.
 pub const CAUSES: [&str; {{ causes | length }}] =
     [{% for cause in causes %}"{{ cause }}"{{ ", " if not loop.last }}{% endfor %}];
 {% for row in fields %}

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{Board, OSCILLATOR, PORTS, Way, board, boards};
-use carrystep_files::Source;
-use carrystep_verilog::{Design, ExportError, Gateware, TextFile, shipped_machine};
+use carrystep_files::SourceText;
+use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped_machine};
 use std::path::Path;
 use std::process::Command;
 
@@ -16,7 +16,17 @@ fn ports(board: &Board) -> Vec<String> {
 /// The files of a top level with these ports.
 fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> {
     let (part, clock_hz, top) = (&board.parts[0], board.clocks[0].clock_hz, "top".to_owned());
-    Design { board, part, clock_hz, uart: None, top, sources: &["carrystep_clock.v", "top.v"], ports }.files()
+    Design {
+        board,
+        part,
+        clock_hz,
+        uart: None,
+        top,
+        prefix: &Prefix::default(),
+        sources: &["carrystep_clock.v", "top.v"],
+        ports,
+    }
+    .files()
 }
 
 /// A top level that uses every pin: all inputs are combined in a register, and the outputs are that
@@ -28,10 +38,19 @@ fn top(board: &Board) -> String {
         counted.filter(|(_, _, bits)| *bits > 0).collect::<Vec<_>>()
     };
     let (inputs, outputs) = (bits(|way| way != Way::Out), bits(|way| way == Way::Out));
-    let range = |per_axis, bits: usize| if per_axis { format!("[{}:0] ", bits - 1) } else { String::new() };
+    let range =
+        |per_axis, bits: usize| if per_axis { format!("[{}:0] ", bits - 1) } else { String::new() };
     let mut list = vec![format!("input wire {OSCILLATOR}")];
-    list.extend(inputs.iter().map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))));
-    list.extend(outputs.iter().map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))));
+    list.extend(
+        inputs
+            .iter()
+            .map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))),
+    );
+    list.extend(
+        outputs
+            .iter()
+            .map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))),
+    );
     list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
     list.extend(board.gate.iter().map(|gate| format!("input wire {}", gate.port)));
     let all: Vec<String> = inputs.iter().map(|(name, ..)| format!("^{name}")).collect();
@@ -61,7 +80,8 @@ fn folder(board: &Board) -> tempfile::TempDir {
 
 fn run(tool: &str, arguments: &[&str], folder: &Path) {
     let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+    let output = output
+        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
     let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{tool} {arguments:?}: {said}");
 }
@@ -70,10 +90,15 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 /// and place the PLL, and icepack must make a bitstream.
 #[test]
 fn script_of_every_ice40_board_builds_a_bitstream_with_all_pins() {
-    for board in boards().iter().filter(|board| board.family.facts().toolchain().by_hand.is_none()) {
+    for board in boards().iter().filter(|board| board.family.facts().toolchain().by_hand.is_none())
+    {
         let folder = folder(board);
         run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
-        assert!(std::fs::metadata(folder.path().join("top.bin")).unwrap().len() > 30_000, "{}", board.name);
+        assert!(
+            std::fs::metadata(folder.path().join("top.bin")).unwrap().len() > 30_000,
+            "{}",
+            board.name
+        );
     }
 }
 
@@ -95,9 +120,18 @@ fn clock_module_of_every_spartan_uses_known_cells() {
 #[test]
 fn constraints_contain_exactly_the_ports_of_the_top_level() {
     let board = board("icestick").unwrap();
-    let text = files(board, &["uart_rx", "step[0]", "dir"].map(str::to_owned)).unwrap().remove(1).text;
+    let text =
+        files(board, &["uart_rx", "step[0]", "dir"].map(str::to_owned)).unwrap().remove(1).text;
     let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("set_io")).collect();
-    assert_eq!(lines, ["set_io oscillator 21", "set_io -pullup yes uart_rx 9", "set_io step[0] 112", "set_io dir 62"]);
+    assert_eq!(
+        lines,
+        [
+            "set_io oscillator 21",
+            "set_io -pullup yes uart_rx 9",
+            "set_io step[0] 112",
+            "set_io dir 62"
+        ]
+    );
     let refused = files(board, &["limit_max[0]".to_owned()]).unwrap_err().to_string();
     assert_eq!(refused, "icestick has no pin for limit_max[0]");
 }
@@ -107,7 +141,8 @@ fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let board = board(name).unwrap();
     let text = shipped_machine(board, &board.clocks[0]).unwrap();
     assert!(text.contains(was), "the text is gone: {was}");
-    let source = Source { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
+    let source =
+        SourceText { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
     Gateware::new(board, &board.parts[0], source).map(|_| ()).map_err(|error| error.to_string())
 }
 
@@ -127,10 +162,30 @@ fn impossible_request_is_refused_with_an_alternative() {
             "\"pair\"",
             "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
         ),
-        ("icestick", "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each and one to close the tick"),
-        ("s3board", "115200", "921600", "s3board's serial chip takes at most 115200 baud, not 921600"),
-        ("icestick", "3000000", "5600000", "a clock of 48000000 Hz does not make 5600000 baud within 2 %"),
-        ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
+        (
+            "icestick",
+            "tick_ns = 2000",
+            "tick_ns = 1000",
+            "6 axes need 13 clocks each and one to close the tick",
+        ),
+        (
+            "s3board",
+            "115200",
+            "921600",
+            "s3board's serial chip takes at most 115200 baud, not 921600",
+        ),
+        (
+            "icestick",
+            "3000000",
+            "5600000",
+            "a clock of 48000000 Hz does not make 5600000 baud within 2 %",
+        ),
+        (
+            "icestick",
+            "driver = \"a4988\"",
+            "driver = \"a4988\"\nstep_high_ns = 9000000",
+            "step_high_ns",
+        ),
         (
             "icestick",
             "[[machine.axis]]",
@@ -172,7 +227,11 @@ fn machine_can_use_an_spi() {
         let (head, tail) = text.split_once("[machine.link]\n").unwrap();
         let (_, tail) = tail.split_once('\n').unwrap();
         let text = format!("{head}[machine.link]\nspi = true\n{tail}");
-        let gateware = Gateware::new(board, &board.parts[0], Source { path: "spi.toml".into(), text: text.into() });
+        let gateware = Gateware::new(
+            board,
+            &board.parts[0],
+            SourceText { path: "spi.toml".into(), text: text.into() },
+        );
         if board.bits("spi_sck") == 0 {
             let refused = gateware.unwrap_err().to_string();
             assert!(refused.contains("spi_"), "{}: {refused}", board.name);

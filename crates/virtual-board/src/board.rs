@@ -3,7 +3,7 @@
 use crate::wire::{Driven, SPI_RESTS, Wire};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard, MAX_AXES};
-use carrystep_core::link::{Line, LinkInputs, LinkOutputs, Uart};
+use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 
@@ -34,7 +34,7 @@ impl Switches {
 
 /// A board of models: fast engine, link and line.
 #[derive(Debug, Clone)]
-pub struct Board {
+pub struct ModelBoard {
     engine: FastEngine,
     link: Link,
     wire: Wire,
@@ -44,7 +44,7 @@ pub struct Board {
     stops: Vec<(u64, Cause)>,
 }
 
-impl Board {
+impl ModelBoard {
     /// A board right after configuration, in cycle 0, with a UART and with no switch pressed.
     pub fn new(build: &EngineBuild, uart: Uart) -> Self {
         Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
@@ -52,10 +52,10 @@ impl Board {
 
     /// As [`Self::new`], with an SPI of this rate, Hz.
     pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Self {
-        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
+        Self::with(build, LineKind::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
     }
 
-    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Self {
+    fn with(build: &EngineBuild, line: LineKind, wire: Wire) -> Self {
         let mut board = Self {
             engine: FastEngine::new(build),
             link: Link::new(build, line),
@@ -143,7 +143,8 @@ impl Board {
         let mut cycle = self.cycle();
         while cycle < end && self.link.is_alone() {
             let Driven { rx, spi, stays } = self.wire.drive(cycle);
-            let quiet = if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
+            let quiet =
+                if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
             if quiet == 0 {
                 self.link.clock_alone(rx, spi);
             } else {
@@ -158,7 +159,7 @@ impl Board {
     /// Runs the engine up to the cycle that the link has reached.
     fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
         let clocks = end - self.cycle();
-        let begun = self.engine.core().has_turns();
+        let begun = self.engine.core().has_time_slots();
         while self.cycle() < end {
             let says = self.engine.outputs(inputs);
             let latched = says.latch.map_or(0, |axis| 1 << axis);
@@ -172,8 +173,8 @@ impl Board {
             }
         }
         let core = self.engine.core();
-        let turns = if begun { core.answers_before(clocks) } else { 0 };
-        self.link.catch_up(turns, |axis, item| core.item(axis, item));
+        let time_slots = if begun { core.answers_before(clocks) } else { 0 };
+        self.link.catch_up(time_slots, |axis, item| core.item(axis, item));
     }
 
     /// Runs link and engine for one clock.
@@ -205,7 +206,8 @@ impl Board {
 
     fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
         let core = self.engine.core();
-        let (axis, item) = says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
+        let (axis, item) =
+            says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
         LinkInputs {
             engine: *says,
             get_data: core.item(axis, item),

@@ -1,7 +1,7 @@
 //! The interface of a board, whether of models or of Verilog: bytes in and out, switches, and
 //! simulated time.
 
-use crate::board::{Board, Switches};
+use crate::board::{ModelBoard, Switches};
 use carrystep_core::engine::Cause;
 use carrystep_model::fast::Edges;
 use carrystep_simulators::LevelError;
@@ -15,7 +15,7 @@ pub const KEPT: usize = 3;
 const TALK: u64 = 1000;
 
 /// A board, of models or of Verilog.
-pub trait Gateware {
+pub trait SimulatedBoard {
     /// Number of the current clock cycle.
     fn cycle(&self) -> u64;
 
@@ -64,7 +64,7 @@ pub trait Gateware {
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError>;
 }
 
-impl Gateware for Board {
+impl SimulatedBoard for ModelBoard {
     fn cycle(&self) -> u64 {
         self.cycle()
     }

@@ -30,7 +30,7 @@ impl Bits {
 
 /// The transmitter: sends bytes to the gateware.
 #[derive(Debug, Clone)]
-pub struct Speaker {
+pub struct LineSender {
     bits: Bits,
     queue: VecDeque<u8>,
     /// The bits being sent; the current one is the lowest.
@@ -41,7 +41,7 @@ pub struct Speaker {
     ends: u128,
 }
 
-impl Speaker {
+impl LineSender {
     /// A transmitter with an idle line.
     pub fn new(clock_hz: u64, uart: Uart) -> Self {
         Self { bits: Bits::new(clock_hz, uart), queue: VecDeque::new(), word: 1, left: 0, ends: 0 }
@@ -92,7 +92,7 @@ impl Speaker {
 
 /// The receiver: collects bytes from the gateware.
 #[derive(Debug, Clone)]
-pub struct Ear {
+pub struct LineReceiver {
     bits: Bits,
     level: bool,
     /// Time of the next sample, and the bits sampled so far below a marker bit; `None` when idle.
@@ -100,7 +100,7 @@ pub struct Ear {
     heard: VecDeque<u8>,
 }
 
-impl Ear {
+impl LineReceiver {
     /// A receiver with an idle line.
     pub fn new(clock_hz: u64, uart: Uart) -> Self {
         Self { bits: Bits::new(clock_hz, uart), level: true, byte: None, heard: VecDeque::new() }
@@ -108,7 +108,8 @@ impl Ear {
 
     /// The line had its previous level up to this clock, and has this level from here on.
     pub fn hear(&mut self, cycle: u64, level: bool) {
-        while let Some((look, bits)) = self.byte.filter(|(look, _)| self.bits.clock(*look) < cycle) {
+        while let Some((look, bits)) = self.byte.filter(|(look, _)| self.bits.clock(*look) < cycle)
+        {
             self.byte = if bits & 1 == 1 {
                 // The sample of the stop bit: if it is low, no byte was received.
                 self.heard.extend(self.level.then_some((bits >> 1) as u8));
@@ -150,18 +151,21 @@ mod tests {
 
     #[test]
     fn bytes_arrive_at_any_baud_rate_and_clock() {
-        for (clock_hz, baud) in [(48_000_000, 3_000_000), (48_000_000, 921_600), (12_000_000, 115_200)] {
+        for (clock_hz, baud) in
+            [(48_000_000, 3_000_000), (48_000_000, 921_600), (12_000_000, 115_200)]
+        {
             let uart = Uart::new(clock_hz, baud).unwrap();
-            let (mut speaker, mut ear) = (Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart));
+            let (mut line_sender, mut line_receiver) =
+                (LineSender::new(clock_hz, uart), LineReceiver::new(clock_hz, uart));
             let bytes = [0, 0xff, 0x55, 0xc0, 0xdb, 1, 0x80];
-            bytes.iter().for_each(|&byte| speaker.say(byte));
+            bytes.iter().for_each(|&byte| line_sender.say(byte));
             let mut cycle = 17;
-            while speaker.unsaid() > 0 || ear.byte.is_some() {
-                let level = speaker.level(cycle);
-                ear.hear(cycle, level);
-                cycle += speaker.stays(cycle).min(1000);
+            while line_sender.unsaid() > 0 || line_receiver.byte.is_some() {
+                let level = line_sender.level(cycle);
+                line_receiver.hear(cycle, level);
+                cycle += line_sender.stays(cycle).min(1000);
             }
-            assert_eq!(std::iter::from_fn(|| ear.next_byte()).collect::<Vec<_>>(), bytes);
+            assert_eq!(std::iter::from_fn(|| line_receiver.next_byte()).collect::<Vec<_>>(), bytes);
             // A byte takes ten bits, without a clock in between.
             let exact = 10 * bytes.len() as u64 * clock_hz / u64::from(baud);
             assert!((17 + exact..17 + exact + 2002).contains(&cycle), "{cycle} {exact}");

@@ -15,8 +15,8 @@ pub enum Pace {
     /// The board runs in real time.
     Real(Walk),
     /// The board runs as fast as possible, but at most `ahead` clocks beyond the last byte from the
-    /// host, and not further than its queues allow ([`crate::Gateware::alone`]). A delayed host is
-    /// therefore not considered dead, and its delays make no segment late.
+    /// host, and not further than its queues allow ([`crate::SimulatedBoard::alone`]). A delayed
+    /// host is therefore not considered dead, and its delays make no segment late.
     Fast {
         /// Greatest number of clocks beyond the last byte.
         ahead: u64,

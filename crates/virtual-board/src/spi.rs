@@ -77,7 +77,11 @@ impl Master {
     /// in time.
     pub(crate) fn pins(&mut self, cycle: u64) -> [bool; 3] {
         while self.changes() <= cycle && self.unsaid() > 0 {
-            self.ends = if self.selected { self.ends } else { self.ends.max(u128::from(cycle) * self.parts) };
+            self.ends = if self.selected {
+                self.ends
+            } else {
+                self.ends.max(u128::from(cycle) * self.parts)
+            };
             self.go_on();
             self.ends += self.half;
         }

@@ -21,7 +21,8 @@ impl Terminal {
     /// The system has no more of them.
     pub fn new() -> io::Result<Self> {
         let (mut port, other) = TTYPort::pair()?;
-        let name = other.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
+        let name =
+            other.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
         port.set_timeout(Duration::from_millis(1))?;
         Ok(Self { port, name })
     }

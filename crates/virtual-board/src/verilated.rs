@@ -1,11 +1,11 @@
 //! The board whose engine, link and line are the exported Verilog, simulated with Verilator.
 
 use crate::board::Switches;
-use crate::gateware::Gateware;
+use crate::gateware::SimulatedBoard;
 use crate::wire::{Driven, Wire};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, MAX_AXES};
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_model::fast::{Change, Edge, Edges};
 use carrystep_simulators::LevelError;
 use carrystep_simulators::board::{BoardProcess, Did, Levels, Standing};
@@ -43,10 +43,10 @@ impl VerilatedBoard {
     /// # Errors
     /// As [`Self::new`].
     pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Result<Self, LevelError> {
-        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
+        Self::with(build, LineKind::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
     }
 
-    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Result<Self, LevelError> {
+    fn with(build: &EngineBuild, line: LineKind, wire: Wire) -> Result<Self, LevelError> {
         Ok(Self {
             build: build.clone(),
             process: BoardProcess::new(build, line)?,
@@ -95,7 +95,7 @@ impl VerilatedBoard {
     }
 }
 
-impl Gateware for VerilatedBoard {
+impl SimulatedBoard for VerilatedBoard {
     fn cycle(&self) -> u64 {
         self.standing.cycle
     }
@@ -176,7 +176,7 @@ fn edges(clock: u64, [step, dir]: [u8; 2], [step_now, dir_now]: [u8; 2], to: &mu
             tell(Change::Rise);
         }
         if (dir_now ^ dir) & 1 << axis != 0 {
-            tell(Change::Turn);
+            tell(Change::DirChange);
         }
     }
 }

@@ -1,13 +1,13 @@
 //! The line between a host and a board: bytes at the host's end, levels of pins at the board's end.
 
-use crate::line::{Ear, Speaker};
+use crate::line::{LineReceiver, LineSender};
 use crate::spi::Master;
 use carrystep_core::link::Uart;
 
 /// The host's end of the line.
 #[derive(Debug, Clone)]
 pub(crate) enum Wire {
-    Uart(Speaker, Ear),
+    Uart(LineSender, LineReceiver),
     Spi(Master),
 }
 
@@ -27,7 +27,7 @@ pub(crate) const SPI_RESTS: [bool; 2] = [false, true];
 
 impl Wire {
     pub(crate) fn uart(clock_hz: u64, uart: Uart) -> Self {
-        Self::Uart(Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart))
+        Self::Uart(LineSender::new(clock_hz, uart), LineReceiver::new(clock_hz, uart))
     }
 
     pub(crate) fn spi(clock_hz: u64, sck_hz: u64) -> Self {
@@ -37,7 +37,7 @@ impl Wire {
     /// Queues a byte for transmission.
     pub(crate) fn say(&mut self, byte: u8) {
         match self {
-            Self::Uart(speaker, _) => speaker.say(byte),
+            Self::Uart(line_sender, _) => line_sender.say(byte),
             Self::Spi(master) => master.say(byte),
         }
     }
@@ -45,7 +45,7 @@ impl Wire {
     /// Number of bytes that are not sent completely.
     pub(crate) fn unsaid(&self) -> usize {
         match self {
-            Self::Uart(speaker, _) => speaker.unsaid(),
+            Self::Uart(line_sender, _) => line_sender.unsaid(),
             Self::Spi(master) => master.unsaid(),
         }
     }
@@ -53,7 +53,7 @@ impl Wire {
     /// The next byte received from the board.
     pub(crate) fn next_byte(&mut self) -> Option<u8> {
         match self {
-            Self::Uart(_, ear) => ear.next_byte(),
+            Self::Uart(_, line_receiver) => line_receiver.next_byte(),
             Self::Spi(master) => master.next_byte(),
         }
     }
@@ -61,7 +61,7 @@ impl Wire {
     /// Whether the host is within a byte from the board.
     pub(crate) fn is_hearing(&self) -> bool {
         match self {
-            Self::Uart(_, ear) => ear.is_hearing(),
+            Self::Uart(_, line_receiver) => line_receiver.is_hearing(),
             Self::Spi(_) => false,
         }
     }
@@ -69,7 +69,11 @@ impl Wire {
     /// Levels in a clock. Calls must not go back in time.
     pub(crate) fn drive(&mut self, cycle: u64) -> Driven {
         match self {
-            Self::Uart(speaker, _) => Driven { rx: speaker.level(cycle), spi: SPI_RESTS, stays: speaker.stays(cycle) },
+            Self::Uart(line_sender, _) => Driven {
+                rx: line_sender.level(cycle),
+                spi: SPI_RESTS,
+                stays: line_sender.stays(cycle),
+            },
             Self::Spi(master) => {
                 let [sck, select_n, mosi] = master.pins(cycle);
                 Driven { rx: mosi, spi: [sck, select_n], stays: master.stays(cycle) }
@@ -81,7 +85,7 @@ impl Wire {
     /// here on.
     pub(crate) fn hear(&mut self, cycle: u64, level: bool) {
         match self {
-            Self::Uart(_, ear) => ear.hear(cycle, level),
+            Self::Uart(_, line_receiver) => line_receiver.hear(cycle, level),
             Self::Spi(master) => master.hear(cycle, level),
         }
     }
@@ -89,7 +93,7 @@ impl Wire {
     /// The line from the gateware had its level up to this clock, and keeps it.
     pub(crate) fn reach(&mut self, cycle: u64) {
         match self {
-            Self::Uart(_, ear) => ear.reach(cycle),
+            Self::Uart(_, line_receiver) => line_receiver.reach(cycle),
             Self::Spi(master) => master.reach(cycle),
         }
     }

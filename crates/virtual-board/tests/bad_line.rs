@@ -1,7 +1,11 @@
 //! A board on a line that flips, drops, repeats, cuts and delays bytes. Its pulses must be those of
 //! a clean line, or it must have stopped with a cause. The environment variable `CARRYSTEP_FRAMES`
 //! sets the total number of frames.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "clippy.toml's allowance reaches unit tests only"
+)]
 
 mod support;
 
@@ -10,7 +14,7 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Command, Ended, HostError, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
@@ -40,9 +44,17 @@ fn make<B: Kind>(end: &End<B>, host: &mut BoardHost<B>, commands: &[Command]) ->
         let load = world.board.loads().get(loads).copied().unwrap_or(u64::MAX);
         assert!(world.board.loads().len() <= loads + 1, "a move was started twice");
         for axis in 0..AXES as u8 {
-            assert_eq!(positions[usize::from(axis)], world.travelled(axis), "the position of axis {axis} is not true");
+            assert_eq!(
+                positions[usize::from(axis)],
+                world.travelled(axis),
+                "the position of axis {axis} is not true"
+            );
         }
-        let stop = world.board.stops().get(stops).map(|&(cycle, cause)| (cycle.saturating_sub(load), cause));
+        let stop = world
+            .board
+            .stops()
+            .get(stops)
+            .map(|&(cycle, cause)| (cycle.saturating_sub(load), cause));
         Went { edges: world.edges_since(load), stop }
     };
     match (ended, went.stop) {
@@ -70,7 +82,9 @@ fn on_a_line<B: Kind>(faults: Faults, seed: u64, commands: &[Command]) -> (Went,
 /// The edges must be equal; after a stop they must be a prefix.
 fn compare(went: &Went, clean: &[Edge]) {
     let until = went.stop.map_or(u64::MAX, |(cycle, _)| cycle);
-    let before = |edges: &[Edge]| edges.iter().take_while(|edge| edge.clock < until).copied().collect::<Vec<_>>();
+    let before = |edges: &[Edge]| {
+        edges.iter().take_while(|edge| edge.clock < until).copied().collect::<Vec<_>>()
+    };
     let (found, expected) = (before(&went.edges), before(clean));
     if let Some(place) = found.iter().zip(&expected).position(|(one, other)| one != other) {
         panic!("edge {place} is {:?}, on a clean line {:?}", found[place], expected[place]);
@@ -85,9 +99,9 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
     while sent < frames {
         let commands = waves(&mut random, SEGMENTS, TICKS);
-        let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+        let (clean, _) = on_a_line::<ModelBoard>(Faults::default(), 0, &commands);
         assert_eq!(clean.stop, None);
-        let (went, harms) = on_a_line::<Board>(Faults::BAD, random.next(), &commands);
+        let (went, harms) = on_a_line::<ModelBoard>(Faults::BAD, random.next(), &commands);
         compare(&went, &clean.edges);
         if let Some((_, cause)) = went.stop {
             // A damaged frame can only have been missing or late, so no other cause is possible.
@@ -111,10 +125,14 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
 #[test]
 fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
     let commands = waves(&mut Random::new(12), 9, 3000);
-    let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+    let (clean, _) = on_a_line::<ModelBoard>(Faults::default(), 0, &commands);
     let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
     compare(&went, &clean.edges);
-    eprintln!("FIGURES the line harmed {harms} times, {} edges, stop {:?}", went.edges.len(), went.stop);
+    eprintln!(
+        "FIGURES the line harmed {harms} times, {} edges, stop {:?}",
+        went.edges.len(),
+        went.stop
+    );
     assert!(harms > 1, "the line is too good");
     assert_eq!(went.stop, None, "too little is made");
 }
@@ -122,7 +140,7 @@ fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
 /// `CARRYSTEP_GARBAGE` sets the length of the test in ms.
 #[test]
 fn garbage_hangs_nothing() {
-    hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
+    hears_garbage::<ModelBoard>(asked("CARRYSTEP_GARBAGE", 2000));
 }
 
 /// `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
@@ -141,7 +159,11 @@ fn hears_garbage<B: Kind>(milliseconds: u64) {
         let mut world = end.0.borrow_mut();
         while world.board.unsaid() < 92 {
             let any = random.next() as u8;
-            world.board.say(if random.below(5) == 0 { [0xc0, 0xdb, 0xdc, 0xdd][usize::from(any & 3)] } else { any });
+            world.board.say(if random.below(5) == 0 {
+                [0xc0, 0xdb, 0xdc, 0xdd][usize::from(any & 3)]
+            } else {
+                any
+            });
             bytes += 1;
         }
         drop(world);

@@ -6,7 +6,7 @@ mod support;
 use carrystep_core::AXES;
 use carrystep_link::{Ended, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
 use support::random::Random;
 use support::{Kind, waves};
@@ -25,18 +25,22 @@ fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
     assert_eq!(ended, Ok(Ended::Done));
     let wired = bus.0.borrow();
     for axis in 0..AXES {
-        assert_eq!(host.status().positions[axis], wired.board.position(axis), "the position of axis {axis}");
+        assert_eq!(
+            host.status().positions[axis],
+            wired.board.position(axis),
+            "the position of axis {axis}"
+        );
     }
     (wired.edges_since(wired.board.loads()[0]), wired.harmed())
 }
 
 #[test]
 fn pulses_on_a_bad_bus_equal_those_of_models_on_a_clean_bus() {
-    let (clean, _) = moves::<Board>(10_000_000, 0);
+    let (clean, _) = moves::<ModelBoard>(10_000_000, 0);
     assert!(clean.len() > 500, "{} edges are no move", clean.len());
     for (name, (edges, harmed)) in [
-        ("models at an odd rate", moves::<Board>(3_456_789, 0)),
-        ("models on a bad bus", moves::<Board>(10_000_000, BAD)),
+        ("models at an odd rate", moves::<ModelBoard>(3_456_789, 0)),
+        ("models on a bad bus", moves::<ModelBoard>(10_000_000, BAD)),
         ("the Verilog", moves::<VerilatedBoard>(10_000_000, 0)),
         ("the Verilog on a bad bus", moves::<VerilatedBoard>(6_500_000, BAD)),
     ] {

@@ -7,11 +7,11 @@ mod support;
 
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Command, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
 use support::link::c_library::CClient;
 use support::link::client::{Client, RustClient};
@@ -35,7 +35,7 @@ fn connect<'a, B: Kind>(client: &'a mut dyn Client, end: &End<B>) -> WordHost<'a
 
 /// The edges that the driver in Rust makes with a board of models on a clean line.
 fn clean(commands: &[Command]) -> Vec<Edge> {
-    let end = End::<Board>::new(uart(), Faults::default(), 0);
+    let end = End::<ModelBoard>::new(uart(), Faults::default(), 0);
     let mut host = end.connect(uart());
     host.enable().unwrap();
     host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap();
@@ -44,13 +44,22 @@ fn clean(commands: &[Command]) -> Vec<Edge> {
 }
 
 /// The edges that a client makes, and how often the line did damage.
-fn moves<B: Kind>(client: &mut dyn Client, commands: &[Command], faults: Faults, seed: u64) -> (Vec<Edge>, u64) {
+fn moves<B: Kind>(
+    client: &mut dyn Client,
+    commands: &[Command],
+    faults: Faults,
+    seed: u64,
+) -> (Vec<Edge>, u64) {
     let end = End::<B>::new(uart(), faults, seed);
     let mut host = connect(client, &end);
     host.enable();
     assert_eq!(host.stream(commands, || false), None);
     for axis in 0..AXES as u8 {
-        assert_eq!(host.position(axis), end.0.borrow().travelled(axis), "the position of axis {axis}");
+        assert_eq!(
+            host.position(axis),
+            end.0.borrow().travelled(axis),
+            "the position of axis {axis}"
+        );
     }
     let world = end.0.borrow();
     (world.edges_since(world.board.loads()[0]), world.harmed())
@@ -64,10 +73,13 @@ fn c_client_makes_the_pulses_of_the_rust_driver() {
     assert!(clean.len() > 500, "{} edges are no move", clean.len());
     for seed in 0..4 {
         let mut c = CClient::shared();
-        assert!(moves::<Board>(&mut c, &commands, Faults::default(), seed).0 == clean, "on a clean line");
-        let (edges, harmed) = moves::<Board>(&mut c, &commands, Faults::BAD, seed);
+        assert!(
+            moves::<ModelBoard>(&mut c, &commands, Faults::default(), seed).0 == clean,
+            "on a clean line"
+        );
+        let (edges, harmed) = moves::<ModelBoard>(&mut c, &commands, Faults::BAD, seed);
         assert!(edges == clean && harmed > 0, "on a bad line, {seed}");
-        let rust = moves::<Board>(&mut RustClient::default(), &commands, Faults::BAD, seed);
+        let rust = moves::<ModelBoard>(&mut RustClient::default(), &commands, Faults::BAD, seed);
         assert!(rust == (edges, harmed), "the client in Rust says something else, {seed}");
     }
 }
@@ -75,7 +87,8 @@ fn c_client_makes_the_pulses_of_the_rust_driver() {
 #[test]
 fn c_client_with_verilog_on_a_bad_line_makes_the_pulses_of_the_rust_driver() {
     let commands = commands(5000);
-    let (edges, harmed) = moves::<VerilatedBoard>(&mut CClient::shared(), &commands, Faults::BAD, 5);
+    let (edges, harmed) =
+        moves::<VerilatedBoard>(&mut CClient::shared(), &commands, Faults::BAD, 5);
     assert!(edges == clean(&commands) && harmed > 0);
 }
 
@@ -96,29 +109,35 @@ fn stops<B: Kind>() {
     host.clear();
     assert_eq!(host.stream(&commands, || false), None);
     for axis in 0..AXES as u8 {
-        assert_eq!(host.position(axis), end.0.borrow().travelled(axis), "the position of axis {axis}");
+        assert_eq!(
+            host.position(axis),
+            end.0.borrow().travelled(axis),
+            "the position of axis {axis}"
+        );
     }
 }
 
 #[test]
 fn c_client_stops_and_resumes() {
-    stops::<Board>();
+    stops::<ModelBoard>();
     stops::<VerilatedBoard>();
 }
 
 #[test]
 fn c_client_works_over_spi() {
     // At most six unacknowledged segments over SPI (docs/protocol.md).
-    let mut client = CClient::with(&["-UCARRYSTEP_SLOTS", "-DCARRYSTEP_SLOTS=6"], |_, text| text.to_owned());
+    let mut client =
+        CClient::with(&["-UCARRYSTEP_SLOTS", "-DCARRYSTEP_SLOTS=6"], |_, text| text.to_owned());
     let clean = clean(&commands(3000));
-    assert!(over_bus::<Board>(&mut client) == clean, "models");
+    assert!(over_bus::<ModelBoard>(&mut client) == clean, "models");
     assert!(over_bus::<VerilatedBoard>(&mut client) == clean, "the Verilog");
 }
 
 fn over_bus<B: Kind>(client: &mut dyn Client) -> Vec<Edge> {
     let bus = Bus::<B>::new(10_000_000);
-    let id = Line::Spi.build_id(&build()).0;
-    let mut host = WordHost::connect(client, SpiLine::new(bus.clone()), bus.clone(), 12, id).unwrap();
+    let id = LineKind::Spi.build_id(&build()).0;
+    let mut host =
+        WordHost::connect(client, SpiLine::new(bus.clone()), bus.clone(), 12, id).unwrap();
     host.enable();
     assert_eq!(host.stream(&commands(3000), || false), None);
     let wired = bus.0.borrow();
@@ -127,16 +146,19 @@ fn over_bus<B: Kind>(client: &mut dyn Client) -> Vec<Edge> {
 
 #[test]
 fn another_build_is_refused_and_named() {
-    refused::<Board>();
+    refused::<ModelBoard>();
     refused::<VerilatedBoard>();
 }
 
 /// The same engine with an SPI is another build.
 fn refused<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
-    let other = Line::Spi.build_id(&build());
+    let other = LineKind::Spi.build_id(&build());
     let mut client = CClient::shared();
     let refused = WordHost::connect(&mut client, end.clone(), end.clone(), 12, other.0).err();
-    assert_eq!(refused, Some(Refused { verdict: "build".to_owned(), build: uart().build_id(&build()).0 }));
+    assert_eq!(
+        refused,
+        Some(Refused { verdict: "build".to_owned(), build: uart().build_id(&build()).0 })
+    );
     assert_eq!(connect(&mut client, &end).last.next, 0, "something was written");
 }

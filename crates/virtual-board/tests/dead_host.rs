@@ -1,7 +1,11 @@
 //! A host dies in the middle of a move. The board must stop within its watchdog's time and the
 //! ramp, its positions must be exact, and the next host must continue without a restart.
 //! `CARRYSTEP_DEATHS` sets the number of deaths.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "clippy.toml's allowance reaches unit tests only"
+)]
 
 mod support;
 
@@ -9,14 +13,14 @@ use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, HostError, Program, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
 fn the_board_stops_when_its_host_dies_and_another_host_continues() {
-    hosts_die::<Board>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
+    hosts_die::<ModelBoard>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
 }
 
 #[test]
@@ -46,7 +50,8 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         let commands = waves(&mut random, 40, ticks);
         let dies = end.0.borrow().board.cycle() + (20 + random.below(within)) * MS;
         end.0.borrow_mut().dies = dies;
-        let (loads, stops) = (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
+        let (loads, stops) =
+            (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
         let ended = host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn);
         let moving = end.0.borrow().board.loads().len() > loads && !end.0.borrow().board.rests();
         match ended {
@@ -84,7 +89,10 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
             assert_eq!(host.status().positions[usize::from(axis)], travelled, "axis {axis}");
         }
         let short = waves(&mut random, 5, 2000);
-        assert_eq!(host.stream(Program::new(&short, AXES as u8).unwrap(), |_| Wish::GoOn), Ok(Ended::Done));
+        assert_eq!(
+            host.stream(Program::new(&short, AXES as u8).unwrap(), |_| Wish::GoOn),
+            Ok(Ended::Done)
+        );
         end.0.borrow_mut().revive(faults, seed + 100);
     }
     eprintln!(

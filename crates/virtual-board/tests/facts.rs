@@ -7,11 +7,11 @@ mod support;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::{END, Uart};
 use carrystep_link::registers::{
-    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW, POSITION, SEGMENT,
-    START, WATCHDOG_TICKS, WRITE,
+    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW,
+    POSITION, SEGMENT, START, WATCHDOG_TICKS, WRITE,
 };
 use carrystep_link::{Answer, Patience, frame};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::{CLOCK_HZ, Kind, MS};
 
@@ -78,7 +78,8 @@ impl<B: Kind> Talk<B> {
 
     fn words(&mut self, address: u8, words: &[u32]) -> Answer {
         let head = [self.next, address];
-        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let content: Vec<u8> =
+            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         let answer = self.ask(&content);
         self.next = self.next.wrapping_add(1);
         assert_eq!(answer.next, self.next, "{answer:?}");
@@ -111,7 +112,11 @@ fn reads<B: Kind>() {
         if axis < 6 {
             assert_eq!(answer.free, 7 - axis, "{address:02x}");
         }
-        assert_eq!((answer.next, answer.fault, answer.refused), (next, false, false), "{address:02x}");
+        assert_eq!(
+            (answer.next, answer.fault, answer.refused),
+            (next, false, false),
+            "{address:02x}"
+        );
         let global = IDENTITY..=WATCHDOG_TICKS;
         let of_axis = address >= 0x40
             && axis < 6
@@ -128,7 +133,15 @@ fn writes<B: Kind>() {
     let mut talk = filled::<B>();
     for address in (0..0x40_u8).filter(|address| ![CONTROL, START, CLEAR, HOME].contains(address)) {
         let answer = talk.write(address, 0xffff_ffff);
-        let state = (answer.free, answer.data, answer.fault, answer.refused, answer.ready, answer.armed, answer.homing);
+        let state = (
+            answer.free,
+            answer.data,
+            answer.fault,
+            answer.refused,
+            answer.ready,
+            answer.armed,
+            answer.homing,
+        );
         assert_eq!(state, (7, 0, false, false, true, false, 0), "{address:02x}");
     }
     let next = talk.next;
@@ -163,7 +176,10 @@ fn starts<B: Kind>() {
     talk.segment(0, cruise(99, true));
     for _ in 0..3 {
         let answer = talk.ask(&[&[talk.next, WRITE | START][..], &[1, 0, 0, 0]].concat());
-        assert_eq!((answer.next, answer.refused, answer.ready, answer.armed), (talk.next, true, false, false));
+        assert_eq!(
+            (answer.next, answer.refused, answer.ready, answer.armed),
+            (talk.next, true, false, false)
+        );
     }
     talk.write(CONTROL, 1);
     while !talk.read(POSITION).ready {}
@@ -224,13 +240,15 @@ fn refusals_feed<B: Kind>() {
 #[test]
 fn timeouts_equal_those_of_the_page() {
     let page = include_str!("../../../docs/protocol.md");
-    let Patience { timing, silence, lost, change, look } = Patience::default();
+    let Patience { timing, silence, lost, change, status_period } = Patience::default();
     for row in [
         format!("| no progress, send again from `next` on | after {} ms |", timing.resend),
         format!("| busy, try again | after {} ms |", timing.pause),
-        format!("| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"),
+        format!(
+            "| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"
+        ),
         format!("| power, a stop by ramps, a clear | {change} ms at most |"),
-        format!("| read of the state while there is nothing to send | every {look} ms |"),
+        format!("| read of the state while there is nothing to send | every {status_period} ms |"),
     ] {
         assert!(page.contains(&row), "{row}");
     }
@@ -247,7 +265,7 @@ fn all<B: Kind>() {
 
 #[test]
 fn statements_of_the_page_hold_for_the_models() {
-    all::<Board>();
+    all::<ModelBoard>();
 }
 
 #[test]

@@ -11,20 +11,21 @@ use carrystep_core::link::Uart;
 use carrystep_core::link::registers::{DISCARDED, POSITION, of_axis};
 use carrystep_link::{Command, HostError, Program, Segment, Wish};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::ops::Range;
 use support::random::Random;
 use support::wire::Faults;
 use support::{CLOCK_HZ, End, Kind, MS, TICK, waves};
 
 fn rises(edges: &[Edge], axis: u8, before: u64) -> u32 {
-    let counts = |edge: &&Edge| edge.axis == axis && edge.change == Change::Rise && edge.clock < before;
+    let counts =
+        |edge: &&Edge| edge.axis == axis && edge.change == Change::Rise && edge.clock < before;
     edges.iter().filter(counts).count() as u32
 }
 
 #[test]
 fn freeze_counts_every_discarded_step() {
-    let (_, discarded) = freezes::<Board>(0..12, 100, Faults::BAD);
+    let (_, discarded) = freezes::<ModelBoard>(0..12, 100, Faults::BAD);
     assert!(discarded > 0, "nothing was ever discarded");
 }
 
@@ -51,7 +52,7 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         };
         let commands: Vec<_> = waves(&mut random, 10, 8000).into_iter().map(faster).collect();
         let program = || Program::new(&commands, AXES as u8).unwrap();
-        let clean = End::<Board>::new(uart, Faults::default(), 0);
+        let clean = End::<ModelBoard>::new(uart, Faults::default(), 0);
         let mut host = clean.connect(uart);
         host.enable().unwrap();
         host.stream(program(), |_| Wish::GoOn).unwrap();
@@ -64,7 +65,8 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         let after = (20 + random.below(within)) * MS + random.below(MS);
         let ended = host.stream(program(), |_| {
             let mut world = end.0.borrow_mut();
-            let due = world.board.loads().first().is_some_and(|load| world.board.cycle() > load + after);
+            let due =
+                world.board.loads().first().is_some_and(|load| world.board.cycle() > load + after);
             if due {
                 world.board.press(Switches { estop: true, ..Switches::default() });
             }
@@ -72,7 +74,8 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         });
         let Err(HostError::Fault { cause, .. }) = ended else { panic!("{ended:?}") };
         end.wait(20);
-        let (load, (stop, called)) = (end.0.borrow().board.loads()[0], end.0.borrow().board.stops()[0]);
+        let (load, (stop, called)) =
+            (end.0.borrow().board.loads()[0], end.0.borrow().board.stops()[0]);
         assert_eq!(cause, called as u8);
         if called != Cause::EStop {
             continue;

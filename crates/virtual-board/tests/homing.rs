@@ -16,8 +16,8 @@ use axes::{Bench, Make, Start, machine};
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
-use carrystep_link::{AxisHoming, Homed, HomingFault, HostError, Stage, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_link::{AxisHoming, Homed, HomingFault, HomingStage, HostError, Wish};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use random::Random;
 
 const STARTS: [Start; 3] = [Start::Open, Start::Closed, Start::Bouncing];
@@ -65,14 +65,15 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     let mut host = bench.connect(machine);
     host.enable().unwrap();
     let homing = homing_of(machine);
-    let mut stage = Stage::MoveOff;
+    let mut stage = HomingStage::MoveOff;
     let homed = host.home(&homing.as_homing(), |_, now, _| {
         stage = now;
         Wish::GoOn
     });
-    let homed = homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
+    let homed =
+        homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
     let Homed::At(edges) = homed else { panic!("{what}: stopped") };
-    let answer = host.look().unwrap().answer;
+    let answer = host.read_status().unwrap().answer;
     assert!(answer.idle && !answer.fault && answer.homing == 0, "{what}: {answer:?}");
     let guard = &machine.guard;
     for (number, axis) in machine.axes.iter().enumerate() {
@@ -81,14 +82,20 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         let switch = bench.edge(number);
         // The limit is accepted behind the place where it closes, at most by the distance at the
         // slow speed until then.
-        let ticks = u128::from(guard.debounce) * u128::from(guard.round) + 4 + u128::from(bench.slice_ticks());
+        let ticks = u128::from(guard.debounce) * u128::from(guard.round)
+            + 4
+            + u128::from(bench.slice_ticks());
         let late = ((u128::from(home.slow) * ticks) >> 64) as i32;
         let beyond = (edge - switch) * sign;
         assert!(
             (0..=late + 1).contains(&beyond),
             "{what}: axis {number} at {edge}, its switch at {switch}, {late} late"
         );
-        assert_eq!(host.status().positions[number], edge - sign * home.pull_off as i32, "{what}: axis {number}");
+        assert_eq!(
+            host.status().positions[number],
+            edge - sign * home.pull_off as i32,
+            "{what}: axis {number}"
+        );
         // No pulse went deeper into the switch than the search overruns it, or than the axis stood
         // at the start.
         let ran = overrun(home.seek, axis.stop, guard)
@@ -120,7 +127,7 @@ fn model_homes_from_every_start_in_each_wiring() {
         for (stop, level) in [("ramp", "high"), ("freeze", "low")] {
             for x in STARTS {
                 for y in STARTS {
-                    twice::<Board>(&two(limits, stop, level), &[x, y], 1);
+                    twice::<ModelBoard>(&two(limits, stop, level), &[x, y], 1);
                 }
             }
         }
@@ -145,9 +152,11 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
             let mut between = |least: u64, most: u64| least + random.below(most - least + 1);
             let (unit, speed) = (between(1, 40), between(500, 6000));
             let (accel, stop) = (between(4000, 100_000), between(6000, 200_000));
-            let (toward, position) = if between(0, 1) == 0 { ("min", 0) } else { ("max", 400 / unit) };
+            let (toward, position) =
+                if between(0, 1) == 0 { ("min", 0) } else { ("max", 400 / unit) };
             let [speed_, seek, slow, start] =
-                [speed, between(300, speed), between(50, 300), between(0, 200)].map(|steps| steps as f64 / unit as f64);
+                [speed, between(300, speed), between(50, 300), between(0, 200)]
+                    .map(|steps| steps as f64 / unit as f64);
             let [accel_, stop_] = [accel, stop].map(|steps| steps as f64 / unit as f64);
             let pull_off = between(3, 40) as f64 / unit as f64;
             format!(
@@ -175,12 +184,14 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
 /// Runs the random machines whose number modulo the number of wirings is `rest`, so that the
 /// wirings run in parallel.
 fn random_machines(limits: &str, rest: u64) {
-    let machines = std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
+    let machines =
+        std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
     for seed in (rest..machines).step_by(3) {
         let mut random = Random::new(seed);
         let machine = random_machine(&mut random, limits);
-        let starts: Vec<Start> = machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
-        twice::<Board>(&machine, &starts, seed);
+        let starts: Vec<Start> =
+            machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
+        twice::<ModelBoard>(&machine, &starts, seed);
     }
 }
 
@@ -200,15 +211,18 @@ fn random_machines_home_with_one_input_for_all() {
 }
 
 /// The error of homing with the switches changed by `change`, and the final positions.
-fn fails(limits: &str, change: impl FnOnce(&Bench<Board>)) -> (HostError<axes::Never>, [i32; 2]) {
+fn fails(
+    limits: &str,
+    change: impl FnOnce(&Bench<ModelBoard>),
+) -> (HostError<axes::Never>, [i32; 2]) {
     let machine = two(limits, "ramp", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
     change(&bench);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
     let homing = homing_of(&machine);
     let error = host.home(&homing.as_homing(), |_, _, _| Wish::GoOn).unwrap_err();
-    let answer = host.look().unwrap().answer;
+    let answer = host.read_status().unwrap().answer;
     assert_eq!(answer.homing, 0, "no axis waits for a limit behind the error");
     (error, [0, 1].map(|axis| host.status().positions[axis]))
 }
@@ -243,22 +257,32 @@ fn limit_that_closes_while_moving_away_is_an_error_except_at_the_far_end() {
         assert_eq!(error, HostError::Homing { axes, why: HomingFault::Closed }, "{limits}");
     }
     let machine = two("pair", "freeze", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
     bench.far(1, -20);
     homes(&bench, &machine, "near the far end");
 }
 
 #[test]
 fn estop_and_stop_request_end_homing() {
-    for stage in [Stage::MoveOff, Stage::Seek, Stage::BackOff, Stage::Approach, Stage::PullOff] {
+    for stage in [
+        HomingStage::MoveOff,
+        HomingStage::Seek,
+        HomingStage::BackOff,
+        HomingStage::Approach,
+        HomingStage::PullOff,
+    ] {
         let machine = two("each", "ramp", "high");
-        let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Closed], 4);
+        let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Closed], 4);
         let mut host = bench.connect(&machine);
         host.enable().unwrap();
         let homing = homing_of(&machine);
-        let stopped = host.home(&homing.as_homing(), |_, now, _| if now == stage { Wish::Stop } else { Wish::GoOn });
+        let stopped =
+            host.home(
+                &homing.as_homing(),
+                |_, now, _| if now == stage { Wish::Stop } else { Wish::GoOn },
+            );
         assert_eq!(stopped, Ok(Homed::Stopped), "{stage}");
-        let answer = host.look().unwrap().answer;
+        let answer = host.read_status().unwrap().answer;
         assert_eq!((answer.cause_name(), answer.homing), (Some("stop"), 0), "{stage}");
         host.clear().unwrap();
         let pressed = host.home(&homing.as_homing(), |_, now, _| {
@@ -267,8 +291,12 @@ fn estop_and_stop_request_end_homing() {
             }
             Wish::GoOn
         });
-        assert_eq!(pressed, Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }), "{stage}");
-        assert_eq!(host.look().unwrap().answer.homing, 0, "{stage}");
+        assert_eq!(
+            pressed,
+            Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }),
+            "{stage}"
+        );
+        assert_eq!(host.read_status().unwrap().answer.homing, 0, "{stage}");
         bench.press_estop(false);
         host.clear().unwrap();
         homes(&bench, &machine, "after stops");
@@ -278,7 +306,7 @@ fn estop_and_stop_request_end_homing() {
 #[test]
 fn homing_that_cannot_succeed_is_refused_before_any_motion() {
     let machine = two("pair", "ramp", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 5);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 5);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
     let homing = homing_of(&machine);
@@ -289,6 +317,9 @@ fn homing_that_cannot_succeed_is_refused_before_any_motion() {
     let mut slow = homing.as_homing();
     slow.axes[0] = slow.axes[0].map(|axis| AxisHoming { slow: 1, ..axis });
     let error = host.home(&slow, |_, _, _| Wish::GoOn).unwrap_err();
-    assert!(matches!(error, HostError::Homing { axes: 1, why: HomingFault::TooLong(_) }), "{error}");
+    assert!(
+        matches!(error, HostError::Homing { axes: 1, why: HomingFault::TooLong(_) }),
+        "{error}"
+    );
     assert!(bench.board().loads().is_empty());
 }

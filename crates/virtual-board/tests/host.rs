@@ -5,15 +5,22 @@
 mod support;
 
 use carrystep_core::engine::Cause;
-use carrystep_core::link::{Line, Uart};
-use carrystep_link::{Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Timing, Wish};
-use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use carrystep_core::link::{LineKind, Uart};
+use carrystep_link::{
+    Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Timing, Wish,
+};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
 
-const QUICK: Patience =
-    Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 100, look: 20 };
+const QUICK: Patience = Patience {
+    timing: Timing { resend: 12, pause: 2 },
+    silence: 500,
+    lost: 500,
+    change: 100,
+    status_period: 20,
+};
 
 /// Runs a function with both kinds of board.
 macro_rules! on_both {
@@ -21,7 +28,7 @@ macro_rules! on_both {
         $(mod $name {
             #[test]
             fn of_models() {
-                super::$name::<super::Board>();
+                super::$name::<super::ModelBoard>();
             }
 
             #[test]
@@ -87,23 +94,31 @@ fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
 /// The same engine with an SPI is another build.
 fn other_build_is_refused_and_both_ids_are_named<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
-    let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
+    let (own, other) = (uart().build_id(&build()), LineKind::Spi.build_id(&build()));
     let refused = end.connect_to(other, QUICK).err().unwrap().to_string();
     let expected = format!("the gateware is build {own}, this machine needs build {other}: ");
     assert!(refused.starts_with(&expected), "{refused}");
-    assert_eq!(end.connect_to(own, QUICK).unwrap().status().answer.next, 0, "something was written");
+    assert_eq!(
+        end.connect_to(own, QUICK).unwrap().status().answer.next,
+        0,
+        "something was written"
+    );
 }
 
 fn stop_request_stops_the_axes_and_clear_resumes<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 7);
-    let stop_soon = |_: &Progress<'_>| if into_the_move(&end, 20) { Wish::Stop } else { Wish::GoOn };
+    let stop_soon =
+        |_: &Progress<'_>| if into_the_move(&end, 20) { Wish::Stop } else { Wish::GoOn };
     assert_eq!(host.stream(program(&moves(7)), stop_soon), Ok(Ended::Stopped));
     let status = *host.status();
     assert_eq!(status.answer.cause_name(), Some("stop"));
     positions_are_true(&end, &host);
     // No program is accepted before a clear.
     let hop = hop(0);
-    assert_eq!(host.stream(program(&hop), go_on), Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 }));
+    assert_eq!(
+        host.stream(program(&hop), go_on),
+        Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 })
+    );
     host.clear().unwrap();
     assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
     assert_eq!(host.status().positions[0], status.positions[0] + 3);
@@ -111,7 +126,7 @@ fn stop_request_stops_the_axes_and_clear_resumes<B: Kind>() {
     // A clear without a stop in force writes nothing.
     let next = host.status().answer.next;
     host.clear().unwrap();
-    assert_eq!(host.look().unwrap().answer.next, next);
+    assert_eq!(host.read_status().unwrap().answer.next, next);
 }
 
 fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {
@@ -125,7 +140,8 @@ fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {
     assert!(error.to_string().starts_with("the machine has stopped: limit"), "{error}");
     positions_are_true(&end, &host);
     let press = |estop| {
-        end.0.borrow_mut().meanwhile = Box::new(move |board| board.press(Switches { estop, ..Switches::default() }));
+        end.0.borrow_mut().meanwhile =
+            Box::new(move |board| board.press(Switches { estop, ..Switches::default() }));
     };
     press(false);
     host.clear().unwrap();

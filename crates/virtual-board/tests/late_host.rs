@@ -9,7 +9,7 @@ use carrystep_link::Line as _;
 use carrystep_link::line::serial::SerialLine;
 use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
-use carrystep_virtual_board::{Board, Desk, Gateware, KEPT, Pace, Terminal};
+use carrystep_virtual_board::{KEPT, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use support::link::device::on_the_line;
@@ -48,7 +48,8 @@ impl LateHost {
 
     fn write(&mut self, address: u8, words: &[u32]) -> Answer {
         let head = [self.next, WRITE | address];
-        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let content: Vec<u8> =
+            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         self.next = self.next.wrapping_add(1);
         let answer = self.ask(&content);
         assert_eq!((answer.next, answer.fault), (self.next, false), "{answer:?}");
@@ -91,18 +92,27 @@ fn host_delayed_in_real_time_is_never_late_for_a_fast_board() {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let board = scope.spawn(|| {
-            let mut desk = Desk::new(Board::new(&build(), uart), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
+            let mut real_time = RealTimeBoard::new(
+                ModelBoard::new(&build(), uart),
+                terminal,
+                Pace::fast(CLOCK_HZ, 25 * MS),
+                CLOCK_HZ,
+            );
             let mut least = usize::MAX;
             while !is_over.load(Ordering::Relaxed) {
-                desk.step(&mut ()).unwrap();
-                let waits = support::Kind::least_waiting(&desk.board).filter(|_| desk.board.alone().is_some());
+                real_time.step(&mut ()).unwrap();
+                let waits = support::Kind::least_waiting(&real_time.board)
+                    .filter(|_| real_time.board.alone().is_some());
                 least = least.min(waits.unwrap_or(usize::MAX));
             }
             least
         });
         let _over = Over(&is_over);
-        let mut host =
-            LateHost { line: SerialLine::open(&port, 3_000_000).unwrap(), next: 0, delay: Duration::from_millis(30) };
+        let mut host = LateHost {
+            line: SerialLine::open(&port, 3_000_000).unwrap(),
+            next: 0,
+            delay: Duration::from_millis(30),
+        };
         assert_eq!(host.run().data.cast_signed(), STEPS * SEGMENTS as i32);
         drop(_over);
         // The transmission itself may use up one of the kept segments.

@@ -7,7 +7,7 @@ mod support;
 use carrystep_core::link::Uart;
 use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::link::{hex, unhex};
 use support::{CLOCK_HZ, Kind};
@@ -37,7 +37,8 @@ impl<B: Kind> Talk<B> {
 
     fn write(&mut self, address: u8, words: &[u32]) {
         let head = [self.next, WRITE | address];
-        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let content: Vec<u8> =
+            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         self.send(&on_the_line(&content));
         self.next = self.next.wrapping_add(1);
         assert_eq!(self.answer()[2], self.next);
@@ -97,7 +98,7 @@ fn replayed<B: Kind>() -> (&'static str, String) {
 
 #[test]
 fn example_frames_equal_the_answers_of_the_models() {
-    let (block, said) = replayed::<Board>();
+    let (block, said) = replayed::<ModelBoard>();
     assert_eq!(said, block);
 }
 

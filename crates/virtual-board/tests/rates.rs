@@ -1,11 +1,15 @@
 //! The number of segments per second that a line delivers to a board without an empty queue.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "clippy.toml's allowance reaches unit tests only"
+)]
 
 mod support;
 
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, Program, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
 use support::random::Random;
 use support::wire::Faults;
@@ -44,11 +48,15 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
 /// (docs/protocol.md).
 #[test]
 fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
-    let bus = Bus::<Board>::new(10_000_000);
+    let bus = Bus::<ModelBoard>::new(10_000_000);
     let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
-    let commands = waves(&mut Random::new(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
+    let commands = waves(
+        &mut Random::new(7),
+        per_second * 3 / 2,
+        (1_000_000_000 / TICK_NS) as u32 / per_second,
+    );
     let begun = bus.0.borrow().board.cycle();
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
         bus.0.borrow_mut().handed_over = progress.handed_over;
@@ -67,7 +75,7 @@ fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
 
 #[test]
 fn uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
-    carries::<Board>(3_000_000, 500, 1500);
+    carries::<ModelBoard>(3_000_000, 500, 1500);
 }
 
 /// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a
@@ -79,5 +87,5 @@ fn verilog_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
 
 #[test]
 fn uart_at_921_600_baud_carries_200_segments_per_second_for_six_axes() {
-    carries::<Board>(921_600, 200, 1500);
+    carries::<ModelBoard>(921_600, 200, 1500);
 }

@@ -5,7 +5,7 @@
 
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_virtual_board::Board;
+use carrystep_virtual_board::ModelBoard;
 use std::collections::VecDeque;
 
 const CLOCK_HZ: u64 = 48_000_000;
@@ -96,7 +96,7 @@ struct Written {
 }
 
 struct Stranger {
-    board: Board,
+    board: ModelBoard,
     came: Vec<u8>,
     answers: u64,
     /// Number of answers lost per hundred.
@@ -121,7 +121,7 @@ impl Stranger {
         build.guard.round = 1024;
         build.guard.watchdog = 49;
         Self {
-            board: Board::new(&build, Uart::new(CLOCK_HZ, 3_000_000).unwrap()),
+            board: ModelBoard::new(&build, Uart::new(CLOCK_HZ, 3_000_000).unwrap()),
             came: Vec::new(),
             answers: 0,
             lost,
@@ -159,7 +159,8 @@ impl Stranger {
 
     fn write(&mut self, address: u8, words: &[u32], axis: Option<usize>) {
         let head = [self.next, address];
-        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let content: Vec<u8> =
+            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         let line = on_the_line(&content);
         self.say(&line);
         if self.under_way.is_empty() {
@@ -204,12 +205,15 @@ impl Stranger {
     /// "Send again from `next` on."
     fn again(&mut self) {
         self.progress = self.board.cycle();
-        let lines: Vec<Vec<u8>> = self.under_way.iter().map(|written| written.line.clone()).collect();
+        let lines: Vec<Vec<u8>> =
+            self.under_way.iter().map(|written| written.line.clone()).collect();
         lines.iter().for_each(|line| self.say(line));
     }
 
     fn hear(&mut self, answer: Answer) {
-        let executed = usize::from(answer.next.wrapping_sub(self.next.wrapping_sub(self.under_way.len() as u8)));
+        let executed = usize::from(
+            answer.next.wrapping_sub(self.next.wrapping_sub(self.under_way.len() as u8)),
+        );
         assert!(executed <= self.under_way.len(), "{answer:?}");
         self.under_way.drain(..executed);
         assert!(self.under_way.front().is_none_or(|written| written.number == answer.next));
@@ -221,7 +225,8 @@ impl Stranger {
         }
         let axis = usize::from(answer.address >> 3 & 7);
         if answer.address & 0x40 != 0 {
-            let uncounted = self.under_way.iter().filter(|written| written.axis == Some(axis)).count();
+            let uncounted =
+                self.under_way.iter().filter(|written| written.axis == Some(axis)).count();
             self.room[axis] = (answer.free, uncounted);
             if answer.address & 7 == 2 || answer.address & 0x80 != 0 {
                 self.positions[axis] = answer.data.cast_signed();
@@ -288,8 +293,10 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
         let mut started = false;
         while queues.iter().any(|queue| !queue.is_empty()) {
             // The axis whose sent segments last for the shortest time comes first.
-            let able = (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) > 0);
-            let axis = able.min_by_key(|&axis| sent[axis]).filter(|_| stranger.under_way.len() < 12);
+            let able =
+                (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) > 0);
+            let axis =
+                able.min_by_key(|&axis| sent[axis]).filter(|_| stranger.under_way.len() < 12);
             if let Some(axis) = axis {
                 let (ticks, v) = queues[axis].pop_front().unwrap();
                 sent[axis] += u64::from(ticks);
@@ -303,7 +310,8 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
                 started = true;
             }
             // "An axis whose queue is full is asked by reading its POSITION."
-            let full = (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) == 0);
+            let full =
+                (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) == 0);
             if let Some(axis) = full.min_by_key(|&axis| sent[axis]) {
                 stranger.read(0x42 + 8 * axis as u8);
             }

@@ -4,9 +4,11 @@
 mod support;
 
 use carrystep_core::link::Uart;
-use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
+use carrystep_link::{
+    Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish,
+};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
@@ -55,8 +57,13 @@ fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::new(uart);
     let id = uart.build_id(&build());
-    let host =
-        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 50, ..Patience::default() }).unwrap();
+    let host = Host::connect(
+        end.clone(),
+        end.clone(),
+        Some(id.0),
+        Patience { change: 50, ..Patience::default() },
+    )
+    .unwrap();
     (end, host)
 }
 
@@ -78,7 +85,10 @@ fn commands(pieces: u32) -> Vec<Command> {
 /// The edges of a move from its load on.
 fn moves<B: Kind>(baud: u32) -> Vec<Edge> {
     let (end, mut host) = connected::<B>(baud);
-    assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 50_176));
+    assert_eq!(
+        (host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks),
+        (6, 2000, 50_176)
+    );
     host.enable().unwrap();
     let commands = commands(41);
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
@@ -124,13 +134,13 @@ fn stops<B: Kind>() {
 #[test]
 fn board_reports_its_facts_and_moves() {
     for baud in [921_600, 3_000_000] {
-        moves::<Board>(baud);
+        moves::<ModelBoard>(baud);
     }
 }
 
 #[test]
 fn board_stops_on_request_and_at_a_switch() {
-    stops::<Board>();
+    stops::<ModelBoard>();
 }
 
 #[test]
@@ -138,7 +148,7 @@ fn verilog_makes_the_same_pulses_in_the_same_clocks() {
     let baud = 3_000_000;
     let edges = moves::<VerilatedBoard>(baud);
     assert!(edges.len() > 400, "{} edges are no move", edges.len());
-    assert_eq!(edges, moves::<Board>(baud));
+    assert_eq!(edges, moves::<ModelBoard>(baud));
 }
 
 #[test]
@@ -149,7 +159,7 @@ fn verilog_stops_on_request_and_at_a_switch() {
 /// The answers of a board to some requests in the middle of a move, and its final state. It runs
 /// `at_once` clocks per call.
 fn said(at_once: u64) -> (Vec<u8>, String) {
-    let (end, mut host) = connected::<Board>(3_000_000);
+    let (end, mut host) = connected::<ModelBoard>(3_000_000);
     host.enable().unwrap();
     let commands = commands(41);
     let mut looks = 0;

@@ -11,7 +11,7 @@ use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::SerialLine;
 use carrystep_link::{Command, Ended, Host, Patience, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, Desk, Pace, Terminal, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Pace, RealTimeBoard, Terminal, VerilatedBoard};
 use std::sync::atomic::{AtomicBool, Ordering};
 use support::link::c_library::CClient;
 use support::random::Random;
@@ -38,12 +38,17 @@ fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
     std::thread::scope(|scope| {
         let board = scope.spawn(move || {
             // A quarter of the watchdog's time.
-            let mut desk = Desk::new(B::new(uart()), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
+            let mut real_time = RealTimeBoard::new(
+                B::new(uart()),
+                terminal,
+                Pace::fast(CLOCK_HZ, 25 * MS),
+                CLOCK_HZ,
+            );
             let mut seen = Seen::default();
             while !is_over.load(Ordering::Relaxed) {
-                desk.step(&mut seen).unwrap();
+                real_time.step(&mut seen).unwrap();
             }
-            seen.since(desk.board.loads()[0])
+            seen.since(real_time.board.loads()[0])
         });
         // The board's thread ends even if its host fails.
         let _over = Over(is_over);
@@ -65,12 +70,17 @@ impl Drop for Over<'_> {
 fn in_rust(port: &str) {
     let line = SerialLine::open(port, uart().baud()).unwrap();
     // A simulated board may be slow.
-    let patience = Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
+    let patience =
+        Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
     let id = uart().build_id(&build()).0;
-    let mut host: Host<_, _> = Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
+    let mut host: Host<_, _> =
+        Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
     host.enable().unwrap();
     let commands = commands();
-    assert_eq!(host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap(), Ended::Done);
+    assert_eq!(
+        host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap(),
+        Ended::Done
+    );
 }
 
 fn in_c(port: &str) {
@@ -84,15 +94,15 @@ fn in_c(port: &str) {
 
 #[test]
 fn pulses_through_a_terminal_equal_those_in_simulated_time() {
-    let end = End::<Board>::new(uart(), Faults::default(), 0);
+    let end = End::<ModelBoard>::new(uart(), Faults::default(), 0);
     let mut host = end.connect(uart());
     host.enable().unwrap();
     host.stream(Program::new(&commands(), AXES as u8).unwrap(), |_| Wish::GoOn).unwrap();
     let world = end.0.borrow();
     let expected = world.edges_since(world.board.loads()[0]);
     assert!(expected.len() > 100, "{} edges are no move", expected.len());
-    assert!(served::<Board>(in_rust) == expected, "models, a host in Rust");
-    assert!(served::<Board>(in_c) == expected, "models, a host in C");
+    assert!(served::<ModelBoard>(in_rust) == expected, "models, a host in Rust");
+    assert!(served::<ModelBoard>(in_c) == expected, "models, a host in C");
     assert!(served::<VerilatedBoard>(in_rust) == expected, "the Verilog, a host in Rust");
     assert!(served::<VerilatedBoard>(in_c) == expected, "the Verilog, a host in C");
 }

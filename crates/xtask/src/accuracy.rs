@@ -1,6 +1,6 @@
 //! The table of `docs/accuracy.md`: generated on demand, compared in every test run.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -10,17 +10,20 @@ const BEGIN: &str = "<!-- `cargo xtask accuracy` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
 
 /// Fails if the page differs from the current measurements of the checker.
-pub fn check() -> Done {
-    let page = fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
+pub fn check() -> TaskResult {
+    let page =
+        fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
     if !page.contains(&block(&table()?)) {
-        return Err(format!("the table in {PAGE} is not what is measured: run `cargo xtask accuracy`"));
+        return Err(format!(
+            "the table in {PAGE} is not what is measured: run `cargo xtask accuracy`"
+        ));
     }
     shell::say("accuracy: true");
     Ok(())
 }
 
 /// Writes the table into the page.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     let path = shell::root().join(PAGE);
     let page = fs::read_to_string(&path).map_err(|error| format!("{PAGE}: {error}"))?;
     let lost = || format!("{PAGE} has lost a mark of its table");
@@ -74,8 +77,8 @@ fn simulate(profile: &str, phases: u32) -> Result<Value, String> {
     let jerk = if profile == "scurve" { "jerk_limit = 5_553_604\n" } else { "" };
     let text = format!(
         "[machine]\nclock_hz = 32_000_000\ntick_ns = 1000\nphases = {phases}\n\n[[machine.axis]]\nname = \"x\"\n\
-         steps_per_unit = 1\nspeed_limit = 150_000\naccel_limit = 500_000\n{jerk}step_ns = 100\ngap_ns = 100\nsetup_ns = 100\n\
-         hold_ns = 100\n\n[[move]]\nprofile = \"{profile}\"\nto = {{ x = 20_000 }}\n"
+         steps_per_unit = 1\nspeed_limit = 150_000\naccel_limit = 500_000\n{jerk}step_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\n\
+         dir_hold_ns = 100\n\n[[move]]\nprofile = \"{profile}\"\nto = {{ x = 20_000 }}\n"
     );
     fs::create_dir_all(shell::root().join("sim/out")).map_err(|error| error.to_string())?;
     fs::write(shell::root().join(&file), text).map_err(|error| format!("{file}: {error}"))?;

@@ -5,7 +5,7 @@
 //! `docs/architecture.md` shows the crates as they are.
 
 use crate::circles::Modules;
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -35,7 +35,11 @@ struct Crate {
 /// The workspace, as cargo reads it.
 fn workspace() -> Result<Metadata, String> {
     let manifest = shell::root().join("Cargo.toml");
-    MetadataCommand::new().manifest_path(manifest).no_deps().exec().map_err(|error| error.to_string())
+    MetadataCommand::new()
+        .manifest_path(manifest)
+        .no_deps()
+        .exec()
+        .map_err(|error| error.to_string())
 }
 
 /// All crates by folder.
@@ -43,7 +47,8 @@ fn crates() -> Result<BTreeMap<String, Crate>, String> {
     let metadata = workspace()?;
     let crates = metadata.workspace_packages().into_iter().filter_map(|package| {
         let folder = package.manifest_path.parent()?;
-        (folder.parent()?.file_name()? == "crates").then(|| of(folder.file_name().unwrap_or_default(), package))
+        (folder.parent()?.file_name()? == "crates")
+            .then(|| of(folder.file_name().unwrap_or_default(), package))
     });
     crates.collect()
 }
@@ -52,7 +57,8 @@ fn of(folder: &str, package: &Package) -> Result<(String, Crate), String> {
     if package.name.as_str() != format!("{PREFIX}{folder}") {
         return Err(format!("crates/{folder} is called {}, not {PREFIX}{folder}", package.name));
     }
-    let description = package.description.clone().ok_or_else(|| format!("crates/{folder} has no description"))?;
+    let description =
+        package.description.clone().ok_or_else(|| format!("crates/{folder} has no description"))?;
     let uses = package
         .dependencies
         .iter()
@@ -107,15 +113,18 @@ fn drawn(crates: &BTreeMap<String, Crate>) -> String {
 
 /// The page with that part in place of the one that it has.
 fn page() -> Result<(String, String), String> {
-    let before = fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
-    let parts = before.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
-    let (head, tail) = parts.ok_or_else(|| format!("{PAGE} has no place for the crates: {BEGIN}"))?;
+    let before =
+        fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
+    let parts =
+        before.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    let (head, tail) =
+        parts.ok_or_else(|| format!("{PAGE} has no place for the crates: {BEGIN}"))?;
     let after = format!("{head}{BEGIN}\n{}\n{END}{tail}", drawn(&crates()?));
     Ok((before, after))
 }
 
 /// Shows the crates in `docs/architecture.md` as they are.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     let (_, after) = page()?;
     fs::write(shell::root().join(PAGE), after).map_err(|error| format!("{PAGE}: {error}"))
 }
@@ -135,12 +144,14 @@ fn circles() -> Result<BTreeSet<String>, String> {
 }
 
 /// Fails on an arrow that may not be, on a circle of files, and where the page shows others.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     let crates = crates()?;
     for (one, other) in STRANGERS {
         for (from, to) in [(one, other), (other, one)] {
             if reached(&crates, from).contains(to) {
-                return Err(format!("crates/{from} reaches crates/{to}: these two may not know each other"));
+                return Err(format!(
+                    "crates/{from} reaches crates/{to}: these two may not know each other"
+                ));
             }
         }
     }
@@ -154,7 +165,9 @@ pub fn check() -> Done {
     }
     let (before, after) = page()?;
     if before != after {
-        return Err(format!("{PAGE} shows other crates: look at the change, then run `cargo xtask arrows --write`"));
+        return Err(format!(
+            "{PAGE} shows other crates: look at the change, then run `cargo xtask arrows --write`"
+        ));
     }
     shell::say("arrows: one way");
     Ok(())
@@ -174,14 +187,24 @@ mod tests {
 
     #[test]
     fn a_crate_reaches_what_its_dependencies_reach() {
-        let house = house(&[("core", &[]), ("model", &["middle"]), ("middle", &["hdl"]), ("hdl", &["core"])]);
+        let house = house(&[
+            ("core", &[]),
+            ("model", &["middle"]),
+            ("middle", &["hdl"]),
+            ("hdl", &["core"]),
+        ]);
         assert!(reached(&house, "model").contains("hdl"));
         assert!(!reached(&house, "hdl").contains("model"));
     }
 
     #[test]
     fn a_crate_stands_above_all_that_it_uses() {
-        let house = house(&[("core", &[]), ("cli", &["core", "plan"]), ("plan", &["core"]), ("table", &[])]);
+        let house = house(&[
+            ("core", &[]),
+            ("cli", &["core", "plan"]),
+            ("plan", &["core"]),
+            ("table", &[]),
+        ]);
         assert_eq!(rows(&house), [vec!["core", "table"], vec!["plan"], vec!["cli"]]);
     }
 

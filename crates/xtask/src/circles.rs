@@ -13,7 +13,7 @@
 
 mod paths;
 
-use crate::shell::Done;
+use crate::shell::TaskResult;
 use paths::{Paths, is_for_tests};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Component, Path, PathBuf};
@@ -58,7 +58,7 @@ impl Modules {
     }
 
     /// Reads the file of a module. The files of its own modules are in `folder`.
-    fn file(&mut self, at: usize, folder: &Path, load: Load<'_>) -> Done {
+    fn file(&mut self, at: usize, folder: &Path, load: Load<'_>) -> TaskResult {
         let file = self.0[at].file.clone();
         let text = load(&file).ok_or_else(|| format!("{} cannot be read", file.display()))?;
         let wrong = |error| format!("{}: {error}", file.display());
@@ -66,7 +66,7 @@ impl Modules {
         self.items(at, &syntax.items, folder, load)
     }
 
-    fn items(&mut self, at: usize, items: &[Item], folder: &Path, load: Load<'_>) -> Done {
+    fn items(&mut self, at: usize, items: &[Item], folder: &Path, load: Load<'_>) -> TaskResult {
         for item in items {
             let Item::Mod(module) = item else {
                 self.0[at].paths.read(item);
@@ -272,7 +272,8 @@ mod tests {
             ("src/slow/care.rs", "pub struct Care; fn f() { assert!(crate::fast::ONE) }"),
         ]);
         assert_eq!(found.len(), 1, "{found:?}");
-        let begin = "src: fast -> slow -> fast: src/fast/leap.rs names crate::Care; src/slow/care.rs";
+        let begin =
+            "src: fast -> slow -> fast: src/fast/leap.rs names crate::Care; src/slow/care.rs";
         assert!(found[0].starts_with(begin), "{found:?}");
     }
 

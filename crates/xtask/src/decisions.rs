@@ -11,7 +11,7 @@
 //! `index.md` lists all pages by subject, and `SUMMARY.md` lists them by number. `SUMMARY.md` also
 //! lists the boards, in the order of the generated `docs/boards/index.md`.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -44,8 +44,12 @@ impl Decision {
     fn read(file: &str, text: &str) -> Result<Self, String> {
         let wrong = |what: &str| format!("{FOLDER}/{file}: {what}");
         let mut lines = text.lines();
-        let title = lines.next().and_then(|line| line.strip_prefix("# ")).ok_or_else(|| wrong("no title"))?;
-        let (number, title) = title.split_once(". ").ok_or_else(|| wrong("the title has no number"))?;
+        let title = lines
+            .next()
+            .and_then(|line| line.strip_prefix("# "))
+            .ok_or_else(|| wrong("no title"))?;
+        let (number, title) =
+            title.split_once(". ").ok_or_else(|| wrong("the title has no number"))?;
         let number = number.parse().map_err(|_| wrong("the title has no number"))?;
         if file.get(..4).and_then(|digits| digits.parse().ok()) != Some(number) {
             return Err(wrong("its name and its title have different numbers"));
@@ -53,10 +57,13 @@ impl Decision {
         let facts = lines.nth(1).unwrap_or_default();
         let form = || wrong("line 3 is not `Date: YYYY-MM-DD. Status: ... Subject: ...`");
         let facts = facts.strip_suffix('.').ok_or_else(form)?;
-        let (date, rest) =
-            facts.strip_prefix("Date: ").and_then(|facts| facts.split_once(". Status: ")).ok_or_else(form)?;
+        let (date, rest) = facts
+            .strip_prefix("Date: ")
+            .and_then(|facts| facts.split_once(". Status: "))
+            .ok_or_else(form)?;
         let (status, subject) = rest.split_once(". Subject: ").ok_or_else(form)?;
-        let [title, date, status, subject, file] = [title, date, status, subject, file].map(str::to_owned);
+        let [title, date, status, subject, file] =
+            [title, date, status, subject, file].map(str::to_owned);
         Ok(Self { number, title, date, status, subject, file })
     }
 }
@@ -68,18 +75,21 @@ fn decisions() -> Result<Vec<Decision>, String> {
     let mut pages = Vec::new();
     for entry in entries {
         let path = entry.map_err(|error| format!("{FOLDER}: {error}"))?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let name =
+            path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         if name == "index.md" {
             continue;
         }
-        let text = fs::read_to_string(&path).map_err(|error| format!("{FOLDER}/{name}: {error}"))?;
+        let text =
+            fs::read_to_string(&path).map_err(|error| format!("{FOLDER}/{name}: {error}"))?;
         pages.push(Decision::read(&name, &text)?);
     }
     pages.sort_by_key(|page| page.number);
     match pages.iter().zip(1..).find(|(page, number)| page.number != *number) {
-        Some((page, number)) => {
-            Err(format!("{FOLDER}: {} follows, but number {number} is missing or twice there", page.file))
-        }
+        Some((page, number)) => Err(format!(
+            "{FOLDER}: {} follows, but number {number} is missing or twice there",
+            page.file
+        )),
         None => Ok(pages),
     }
 }
@@ -92,7 +102,10 @@ fn index(pages: &[Decision]) -> String {
     }
     let mut text = HEAD.to_owned();
     for (subject, pages) in subjects {
-        let _ = write!(text, "\n## {subject}\n\n| number | decision | date | status |\n|---|---|---|---|\n");
+        let _ = write!(
+            text,
+            "\n## {subject}\n\n| number | decision | date | status |\n|---|---|---|---|\n"
+        );
         for Decision { number, title, date, status, file, .. } in pages {
             let _ = writeln!(text, "| {number} | [{title}]({file}) | {date} | {status} |");
         }
@@ -102,14 +115,19 @@ fn index(pages: &[Decision]) -> String {
 
 /// `SUMMARY.md` with the list of these pages in place of the one that it has.
 fn summary(before: &str, pages: &[Decision]) -> String {
-    let entry = |Decision { number, title, file, .. }: &Decision| (format!("{number}. {title}"), file.clone());
+    let entry = |Decision { number, title, file, .. }: &Decision| {
+        (format!("{number}. {title}"), file.clone())
+    };
     listed(before, "decisions", &pages.iter().map(entry).collect::<Vec<_>>())
 }
 
 /// `SUMMARY.md` with these pages of a folder below the folder's index. Each page is a title and the
 /// name of a file.
 fn listed(before: &str, folder: &str, pages: &[(String, String)]) -> String {
-    let list = pages.iter().map(|(title, file)| format!("  - [{title}]({folder}/{file})\n")).collect::<String>();
+    let list = pages
+        .iter()
+        .map(|(title, file)| format!("  - [{title}]({folder}/{file})\n"))
+        .collect::<String>();
     let (in_folder, its_index) = (format!("]({folder}/"), format!("]({folder}/index.md)"));
     let is_listed = |line: &&str| line.starts_with("  - [") && line.contains(&in_folder);
     let rest = before.lines().filter(|line| !is_listed(line)).map(|line| format!("{line}\n"));
@@ -129,13 +147,15 @@ fn boards(index: &str) -> Vec<(String, String)> {
 /// The files as they must be, by their path from the root.
 fn expected() -> Result<[(&'static str, String); 2], String> {
     let pages = decisions()?;
-    let read = |file: &str| fs::read_to_string(shell::root().join(file)).map_err(|error| format!("{file}: {error}"));
+    let read = |file: &str| {
+        fs::read_to_string(shell::root().join(file)).map_err(|error| format!("{file}: {error}"))
+    };
     let all = listed(&summary(&read(SUMMARY)?, &pages), "boards", &boards(&read(BOARDS)?));
     Ok([("docs/decisions/index.md", index(&pages)), (SUMMARY, all)])
 }
 
 /// Writes the index and the summary.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     for (file, text) in expected()? {
         fs::write(shell::root().join(file), text).map_err(|error| format!("{file}: {error}"))?;
     }
@@ -143,9 +163,10 @@ pub fn write() -> Done {
 }
 
 /// Fails where the index or the summary is not that of the pages.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     for (file, text) in expected()? {
-        let found = fs::read_to_string(shell::root().join(file)).map_err(|error| format!("{file}: {error}"))?;
+        let found = fs::read_to_string(shell::root().join(file))
+            .map_err(|error| format!("{file}: {error}"))?;
         if found != text {
             return Err(format!("{file} is not that of the pages: run `cargo xtask decisions`"));
         }
@@ -158,7 +179,8 @@ pub fn check() -> Done {
 mod tests {
     use super::*;
 
-    const PAGE: &str = "# 7. Exact decimals\n\nDate: 2026-11-14. Status: in force. Subject: files.\n\nText.\n";
+    const PAGE: &str =
+        "# 7. Exact decimals\n\nDate: 2026-11-14. Status: in force. Subject: files.\n\nText.\n";
 
     #[test]
     fn a_page_is_read_from_its_first_three_lines() {
@@ -184,7 +206,8 @@ mod tests {
 
     #[test]
     fn a_summary_lists_the_boards_of_their_index() {
-        let index = "| board | |\n|---|---|\n| [`one`](one.md) | One |\n| [`two`](two.md) | Two |\n";
+        let index =
+            "| board | |\n|---|---|\n| [`one`](one.md) | One |\n| [`two`](two.md) | Two |\n";
         let before = "- [Boards](boards/index.md)\n  - [old](boards/old.md)\n- [End](end.md)\n";
         assert_eq!(
             listed(before, "boards", &boards(index)),

@@ -1,10 +1,10 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use crate::{accuracy, arrows, decisions, readme, testing, tools};
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
-pub fn climb() -> Done {
+pub fn climb() -> TaskResult {
     tools::install()?;
     arrows::check()?;
     decisions::check()?;
@@ -17,9 +17,10 @@ pub fn climb() -> Done {
 }
 
 /// Rung 7 by itself, with its table.
-pub fn prove() -> Done {
+pub fn prove() -> TaskResult {
     tools::install()?;
-    let rung = ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
+    let rung =
+        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
     shell::run("cargo", &[&rung[..], &["--", "--nocapture"]].concat())
 }
 
@@ -27,8 +28,9 @@ pub fn prove() -> Done {
 const BARE: &str = "thumbv6m-none-eabi";
 
 /// The link's core on a bare microcontroller; where its target cannot be had, on this machine without `std`.
-pub fn bare() -> Done {
-    let check = ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
+pub fn bare() -> TaskResult {
+    let check =
+        ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
     let there = shell::is_there("rustup") && shell::run("rustup", &["target", "add", BARE]).is_ok();
     if !there {
         shell::say(&format!("no target {BARE}: checked for this machine, without std"));
@@ -38,16 +40,20 @@ pub fn bare() -> Done {
 }
 
 /// Formatting and lints.
-pub fn lint() -> Done {
+pub fn lint() -> TaskResult {
     shell::run("cargo", &["fmt", "--all", "--check"])?;
-    shell::run("cargo", &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
+    shell::run(
+        "cargo",
+        &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"],
+    )
 }
 
 /// The long lock-step: what a test run does in part, it does whole.
-pub fn lockstep() -> Done {
+pub fn lockstep() -> TaskResult {
     tools::install()?;
     let run = |test| {
-        let arguments = ["test", "--release", "-p", "carrystep-tests", "--test", test, "--", "--nocapture"];
+        let arguments =
+            ["test", "--release", "-p", "carrystep-tests", "--test", test, "--", "--nocapture"];
         shell::run_with(&[("CARRYSTEP_CLOCKS", "10000000")], "cargo", &arguments)
     };
     run("rung_4_model_equals_rust_hdl")?;
@@ -56,9 +62,17 @@ pub fn lockstep() -> Done {
 }
 
 /// All mutants of the engine, where a test run takes a few.
-pub fn mutants(write: bool) -> Done {
+pub fn mutants(write: bool) -> TaskResult {
     tools::install()?;
-    let test =
-        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught", "--", "--nocapture"];
+    let test = [
+        "test",
+        "--release",
+        "-p",
+        "carrystep-tests",
+        "--test",
+        "rung_8_mutants_are_caught",
+        "--",
+        "--nocapture",
+    ];
     shell::run_with(&[("CARRYSTEP_MUTANTS", if write { "write" } else { "all" })], "cargo", &test)
 }

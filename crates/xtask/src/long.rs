@@ -6,7 +6,7 @@
 
 mod inputs;
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use crate::tools;
 use std::fmt::Write as _;
 use std::fs;
@@ -17,8 +17,7 @@ use std::time::{Duration, Instant};
 const PAGE: &str = "docs/long-runs.md";
 const BEGIN: &str = "<!-- `cargo xtask long` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
-const HEAD: &str =
-    "| run | what | came to | result | took | date | commit | gateware |\n|---|---|---|---|---|---|---|---|\n";
+const HEAD: &str = "| run | what | came to | result | took | date | commit | gateware |\n|---|---|---|---|---|---|---|---|\n";
 const FIGURES: &str = "FIGURES ";
 
 /// A longer run.
@@ -91,7 +90,15 @@ const RUNS: [Run; 11] = [
         name: "verilog-board",
         what: "the exported Verilog as a board: a second of garbage, then a move; a second of six axes at 500 segments/s over 3 Mbaud",
         asks: &[("CARRYSTEP_VERILOG_MS", "1000")],
-        cargo: &["-p", "carrystep-virtual-board", "--test", "bad_line", "--test", "rates", "verilog_at"],
+        cargo: &[
+            "-p",
+            "carrystep-virtual-board",
+            "--test",
+            "bad_line",
+            "--test",
+            "rates",
+            "verilog_at",
+        ],
     },
     Run {
         name: "resources",
@@ -117,7 +124,7 @@ const RUNS: [Run; 11] = [
 const NOT_YET: &str = "| not run yet | | | | |";
 
 /// Makes the runs that a change since a commit can break, and writes the page.
-pub fn run_since(base: &str) -> Done {
+pub fn run_since(base: &str) -> TaskResult {
     let names = inputs::touched(base)?;
     if names.is_empty() {
         shell::say(&format!("no long run depends on what has changed since {base}"));
@@ -128,7 +135,7 @@ pub fn run_since(base: &str) -> Done {
 }
 
 /// Makes the runs of these names, or all, and writes the page.
-pub fn run(names: &[String]) -> Done {
+pub fn run(names: &[String]) -> TaskResult {
     if let Some(stranger) = names.iter().find(|name| RUNS.iter().all(|run| run.name != **name)) {
         let known: Vec<&str> = RUNS.iter().map(|run| run.name).collect();
         return Err(format!("no long run is called {stranger}; there are {}", known.join(", ")));
@@ -138,7 +145,9 @@ pub fn run(names: &[String]) -> Done {
     let commit = shell::read("git", &["rev-parse", "--short=10", "HEAD"])?;
     let gateware = shell::read("git", &["rev-parse", "--short=10", "HEAD:hdl-out/core"])?;
     let mut failed = Vec::new();
-    for run in RUNS.iter().filter(|run| names.is_empty() || names.iter().any(|name| name == run.name)) {
+    for run in
+        RUNS.iter().filter(|run| names.is_empty() || names.iter().any(|name| name == run.name))
+    {
         shell::say(&format!("== {}: {}", run.name, run.what));
         let begun = Instant::now();
         let (passed, figures) = run.make()?;
@@ -150,12 +159,20 @@ pub fn run(names: &[String]) -> Done {
         let result = if passed { "passed" } else { "FAILED" };
         let date = shell::read("date", &["-u", "+%F"])?;
         let took = minutes(begun.elapsed());
-        let row =
-            format!("{figures} | {result} | {took} | {} | `{}` | `{}` |", date.trim(), commit.trim(), gateware.trim());
+        let row = format!(
+            "{figures} | {result} | {took} | {} | `{}` | `{}` |",
+            date.trim(),
+            commit.trim(),
+            gateware.trim()
+        );
         write(run, &row)?;
         shell::say(&format!("== {}: {result} in {took}: {figures}", run.name));
     }
-    if failed.is_empty() { Ok(()) } else { Err(format!("long runs that failed: {}", failed.join(", "))) }
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("long runs that failed: {}", failed.join(", ")))
+    }
 }
 
 impl Run {
@@ -166,10 +183,15 @@ impl Run {
         let last: &[&str] = if is_test { &["--", "--nocapture"] } else { &[] };
         let mut command = shell::command("cargo", &[first, self.cargo, last].concat());
         command.envs(self.asks.iter().copied()).env("CARRYSTEP_FRESH", "1").stderr(Stdio::piped());
-        let mut running = command.spawn().map_err(|error| format!("cannot start cargo: {error}"))?;
+        let mut running =
+            command.spawn().map_err(|error| format!("cannot start cargo: {error}"))?;
         let mut figures = Vec::new();
-        for line in
-            running.stderr.take().into_iter().flat_map(|said| BufReader::new(said).lines()).map_while(Result::ok)
+        for line in running
+            .stderr
+            .take()
+            .into_iter()
+            .flat_map(|said| BufReader::new(said).lines())
+            .map_while(Result::ok)
         {
             shell::say(&line);
             figures.extend(line.strip_prefix(FIGURES).map(str::to_owned));
@@ -181,9 +203,13 @@ impl Run {
 }
 
 /// Fails where a file but the page is not as it was committed.
-fn committed() -> Done {
+fn committed() -> TaskResult {
     let changed = shell::read("git", &["status", "--porcelain", "--", ".", &format!(":!{PAGE}")])?;
-    if changed.is_empty() { Ok(()) } else { Err(format!("not committed, so no commit to name:\n{changed}")) }
+    if changed.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("not committed, so no commit to name:\n{changed}"))
+    }
 }
 
 fn minutes(took: Duration) -> String {
@@ -191,7 +217,7 @@ fn minutes(took: Duration) -> String {
 }
 
 /// Replaces the row of one run; the page appears whole or not at all.
-fn write(run: &Run, row: &str) -> Done {
+fn write(run: &Run, row: &str) -> TaskResult {
     let path = shell::root().join(PAGE);
     let page = fs::read_to_string(&path).map_err(|error| format!("{PAGE}: {error}"))?;
     let lost = || format!("{PAGE} has lost a mark of its table");
@@ -199,7 +225,9 @@ fn write(run: &Run, row: &str) -> Done {
     let (table, after) = rest.split_once(END).ok_or_else(lost)?;
     let text = format!("{before}{BEGIN}\n\n{}\n{END}{after}", with_row(table, run.name, row));
     let next = path.with_extension("md.new");
-    fs::write(&next, text).and_then(|()| fs::rename(&next, &path)).map_err(|error| format!("{PAGE}: {error}"))
+    fs::write(&next, text)
+        .and_then(|()| fs::rename(&next, &path))
+        .map_err(|error| format!("{PAGE}: {error}"))
 }
 
 /// The table with one row replaced; the others as they were.

@@ -75,14 +75,15 @@ enum Chore {
 }
 
 /// Times everything; what is printed is the bench's own.
-fn bench(json: bool) -> shell::Done {
+fn bench(json: bool) -> shell::TaskResult {
     tools::install()?;
-    let arguments = ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
+    let arguments =
+        ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
     shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
 }
 
 /// Size and speed of every row of the table.
-fn resources() -> shell::Done {
+fn resources() -> shell::TaskResult {
     tools::install()?;
     shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-tools"])
 }

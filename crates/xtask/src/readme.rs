@@ -2,7 +2,7 @@
 //! every test run.
 
 use crate::decisions;
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use std::fs;
 use std::path::PathBuf;
 
@@ -12,23 +12,27 @@ const PLOT: &str = "docs/pictures/demo.svg";
 const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
 
 /// Script that makes GTKWave save a picture of its window.
-const GRAB: &str =
-    "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
+const GRAB: &str = "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
 
 /// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
 /// JSON Schemas. The list of boards in `docs/SUMMARY.md` follows.
-pub fn generate() -> Done {
-    let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
-    ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
-    shell::run("cargo", &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"])?;
-    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"])?;
+pub fn generate() -> TaskResult {
+    shell::run(
+        "cargo",
+        &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"],
+    )?;
+    shell::run(
+        "cargo",
+        &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"],
+    )?;
     decisions::write()
 }
 
 /// Fails if the README or the committed plot differs from the current output of the demo.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     let (table, plot) = demo()?;
-    let stale = |what: &str| Err(format!("{what} is not what the demo gives: run `cargo xtask readme`"));
+    let stale =
+        |what: &str| Err(format!("{what} is not what the demo gives: run `cargo xtask readme`"));
     if !read("README.md")?.contains(&block(&table)) {
         return stale("the table in README.md");
     }
@@ -43,10 +47,11 @@ pub fn check() -> Done {
 }
 
 /// Writes the table of the README and both pictures.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     let (table, plot) = demo()?;
     let readme = read("README.md")?;
-    let (before, rest) = readme.split_once(BEGIN).ok_or("README.md has lost its mark for the table")?;
+    let (before, rest) =
+        readme.split_once(BEGIN).ok_or("README.md has lost its mark for the table")?;
     let (_, after) = rest.split_once(END).ok_or("README.md has lost the end of its table")?;
     save("README.md", &format!("{before}{}{after}", block(&table)))?;
     fs::create_dir_all(shell::root().join("docs/pictures")).map_err(|error| error.to_string())?;
@@ -65,10 +70,12 @@ fn block(table: &str) -> String {
 }
 
 /// Saves a picture of the waveform in GTKWave with the save file that the demo writes.
-fn waveform() -> Done {
+fn waveform() -> TaskResult {
     for (tool, package) in [("gtkwave", "gtkwave"), ("xvfb-run", "xvfb xauth")] {
         if !shell::is_there(tool) {
-            return Err(format!("{tool} is missing for the picture: sudo apt-get install {package}"));
+            return Err(format!(
+                "{tool} is missing for the picture: sudo apt-get install {package}"
+            ));
         }
     }
     let script = shell::root().join("sim/out/grab.tcl");
@@ -96,6 +103,6 @@ fn read(name: &str) -> Result<String, String> {
     fs::read_to_string(path(name)).map_err(|error| format!("{name}: {error}"))
 }
 
-fn save(name: &str, text: &str) -> Done {
+fn save(name: &str, text: &str) -> TaskResult {
     fs::write(path(name), text).map_err(|error| format!("{name}: {error}"))
 }

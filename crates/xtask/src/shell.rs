@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 /// Result of a task; the error is a sentence that says what failed.
-pub type Done = Result<(), String>;
+pub type TaskResult = Result<(), String>;
 
 /// The root directory of the workspace.
 pub fn root() -> PathBuf {
@@ -30,18 +30,24 @@ pub fn command(program: &str, arguments: &[&str]) -> Command {
 }
 
 /// Runs a command; its output goes to the terminal.
-pub fn run(program: &str, arguments: &[&str]) -> Done {
+pub fn run(program: &str, arguments: &[&str]) -> TaskResult {
     run_with(&[], program, arguments)
 }
 
 /// As [`run`], with additional environment variables.
-pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> Done {
+pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> TaskResult {
     let set: String = variables.iter().map(|(name, value)| format!("{name}={value} ")).collect();
     say(&format!("$ {set}{program} {}", arguments.join(" ")));
     let mut command = command(program, arguments);
-    let status =
-        command.envs(variables.iter().copied()).status().map_err(|error| format!("cannot start {program}: {error}"))?;
-    if status.success() { Ok(()) } else { Err(format!("`{program} {}` failed ({status})", arguments.join(" "))) }
+    let status = command
+        .envs(variables.iter().copied())
+        .status()
+        .map_err(|error| format!("cannot start {program}: {error}"))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("`{program} {}` failed ({status})", arguments.join(" ")))
+    }
 }
 
 /// Runs a command whose complaints go to the terminal, and takes what it prints to its standard output.
@@ -51,7 +57,8 @@ pub fn read_stdout(program: &str, arguments: &[&str]) -> Result<String, String> 
     if !output.status.success() {
         return Err(format!("`{program} {}` failed ({})", arguments.join(" "), output.status));
     }
-    String::from_utf8(output.stdout).map_err(|_| format!("{program} printed something that is not text"))
+    String::from_utf8(output.stdout)
+        .map_err(|_| format!("{program} printed something that is not text"))
 }
 
 /// What could not be done with a file, and why.
@@ -61,12 +68,19 @@ pub fn cannot(what: &str, path: &Path, error: &std::io::Error) -> String {
 
 /// Runs a command and takes what it prints.
 pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
-    let output = command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
+    let output = command(program, arguments)
+        .output()
+        .map_err(|error| format!("cannot start {program}: {error}"))?;
     if !output.status.success() {
         let stderr = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("`{program} {}` failed ({}): {stderr}", arguments.join(" "), output.status));
+        return Err(format!(
+            "`{program} {}` failed ({}): {stderr}",
+            arguments.join(" "),
+            output.status
+        ));
     }
-    String::from_utf8(output.stdout).map_err(|_| format!("{program} printed something that is not text"))
+    String::from_utf8(output.stdout)
+        .map_err(|_| format!("{program} printed something that is not text"))
 }
 
 /// The built command, where a chore has built it already.

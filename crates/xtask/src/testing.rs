@@ -16,12 +16,12 @@ mod report;
 mod schedule;
 mod slices;
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use binaries::{Binary, Workspace};
-use memory::Memory;
+use memory::TestTimes;
 use outcome::Counts;
 use process::Running;
-use report::Report;
+use report::TestReport;
 use schedule::Schedule;
 use slices::Slice;
 use std::fs;
@@ -49,15 +49,15 @@ impl Workspace {
     ///
     /// # Errors
     /// A test failed, a binary ended early, or no test was executed.
-    pub fn run(&self) -> Done {
+    pub fn run(&self) -> TaskResult {
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let path = self.target.join("test-durations.json");
-        let mut memory = Memory::read(&path);
+        let mut memory = TestTimes::read(&path);
         let slices = self.slices(&memory)?;
         let outputs = self.target.join("test-output");
         empty(&outputs)?;
         let mut schedule = Schedule::new(&slices, cores);
-        let mut report = Report::new(&self.binaries, &slices, &outputs);
+        let mut report = TestReport::new(&self.binaries, &slices, &outputs);
         let mut running: Vec<Running> = Vec::new();
         loop {
             let busy: usize = running.iter().map(|one| slices[one.slice].cores(cores)).sum();
@@ -91,7 +91,7 @@ impl Workspace {
     }
 
     /// The slices of all binaries.
-    fn slices(&self, memory: &Memory) -> Result<Vec<Slice>, String> {
+    fn slices(&self, memory: &TestTimes) -> Result<Vec<Slice>, String> {
         let mut slices = Vec::new();
         for (place, binary) in self.binaries.iter().enumerate() {
             let tests = process::tests(binary)?;
@@ -107,7 +107,7 @@ impl Workspace {
 }
 
 /// A run in which no test passed is a failure.
-fn verdict(counts: Counts) -> Done {
+fn verdict(counts: Counts) -> TaskResult {
     match counts {
         Counts { failed: 0, passed: 0, .. } => Err("no test was executed".to_owned()),
         Counts { failed: 0, .. } => Ok(()),
@@ -116,7 +116,7 @@ fn verdict(counts: Counts) -> Done {
 }
 
 /// Makes a folder that holds nothing.
-fn empty(folder: &Path) -> Done {
+fn empty(folder: &Path) -> TaskResult {
     if folder.is_dir() {
         fs::remove_dir_all(folder).map_err(|error| shell::cannot("empty", folder, &error))?;
     }

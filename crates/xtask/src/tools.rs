@@ -1,7 +1,7 @@
 //! Installs the tools that the tests need beside Cargo, by apt where possible. A new tool is a row
 //! of `NEEDED`.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 
 /// Each program, and the Debian package that contains it.
 const NEEDED: [(&str, &str); 14] = [
@@ -22,7 +22,7 @@ const NEEDED: [(&str, &str); 14] = [
 ];
 
 /// Installs the missing tools, or reports which ones must be installed by hand.
-pub fn install() -> Done {
+pub fn install() -> TaskResult {
     let missing = missing();
     if missing.is_empty() {
         return Ok(());
@@ -30,15 +30,19 @@ pub fn install() -> Done {
     let line = format!("apt-get install -y --no-install-recommends {}", missing.join(" "));
     let advice = format!("missing for the tests: {}\n  install: sudo {line}", missing.join(", "));
     if !shell::is_there("apt-get") {
-        return Err(format!("{advice}\n  (this system has no apt-get: use its own packages of these names)"));
+        return Err(format!(
+            "{advice}\n  (this system has no apt-get: use its own packages of these names)"
+        ));
     }
     let root = shell::read("id", &["-u"]).is_ok_and(|id| id.trim() == "0");
     let before: &[&str] = if root { &[] } else { &["sudo", "-n"] };
     let apt = |arguments: &[&str]| {
-        let words: Vec<&str> = before.iter().chain(&["apt-get"]).chain(arguments).copied().collect();
+        let words: Vec<&str> =
+            before.iter().chain(&["apt-get"]).chain(arguments).copied().collect();
         shell::run(words[0], &words[1..])
     };
-    let packages: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(missing).collect();
+    let packages: Vec<&str> =
+        ["install", "-y", "--no-install-recommends"].into_iter().chain(missing).collect();
     apt(&["update"]).and_then(|()| apt(&packages)).map_err(|error| format!("{error}\n{advice}"))?;
     match self::missing().as_slice() {
         [] => Ok(()),
@@ -47,8 +51,11 @@ pub fn install() -> Done {
 }
 
 fn missing() -> Vec<&'static str> {
-    let mut packages: Vec<&str> =
-        NEEDED.iter().filter(|(program, _)| !shell::is_there(program)).map(|&(_, package)| package).collect();
+    let mut packages: Vec<&str> = NEEDED
+        .iter()
+        .filter(|(program, _)| !shell::is_there(program))
+        .map(|&(_, package)| package)
+        .collect();
     packages.dedup();
     packages
 }

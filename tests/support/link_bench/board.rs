@@ -48,7 +48,8 @@ impl BoardPins {
             // The LED is lit while no stop has been called.
             showed = showed.and(1, u64::from(shown.fault.is_none() != self.board.led_low));
         }
-        let showed = self.board.ties.iter().fold(showed, |showed, tie| showed.and(1, u64::from(tie.level)));
+        let showed =
+            self.board.ties.iter().fold(showed, |showed, tie| showed.and(1, u64::from(tie.level)));
         self.vectors.add(told.and(MASK, u64::from(pins.limit_min)), showed);
     }
 }

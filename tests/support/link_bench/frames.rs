@@ -44,7 +44,9 @@ pub fn unframe(line: &[u8]) -> Option<Vec<u8>> {
 /// The CRC-32, computed bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let shift = |sum: u32| sum >> 1 ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 };
-    !bytes.iter().fold(u32::MAX, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| shift(sum)))
+    !bytes
+        .iter()
+        .fold(u32::MAX, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| shift(sum)))
 }
 
 /// An answer, divided into its fields according to the page and independent of the table.

@@ -83,7 +83,17 @@ pub(super) struct SpiHost {
 
 impl SpiHost {
     pub(super) fn new(half: u32) -> Self {
-        Self { half, due: 0, sends: None, bit: 0, bytes: 0, rest: 0, sck: false, rises: false, comes: 0 }
+        Self {
+            half,
+            due: 0,
+            sends: None,
+            bit: 0,
+            bytes: 0,
+            rest: 0,
+            sck: false,
+            rises: false,
+            comes: 0,
+        }
     }
 
     /// SCK, select (active low) and MOSI.
@@ -117,7 +127,11 @@ impl SpiHost {
         if self.bit == 8 {
             self.bit = 0;
             self.bytes += 1;
-            self.sends = if self.bytes.is_multiple_of(7) { None } else { Some(bytes.pop_front().unwrap_or(END)) };
+            self.sends = if self.bytes.is_multiple_of(7) {
+                None
+            } else {
+                Some(bytes.pop_front().unwrap_or(END))
+            };
             self.rest = if self.sends.is_none() { 9 } else { 0 };
         }
     }

@@ -54,14 +54,21 @@ pub struct Sample {
 /// # Panics If yosys is missing or fails.
 pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let folder = tempfile::tempdir().expect("a folder");
-    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written");
+    let read = |name: &str| {
+        std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written")
+    };
     std::fs::write(folder.path().join("core.v"), verilog).expect("a file");
     // The number is greater than that of all mutants, so yosys lists all of them.
     let list = format!("mutate -list 1000000 -seed {SEED} -o list");
     yosys(
         folder.path(),
-        &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il; {PURGE}; {list}"),
+        &format!(
+            "read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il"
+        ),
     );
+    let netlist = named_by_instance(&read("core.il"));
+    std::fs::write(folder.path().join("core.il"), &netlist).expect("a file");
+    yosys(folder.path(), &format!("read_rtlil core.il; {PURGE}; {list}"));
     let mutants = draw(candidates(&read("list"), verilog), count);
     let width = usize::BITS - count.leading_zeros();
     let mut script = format!("read_rtlil core.il\n{PURGE}\n");
@@ -72,7 +79,7 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let _ = write!(script, "delete -port {top}/w:mutant\nwrite_verilog -noattr mutants.v\n");
     std::fs::write(folder.path().join("apply.ys"), script).expect("a file");
     yosys(folder.path(), "script apply.ys");
-    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist: read("core.il") }
+    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist }
 }
 
 impl Sample {
@@ -82,12 +89,44 @@ impl Sample {
     pub fn alone(&self, mutant: Option<&Mutant>) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("core.il"), &self.netlist).expect("a file");
-        let change = mutant.map(|mutant| format!("mutate {}\n", mutant.command)).unwrap_or_default();
+        let change =
+            mutant.map(|mutant| format!("mutate {}\n", mutant.command)).unwrap_or_default();
         let script = format!("read_rtlil core.il\n{change}write_verilog -noattr alone.v\n");
         std::fs::write(folder.path().join("alone.ys"), script).expect("a file");
         yosys(folder.path(), "script alone.ys");
         std::fs::read_to_string(folder.path().join("alone.v")).expect("what yosys has written")
     }
+}
+
+/// The netlist (RTLIL) in which a module that yosys has made of one with parameters is named after its kind or, in an
+/// array of instances, after the first of its instances: `carrystep_pulser_2` in place of
+/// `$paramod$1f2e\carrystep_pulser`.
+fn named_by_instance(netlist: &str) -> String {
+    let mut names: HashMap<&str, String> = HashMap::new();
+    for line in netlist.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let ["cell", part, instance] = words[..] else { continue };
+        let Some((_, kind)) =
+            part.strip_prefix("$paramod").and_then(|rest| rest.split_once("\\carrystep_"))
+        else {
+            continue;
+        };
+        let kind = kind.split('\\').next().unwrap_or(kind);
+        let instance = instance.trim_start_matches('\\');
+        let index = instance
+            .strip_prefix(kind)
+            .filter(|rest| rest.strip_prefix('_').is_some_and(is_number));
+        names
+            .entry(part)
+            .or_insert_with(|| format!("\\carrystep_{kind}{}", index.unwrap_or_default()));
+    }
+    let word = |word: &str| names.get(word).map_or(word, String::as_str).to_owned();
+    let line = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ") + "\n";
+    netlist.lines().map(line).collect()
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// The selecting input is replaced by a variable that is set once. As a port, Verilator would
@@ -118,7 +157,9 @@ fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
     let mut seen: HashMap<String, u32> = HashMap::new();
     let mutants = list.lines().filter_map(|line| {
         let command = line.strip_prefix("mutate ")?;
-        let option = |name: &str| command.split(&format!("-{name} ")).nth(1).and_then(|rest| rest.split(' ').next());
+        let option = |name: &str| {
+            command.split(&format!("-{name} ")).nth(1).and_then(|rest| rest.split(' ').next())
+        };
         let (module, port) = (option("module")?.trim_start_matches("carrystep_"), option("port")?);
         if CLOCKS.contains(&port) {
             return None;
@@ -131,18 +172,27 @@ fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
             "cnot0" => format!("inverted where bit {} is 0", bit("ctrlbit")),
             _ => format!("inverted where bit {} is 1", bit("ctrlbit")),
         };
-        let wire = option("wire").map(|wire| format!(" ({wire}[{}])", bit("wirebit"))).unwrap_or_default();
-        let source = command.rsplit("-src ").next().and_then(|place| place.split(':').nth(1)?.split('.').next());
-        let source = source.and_then(|number| lines.get(number.parse::<usize>().ok()?.checked_sub(1)?));
+        let wire =
+            option("wire").map(|wire| format!(" ({wire}[{}])", bit("wirebit"))).unwrap_or_default();
+        let source = command
+            .rsplit("-src ")
+            .next()
+            .and_then(|place| place.split(':').nth(1)?.split('.').next());
+        let source =
+            source.and_then(|number| lines.get(number.parse::<usize>().ok()?.checked_sub(1)?));
         let source = source.map_or("", |text| text.trim());
         let cell = option("cell").map(kind)?;
-        let mut name = format!("{module}: {cell} {port}[{}]{wire} {what}: {source}", bit("portbit"));
+        let mut name =
+            format!("{module}: {cell} {port}[{}]{wire} {what}: {source}", bit("portbit"));
         let twins = seen.entry(name.clone()).or_default();
         *twins += 1;
         if *twins > 1 {
             let _ = write!(name, " #{twins}");
         }
-        Some((Mutant { name, module: module.to_owned(), command: command.to_owned() }, format!("{module}: {source}")))
+        Some((
+            Mutant { name, module: module.to_owned(), command: command.to_owned() },
+            format!("{module}: {source}"),
+        ))
     });
     mutants.collect()
 }

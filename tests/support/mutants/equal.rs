@@ -45,7 +45,9 @@ const MOST_BITS: usize = 1024;
 ///
 /// # Panics If a tool is missing or fails.
 pub fn proved(sample: &Sample, mutant: &Mutant) -> Option<Scope> {
-    [Scope::Module, Scope::Memories, Scope::Engine].into_iter().find(|scope| is_proved(sample, mutant, *scope))
+    [Scope::Module, Scope::Memories, Scope::Engine]
+        .into_iter()
+        .find(|scope| is_proved(sample, mutant, *scope))
 }
 
 /// True if a mutant is proved equal to the original in this scope; false if the scope does not
@@ -84,14 +86,18 @@ fn holds(folder: &Path, limit: u32) -> bool {
     let ask = format!("read_aiger equal.aig; fold; strash; scorr; pdr -T {limit}");
     let verdicts = |output: &Output| {
         let said = String::from_utf8_lossy(&output.stdout);
-        ["Property proved.", "was asserted in frame", "UNDECIDED"].map(|verdict| said.contains(verdict))
+        ["Property proved.", "was asserted in frame", "UNDECIDED"]
+            .map(|verdict| said.contains(verdict))
     };
     // What was not decided in time may be decided in another run.
     let output = kept::output(&YOSYS_ABC, folder, &["-c", &ask], |output| !verdicts(output)[2]);
     let output = output.expect("yosys-abc is not installed: `cargo xtask tools` installs it");
     let said = String::from_utf8_lossy(&output.stdout);
     let verdicts = verdicts(&output);
-    assert!(output.status.success() && verdicts.iter().filter(|said| **said).count() == 1, "yosys-abc: {said}");
+    assert!(
+        output.status.success() && verdicts.iter().filter(|said| **said).count() == 1,
+        "yosys-abc: {said}"
+    );
     verdicts[0]
 }
 
@@ -120,7 +126,11 @@ impl<'a> Modules<'a> {
                 ["parameter", "\\SIZE", words] => size = words.parse::<usize>().ok(),
                 // Only a memory has both parameters.
                 ["parameter", "\\WIDTH", width] => {
-                    let bits = width.parse::<usize>().ok().zip(size).map_or(0, |(width, size)| width * size);
+                    let bits = width
+                        .parse::<usize>()
+                        .ok()
+                        .zip(size)
+                        .map_or(0, |(width, size)| width * size);
                     all.entry(name).or_default().bits += bits;
                 }
                 _ => {}
@@ -135,11 +145,18 @@ impl<'a> Modules<'a> {
         let has_memory = |name: &&str| self.0.get(*name).is_some_and(|module| module.bits > 0);
         let top = if scope == Scope::Engine { ENGINE } else { own };
         let inside: Vec<&str> = self.inside(top).into_iter().filter(has_memory).collect();
-        let bits =
-            |names: &[&str]| names.iter().filter_map(|name| self.0.get(name)).map(|module| module.bits).sum::<usize>();
+        let bits = |names: &[&str]| {
+            names
+                .iter()
+                .filter_map(|name| self.0.get(name))
+                .map(|module| module.bits)
+                .sum::<usize>()
+        };
         match scope {
             Scope::Module => (bits(&[own]) <= MOST_BITS).then_some((top, inside)),
-            Scope::Memories => (!inside.is_empty() && bits(&inside) <= MOST_BITS).then_some((top, Vec::new())),
+            Scope::Memories => {
+                (!inside.is_empty() && bits(&inside) <= MOST_BITS).then_some((top, Vec::new()))
+            }
             Scope::Engine => (top != own && !has_memory(&own)).then_some((top, inside)),
         }
     }
@@ -147,7 +164,8 @@ impl<'a> Modules<'a> {
     /// All modules inside a module, at any depth.
     fn inside(&self, name: &str) -> Vec<&'a str> {
         let parts = self.0.get(name).map(|module| module.parts.clone()).unwrap_or_default();
-        let mut all: Vec<&str> = parts.iter().flat_map(|part| self.inside(part)).chain(parts.clone()).collect();
+        let mut all: Vec<&str> =
+            parts.iter().flat_map(|part| self.inside(part)).chain(parts.clone()).collect();
         all.sort_unstable();
         all.dedup();
         all

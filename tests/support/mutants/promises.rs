@@ -5,7 +5,7 @@
 
 use super::draw::{Mutant, Sample};
 use super::stimuli;
-use crate::proofs::builds::BuiltEngine;
+use crate::proofs::builds::{BuiltEngine, pin_parameters};
 use crate::proofs::{self, Case, Proof, ProofError, Question};
 
 /// The module whose promises a mutant breaks. A promise that the engine itself breaks in this form
@@ -15,16 +15,31 @@ use crate::proofs::{self, Case, Proof, ProofError, Question};
 pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
     let built: BuiltEngine = (stimuli::build(), stimuli::verilog().into());
     let dut = format!("carrystep_{}", mutant.module);
+    // A pulser is named after its axis. All are one module in the exported text, but not in the netlist.
+    let axis = mutant.module.strip_prefix("pulser_").and_then(|axis| axis.parse::<usize>().ok());
+    let pins = axis.map(|axis| pin_parameters(&built.0.pins[axis]));
+    let is_own = |case: &Case| match &pins {
+        Some(pins) => case.dut == "carrystep_pulser" && case.parameters == *pins,
+        None => case.dut == dut,
+    };
     let breaks = |proof: &Proof, mutant: Option<&Mutant>| {
-        let mut cases = proof.cases.iter().filter(|case| case.dut == dut && case.verilog == built.1);
+        let mut cases = proof.cases.iter().filter(|case| is_own(case) && case.verilog == built.1);
         let verilog = sample.alone(mutant);
         cases.any(|case| {
-            let case = Case { verilog: verilog.as_str().into(), ..case.clone() };
+            // The mutant's netlist has no parameters.
+            let case = Case {
+                verilog: verilog.as_str().into(),
+                dut: dut.clone(),
+                parameters: Vec::new(),
+                ..case.clone()
+            };
             match proofs::ask(&proof.promises, &case, Question::Broken(proof.reach)) {
                 Ok(()) => true,
                 Err(ProofError::Refuted(_)) => false,
                 // A promise may refer to an internal wire that the mutant's netlist no longer has.
-                Err(ProofError::Tool { said, .. }) if said.contains("Failed to parse set rhs") => false,
+                Err(ProofError::Tool { said, .. }) if said.contains("Failed to parse set rhs") => {
+                    false
+                }
                 Err(error) => panic!("{dut}: {error}"),
             }
         })

@@ -1,12 +1,13 @@
 //! The stimuli of the mutants: the model's recordings of the shipped machine in normal work and in
 //! all kinds of stops.
 
+mod resets;
 mod stops;
 mod work;
 
 use crate::moves::root;
 use carrystep_core::{EngineBuild, Program};
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::Recording;
 use proptest::strategy::{Strategy, ValueTree as _};
@@ -38,7 +39,7 @@ pub fn build() -> EngineBuild {
     let shipped = "clock_hz = 80_000_000\ntick_ns = 1000\n";
     assert!(text.contains(shipped), "the shipped machine has another clock or tick");
     let text = text.replace(shipped, "clock_hz = 48_000_000\ntick_ns = 2000\n");
-    Machine::from_source(&Source { path, text: text.into() }).expect("a fine machine").engine()
+    Machine::from_source(&SourceText { path, text: text.into() }).expect("a fine machine").engine()
 }
 
 /// The Verilog that is exported for it.
@@ -48,12 +49,21 @@ pub fn verilog() -> String {
 
 /// All recordings in the order of use: those that catch many mutants in few clocks come first.
 pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
-    [work::all(build), stops::all(build)].concat()
+    [work::all(build), stops::all(build), resets::all(build)].concat()
 }
 
 impl Stimulus {
-    fn new(build: &EngineBuild, name: impl Into<String>, program: &Program, events: &Events) -> Self {
-        Self { name: name.into(), recording: Recording::new(build, program, events, MOST_CLOCKS), modules: &[] }
+    fn new(
+        build: &EngineBuild,
+        name: impl Into<String>,
+        program: &Program,
+        events: &Events,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            recording: Recording::new(build, program, events, MOST_CLOCKS),
+            modules: &[],
+        }
     }
 
     fn only_for(self, modules: &'static [&'static str]) -> Self {
@@ -68,7 +78,8 @@ impl Stimulus {
 
 /// Draws `count` programs with the fixed seed.
 fn drawn<T>(strategy: &impl Strategy<Value = T>, count: usize) -> Vec<T> {
-    let config = Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
+    let config =
+        Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new(config);
     (0..count).map(|_| strategy.new_tree(&mut runner).expect("a program").current()).collect()
 }

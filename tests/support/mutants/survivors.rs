@@ -2,7 +2,7 @@
 //! the reason below it.
 //!
 //! ```text
-//! - `watch: eq B[3] always 1: wire silent = silence == WATCHDOG;`
+//! - `supervisor: eq B[3] always 1: wire silent = silence == WATCHDOG;`
 //!   Proved equal: its module, for any inputs.
 //! ```
 
@@ -44,10 +44,17 @@ fn page() -> PathBuf {
 /// # Panics If the page has no list.
 pub fn read() -> Survivors {
     let text = std::fs::read_to_string(page()).expect("docs/mutants.md");
-    let list =
-        text.split_once(BEGIN).and_then(|(_, rest)| rest.split_once(END)).expect("the list in docs/mutants.md").0;
+    let list = text
+        .split_once(BEGIN)
+        .and_then(|(_, rest)| rest.split_once(END))
+        .expect("the list in docs/mutants.md")
+        .0;
     let items = list.split("\n- `").skip(1).filter_map(|item| item.split_once("`\n"));
-    items.map(|(name, reason)| (name.to_owned(), reason.split_whitespace().collect::<Vec<_>>().join(" "))).collect()
+    items
+        .map(|(name, reason)| {
+            (name.to_owned(), reason.split_whitespace().collect::<Vec<_>>().join(" "))
+        })
+        .collect()
 }
 
 /// Rewrites the list.
@@ -62,5 +69,6 @@ pub fn write(survivors: &Survivors) {
         // Writing to a string cannot fail.
         let _ = writeln!(list, "- `{name}`\n  {reason}");
     }
-    std::fs::write(page(), format!("{before}{BEGIN}\n\n{list}\n{END}{after}")).expect("docs/mutants.md");
+    std::fs::write(page(), format!("{before}{BEGIN}\n\n{list}\n{END}{after}"))
+        .expect("docs/mutants.md");
 }

@@ -4,9 +4,10 @@
 use super::Case;
 use crate::{lockstep, moves};
 use carrystep_core::build::MAX_CLOCKS;
-use carrystep_core::engine::{EngineBuild, Guard, Limits};
+use carrystep_core::engine::{EngineBuild, Guard, LimitWiring};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
+use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
 use std::sync::Arc;
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
@@ -24,7 +25,12 @@ pub fn small(phases: u32) -> (Build, Arc<str>) {
 
 /// The same build with another start value of P.
 pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
-    let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
+    let pins = |step_high, step_low, dir_setup, dir_hold| PinTiming {
+        step_high,
+        step_low,
+        dir_setup,
+        dir_hold,
+    };
     let pins: [PinTiming; AXES] = [
         pins(2, 3, 4, 3),
         PinTiming::SHORTEST,
@@ -44,19 +50,26 @@ pub type BuiltEngine = (EngineBuild, Arc<str>);
 /// The shipped engine: its build, and the Verilog in `hdl-out/` as it is committed.
 pub fn shipped_engine() -> BuiltEngine {
     let root = moves::root();
-    let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v")).expect("the committed Verilog");
+    let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v"))
+        .expect("the committed Verilog");
     let machine = Machine::load(&root.join("sim/six-axis.toml")).expect("the engine's machine");
     (machine.engine(), text.into())
 }
 
 /// An engine with this many axes and clocks per tick, with extreme pin timings and a guard with
 /// small figures.
-pub fn small_engine(axes: usize, clocks: u32, phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
-    let timebase = Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
+pub fn small_engine(
+    axes: usize,
+    clocks: u32,
+    phases: u32,
+    limits: LimitWiring,
+) -> (EngineBuild, Arc<str>) {
+    let timebase =
+        Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
     minimal.pins.resize(axes, PinTiming::SHORTEST);
     minimal.guard.stop.resize(axes, 1 << 40);
-    let low = limits != Limits::Pair;
+    let low = limits != LimitWiring::Pair;
     let guard = Guard {
         round: 2,
         debounce: 2,
@@ -88,20 +101,39 @@ pub fn beat_name(time: &Timebase) -> String {
     format!("{} clocks in {} phases", time.clocks_per_tick(), time.phases())
 }
 
-/// One case for each pin timing of the builds, with the module of this kind that was exported for
-/// it.
+/// One case for each pin timing of the builds. All are of one module of this kind, whose parameters they are.
 pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     for (pins, verilog) in builds {
         for pins in pins {
-            let name = format!("w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold);
-            let numbers = [("W", pins.width), ("S", pins.gap), ("D", pins.setup), ("H", pins.hold)];
-            let numbers = numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
-            let dut = format!("{kind}_{name}");
-            if cases.iter().all(|case| case.dut != dut) {
-                cases.push(Case { name, dut, verilog: verilog.clone(), numbers });
+            let name = format!(
+                "w{}_s{}_d{}_h{}",
+                pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold
+            );
+            let numbers = [
+                ("STEP_HIGH", pins.step_high),
+                ("STEP_LOW", pins.step_low),
+                ("DIR_SETUP", pins.dir_setup),
+                ("DIR_HOLD", pins.dir_hold),
+            ];
+            let numbers =
+                numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
+            if cases.iter().all(|case| case.name != name) {
+                let (dut, parameters) = (kind.to_owned(), pin_parameters(pins));
+                cases.push(Case { name, dut, parameters, verilog: verilog.clone(), numbers });
             }
         }
     }
     cases
+}
+
+/// The parameters of a pulser or shaper with this timing.
+pub fn pin_parameters(pins: &PinTiming) -> Vec<(&'static str, u32)> {
+    let &PinTiming { step_high, step_low, dir_setup, dir_hold } = pins;
+    vec![
+        (STEP_HIGH.name, step_high),
+        (STEP_LOW.name, step_low),
+        (DIR_SETUP.name, dir_setup),
+        (DIR_HOLD.name, dir_hold),
+    ]
 }

@@ -2,7 +2,7 @@
 
 use super::builds::{BuiltEngine, axes, beat, beat_name, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -11,12 +11,20 @@ const BUGS: &[Bug] = &[
         becomes: ".clock(clock),\n        .frozen(stops_ramp),",
     },
     Bug {
-        breaks: "promise_6_taken_in_its_turn",
-        text: "turn_beat[7] & (turn_axis",
-        becomes: "turn_beat[6] & (turn_axis",
+        breaks: "promise_6_taken_in_its_time_slot",
+        text: "time_slot_beat[7] & (time_slot_axis",
+        becomes: "time_slot_beat[6] & (time_slot_axis",
     },
-    Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
-    Bug { breaks: "promise_6_no_such_axis_is_told", text: "((put_valid & nobody) | broken)", becomes: "broken" },
+    Bug {
+        breaks: "promise_6_nothing_taken_in_a_fault",
+        text: "put_ready = !stops_fault &",
+        becomes: "put_ready =",
+    },
+    Bug {
+        breaks: "promise_6_no_such_axis_is_told",
+        text: "((put_valid & nobody) | broken | queue_misplaced)",
+        becomes: "(broken | queue_misplaced)",
+    },
     Bug {
         breaks: "promise_6_something_to_start",
         text: "unfed <= unfed | (masked & queue_empty);",
@@ -25,32 +33,69 @@ const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_6_a_start_is_kept",
         text: "if (go | stops_fault) begin",
-        becomes: "if (turn_beat[3]) begin",
+        becomes: "if (time_slot_beat[3]) begin",
     },
-    Bug { breaks: "promise_8_idle", text: "rest_2 & !waits & !pins_busy", becomes: "rest_2 & !pins_busy" },
-    Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
+    Bug {
+        breaks: "promise_8_idle",
+        text: "rest_2 & !waits & !pins_busy",
+        becomes: "rest_2 & !pins_busy",
+    },
+    Bug {
+        breaks: "promise_8_idle_is_empty",
+        text: "rest_2 <= !active & rest_1;",
+        becomes: "rest_2 <= 1'b1;",
+    },
     Bug {
         breaks: "promise_12_own_requests",
-        text: ".request(wheel_events & wheel_phase_start)",
-        becomes: ".request(wheel_events)",
+        text: ".request(event_wheel_events & event_wheel_phase_start)",
+        becomes: ".request(event_wheel_events)",
     },
-    Bug { breaks: "promise_12_starts_who_is_asked_to", text: ".starts(going & masked)", becomes: ".starts(going)" },
-    Bug { breaks: "promise_12_a_limit_slows_its_own_axis", text: "stops_ramp | homes_slows", becomes: "stops_ramp" },
+    Bug {
+        breaks: "promise_12_starts_who_is_asked_to",
+        text: ".starts(going & masked)",
+        becomes: ".starts(going)",
+    },
+    Bug {
+        breaks: "promise_12_a_limit_slows_its_own_axis",
+        text: "stops_ramp | homing_control_slows",
+        becomes: "stops_ramp",
+    },
     Bug {
         breaks: "promise_12_a_limit_waited_for_stops_no_other",
-        text: "limits_hit & !homes_waits & !homes_slows",
-        becomes: "limits_hit & !homes_slows",
+        text: "limits_hit & !homing_control_waits & !homing_control_slows",
+        becomes: "limits_hit & !homing_control_slows",
+    },
+    Bug {
+        breaks: "promise_6_words_in_order",
+        text: ".put_word(put_word),\n        .last",
+        becomes: ".put_word(time_slot_axis),\n        .last",
+    },
+    Bug {
+        breaks: "promise_13_reset_freezes",
+        text: ".ending(resets_ending),\n        .stage_2",
+        becomes: ".ending(resets_stage_2),\n        .stage_2",
+    },
+    Bug {
+        breaks: "promise_13_reset_of_an_engine_at_rest",
+        text: ".settled(stops_settles),",
+        becomes: ".settled(1'b1),",
     },
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
-    Bug { breaks: "promise_14_start_only_warm", text: "enable & watch_warm", becomes: "enable" },
+    Bug {
+        breaks: "promise_14_start_only_warm",
+        text: "enable & supervisor_warm",
+        becomes: "enable",
+    },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let sizes = [(1, 16, 4), (6, 96, 16)];
-    let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
+    let builds =
+        sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, LimitWiring::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
         dut: "carrystep_engine".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: [vec![axes(&build)], beat(&build.timebase)].concat(),
     };
@@ -59,7 +104,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/promises.sv") },
         cases: builds.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
-        reach: 200,
+        reach: 340,
         bugs: BUGS,
     }
 }

@@ -10,7 +10,7 @@
 use super::builds::{small, small_engine};
 use super::solver::{LIMIT, ProofError, reached, run, run_until};
 use super::{Bug, Case, Promises};
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::{AXES, Build, PinTiming};
 use carrystep_tools::programs::{YOSYS, YOSYS_ABC};
 use std::fmt::Write as _;
@@ -24,7 +24,8 @@ const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_clean\ntechmap\ndffunm
      aigmap\nwrite_aiger -zinit promises.aig\n";
 
 /// The assertions about both cores, and the covers.
-pub const EQUAL: Promises = Promises { text: include_str!("../../../crates/hdl/src/engine/equals_axes.sv") };
+pub const EQUAL: Promises =
+    Promises { text: include_str!("../../../crates/hdl/src/engine/equals_axes.sv") };
 
 /// A move of two segments on engine and parallel axes.
 pub struct Move {
@@ -54,7 +55,11 @@ const SEAM: u64 = 0xff00_000f_c000_0000;
 
 /// Every move that is compared: the shortest ticks for one and two axes, and for 16 phases.
 pub fn moves() -> Vec<Move> {
-    vec![new_move(2, 32, 16, [2, 2], SEAM), new_move(1, 32, 16, [2, 3], SEAM), new_move(1, 16, 4, [2, 2], ALL)]
+    vec![
+        new_move(2, 32, 16, [2, 2], SEAM),
+        new_move(1, 32, 16, [2, 3], SEAM),
+        new_move(1, 16, 4, [2, 2], ALL),
+    ]
 }
 
 /// The move in which bugs are searched, which uses all four bits of the phase count. The last of
@@ -65,21 +70,51 @@ pub fn move_with_bugs() -> Move {
 
 /// The bugs that must be detected, with their modules.
 pub const BUGS: &[(&str, Bug)] = &[
-    ("adder", Bug { breaks: "equal_step", text: "beat[10]) & carry_2)", becomes: "beat[10]) & carry_1)" }),
-    ("adder", Bug { breaks: "equal_step", text: "if (!crosses_now) begin", becomes: "if (!top) begin" }),
-    ("store", Bug { breaks: "equal_step", text: "read_word = A_HIGH;", becomes: "read_word = A_LOW;" }),
     (
-        "wheel",
-        Bug { breaks: "equal_step", text: "now = when + ONE_TICK;", becomes: "now = when + ONE_TICK + ONE_TICK;" },
+        "adder",
+        Bug { breaks: "equal_step", text: "beat[10]) & carry_2)", becomes: "beat[10]) & carry_1)" },
     ),
-    ("wheel", Bug { breaks: "equal_dir", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" }),
-    ("queue", Bug { breaks: "equal_faults", text: "lasts_write_data = SET;", becomes: "lasts_write_data = UNSET;" }),
+    (
+        "adder",
+        Bug { breaks: "equal_step", text: "if (!crosses_now) begin", becomes: "if (!top) begin" },
+    ),
+    (
+        "store",
+        Bug { breaks: "equal_step", text: "read_word = A_HIGH;", becomes: "read_word = A_LOW;" },
+    ),
+    (
+        "event_wheel",
+        Bug {
+            breaks: "equal_step",
+            text: "now = when + ONE_TICK;",
+            becomes: "now = when + ONE_TICK + ONE_TICK;",
+        },
+    ),
+    (
+        "event_wheel",
+        Bug { breaks: "equal_dir", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" },
+    ),
+    (
+        "queue",
+        Bug {
+            breaks: "equal_faults",
+            text: "lasts_write_data = SET;",
+            becomes: "lasts_write_data = UNSET;",
+        },
+    ),
     ("queue", Bug { breaks: "equal_stops", text: "(word[7] | least)", becomes: "word[7]" }),
-    ("engine", Bug { breaks: "equal_start", text: "decides & !unfed", becomes: "decides & watch_tick_0 & !unfed" }),
+    (
+        "engine",
+        Bug {
+            breaks: "equal_start",
+            text: "decides & !unfed",
+            becomes: "decides & supervisor_tick_0 & !unfed",
+        },
+    ),
 ];
 
 fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -> Move {
-    let (build, engine) = small_engine(axes, clocks, phases, Limits::Pair);
+    let (build, engine) = small_engine(axes, clocks, phases, LimitWiring::Pair);
     let mut pins = [PinTiming::SHORTEST; AXES];
     pins[..axes].copy_from_slice(&build.pins);
     let parallel = Build { timebase: build.timebase, pins, ..small(phases).0 };
@@ -93,14 +128,17 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
     ];
     Move {
         engine: Case {
-            name: format!("{axes} axes, {clocks} clocks, {phases} phases, {ticks:?} ticks, bits {free:x}"),
+            name: format!(
+                "{axes} axes, {clocks} clocks, {phases} phases, {ticks:?} ticks, bits {free:x}"
+            ),
             dut: "carrystep_engine".into(),
+            parameters: Vec::new(),
             verilog: engine,
             numbers: numbers.into(),
         },
         axes: carrystep_verilog::six_axis_verilog(&parallel, "a proof").expect("the axes").into(),
-        // One tick without turns, 16 ticks for the words, 2 until the start, 2 until the pins, and
-        // one for the delay of the pins.
+        // One tick without time slots, 16 ticks for the words, 2 until the start, 2 until the pins,
+        // and one for the delay of the pins.
         clocks: clocks * (1 + 16 + 2 + ticks[0] + ticks[1] + 3),
     }
 }
@@ -109,7 +147,11 @@ impl Move {
     /// The same move with a bug planted in a module of the engine.
     pub fn with(&self, module: &str, bug: &Bug) -> Self {
         let module = Case { dut: format!("carrystep_{module}"), ..self.engine.clone() };
-        Self { engine: Case { dut: self.engine.dut.clone(), ..module.with(bug) }, axes: self.axes.clone(), ..*self }
+        Self {
+            engine: Case { dut: self.engine.dut.clone(), ..module.with(bug) },
+            axes: self.axes.clone(),
+            ..*self
+        }
     }
 }
 
@@ -120,7 +162,8 @@ pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
         Asked::Covers => EQUAL.covers_as_assertions(),
         _ => EQUAL.text.to_owned(),
     };
-    let files = [("engine.v", &*pair.engine.verilog), ("axes.v", &*pair.axes), ("promises.sv", &*text)];
+    let files =
+        [("engine.v", &*pair.engine.verilog), ("axes.v", &*pair.axes), ("promises.sv", &*text)];
     for (name, text) in files {
         fs::write(dir.path().join(name), text)?;
     }
@@ -139,17 +182,26 @@ pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
 
 /// Unrolls and sweeps the miter. Returns whether nothing is left of it (or, if `equal` is false,
 /// whether a run fails an assertion), and the output of the tool.
-fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(bool, String), ProofError> {
+fn swept(
+    dir: &Path,
+    clocks: u32,
+    assertions: usize,
+    equal: bool,
+) -> Result<(bool, String), ProofError> {
     // The header counts: format, variables, inputs, latches, outputs, gates, assertions.
     let file = fs::read(dir.join("promises.aig"))?;
-    let head = String::from_utf8_lossy(file.split(|byte| *byte == b'\n').next().unwrap_or_default()).into_owned();
+    let head =
+        String::from_utf8_lossy(file.split(|byte| *byte == b'\n').next().unwrap_or_default())
+            .into_owned();
     if head.split(' ').nth(6) != Some(&*assertions.to_string()) {
         return Ok((false, format!("not {assertions} assertions: {head}")));
     }
-    let unrolled = format!("read_aiger promises.aig; scleanup; frames -i -F {clocks}; orpos; cleanup");
+    let unrolled =
+        format!("read_aiger promises.aig; scleanup; frames -i -F {clocks}; orpos; cleanup");
     let sweep = format!("{unrolled}; &get; &fraig -y; &put; dprove -T {LIMIT}");
-    let is_equal =
-        |said: &str| said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"));
+    let is_equal = |said: &str| {
+        said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"))
+    };
     let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &sweep], |said| is_equal(said).is_some())?;
     Ok((fine && is_equal(&said) == Some(equal), said))
 }

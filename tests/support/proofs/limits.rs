@@ -2,42 +2,67 @@
 
 use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_10_hits_only_where_it_looks", text: "turn_ends & (tick_0 | max)", becomes: "turn_ends" },
+    Bug {
+        breaks: "promise_10_hits_only_where_it_samples",
+        text: "time_slot_ends & (tick_0 | max)",
+        becomes: "time_slot_ends",
+    },
     Bug { breaks: "promise_10_stops_by_direction", text: "back ^ max", becomes: "back" },
-    Bug { breaks: "promise_10_stops_by_direction", text: "word[6:0] == LAST_LOOK", becomes: "word[6:0] != LAST_LOOK" },
-    Bug { breaks: "promise_10_stops_by_direction", text: "if (differs & !flips) begin", becomes: "if (!flips) begin" },
-    Bug { breaks: "promise_12_own_switch_only", text: "(looks & (EXIST", becomes: "((looks | goes) & (EXIST" },
-    Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
+    Bug {
+        breaks: "promise_10_stops_by_direction",
+        text: "word[6:0] == LAST_SAMPLE",
+        becomes: "word[6:0] != LAST_SAMPLE",
+    },
+    Bug {
+        breaks: "promise_10_stops_by_direction",
+        text: "if (differs & !flips & !resetting) begin",
+        becomes: "if (!flips & !resetting) begin",
+    },
+    Bug {
+        breaks: "promise_12_own_switch_only",
+        text: "(samples & (EXIST",
+        becomes: "((samples | goes) & (EXIST",
+    },
+    Bug {
+        breaks: "promise_13_reset_forgets",
+        text: "(word[7] ^ flips) & !resetting",
+        becomes: "(word[7] ^ flips)",
+    },
+    Bug { breaks: "promise_13_inactive", text: "hit = samples &", becomes: "hit = 1'b1 |" },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(6, 80, 4, limits));
+    let wirings = [LimitWiring::Pair, LimitWiring::None, LimitWiring::Each, LimitWiring::One]
+        .map(|limits| small_engine(6, 80, 4, limits));
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
         let wiring = match guard.limits {
-            Limits::None => 0,
-            Limits::Pair => 1,
-            Limits::Each => 2,
-            Limits::One => 3,
+            LimitWiring::None => 0,
+            LimitWiring::Pair => 1,
+            LimitWiring::Each => 2,
+            LimitWiring::One => 3,
         };
         Case {
-            name: format!("{:?}, {} looks", guard.limits, guard.debounce),
+            name: format!("{:?}, {} samples", guard.limits, guard.debounce),
             dut: "carrystep_limits".into(),
+            parameters: Vec::new(),
             verilog,
             numbers: vec![
                 axes(&build),
                 ("WIRING", wiring.to_string()),
                 ("LOW", u8::from(guard.limits_low).to_string()),
-                ("LOOKS", guard.debounce.to_string()),
+                ("SAMPLES", guard.debounce.to_string()),
             ],
         }
     };
     Proof {
         module: "limits",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/limits/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/limits/promises.sv"),
+        },
         cases: wirings.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
         reach: 16,

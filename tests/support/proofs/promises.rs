@@ -7,12 +7,12 @@ pub struct Promises {
 }
 
 impl Promises {
-    /// Labels of what must hold: `promise_3_setup: assert (...)`.
+    /// Labels of what must hold: `promise_3_dir_setup: assert (...)`.
     pub fn labels(&self) -> Vec<&'static str> {
         self.labelled("assert (").filter(|label| !label.starts_with("invariant_")).collect()
     }
 
-    /// Labels of what must be reached: `cover_3_tightest_setup: cover (...)`.
+    /// Labels of what must be reached: `cover_3_tightest_dir_setup: cover (...)`.
     pub fn covers(&self) -> Vec<&'static str> {
         self.labelled("cover (").collect()
     }
@@ -21,7 +21,9 @@ impl Promises {
     /// fail.
     pub fn covers_as_assertions(&self) -> String {
         let turned = |line: &str| match line.split_once(": cover (").zip(line.strip_suffix(");")) {
-            Some(((label, what), _)) => format!("{label}: assert (!({}));\n", &what[..what.len() - 2]),
+            Some(((label, what), _)) => {
+                format!("{label}: assert (!({}));\n", &what[..what.len() - 2])
+            }
             None => format!("{line}\n"),
         };
         self.text.lines().map(turned).collect()
@@ -38,13 +40,19 @@ impl Promises {
     /// Names that stand for a signal inside the module, with that signal, as declared by
     /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest first.
     pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
-        let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
+        let declared = self
+            .text
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
         declared
             .map(|(signal, rest)| {
                 let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or(rest);
                 let each = |axis: usize| format!("\\{}", signal.replace('*', &axis.to_string()));
-                let all: Vec<String> =
-                    if signal.contains('*') { (0..axes).rev().map(each).collect() } else { vec![each(0)] };
+                let all: Vec<String> = if signal.contains('*') {
+                    (0..axes).rev().map(each).collect()
+                } else {
+                    vec![each(0)]
+                };
                 (name, all.join(","))
             })
             .collect()
@@ -54,7 +62,10 @@ impl Promises {
     /// left out: `// (* free = "dut.word" *)`. A promise that holds without the drivers also holds
     /// with them.
     pub fn free(&self) -> Vec<&'static str> {
-        let told = self.text.lines().filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
+        let told = self
+            .text
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
         told.map(|(signal, _)| signal).collect()
     }
 

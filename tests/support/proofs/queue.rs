@@ -9,11 +9,41 @@ const BUGS: &[Bug] = &[
         text: "(word[6] | starts) & !halted",
         becomes: "(word[6] | starts)",
     },
-    Bug { breaks: "promise_6_in_order", text: "next_newest = fresh_now;", becomes: "next_newest = newest;" },
-    Bug { breaks: "promise_6_in_order", text: "if (empties) begin", becomes: "if (empties & starts) begin" },
-    Bug { breaks: "promise_6_room", text: "room = live_now + ~newest;", becomes: "room = live_now - newest;" },
-    Bug { breaks: "promise_6_empty", text: "none = newest == live_now", becomes: "none = newest == old_live" },
-    Bug { breaks: "promise_6_full", text: "full = fresh_now == live_now", becomes: "full = newest == live_now" },
+    Bug {
+        breaks: "promise_6_in_order",
+        text: "next_newest = fresh_now;",
+        becomes: "next_newest = newest;",
+    },
+    Bug {
+        breaks: "promise_6_in_order",
+        text: "if (empties) begin",
+        becomes: "if (empties & starts) begin",
+    },
+    Bug {
+        breaks: "promise_6_room",
+        text: "room = live_now + ~newest;",
+        becomes: "room = live_now - newest;",
+    },
+    Bug {
+        breaks: "promise_6_empty",
+        text: "none = newest == live_now",
+        becomes: "none = newest == old_live",
+    },
+    Bug {
+        breaks: "promise_6_full",
+        text: "full = fresh_now == live_now",
+        becomes: "full = newest == live_now",
+    },
+    Bug {
+        breaks: "promise_6_words_in_order",
+        text: "next_due = due + ONE",
+        becomes: "next_due = due",
+    },
+    Bug {
+        breaks: "promise_6_misplaced_is_taken",
+        text: "wrong <= take & !fits_in",
+        becomes: "wrong <= !fits_in",
+    },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },
     Bug { breaks: "promise_6_discarded_are_written_off", text: "& !runs;", becomes: ";" },
@@ -22,12 +52,32 @@ const BUGS: &[Bug] = &[
         text: "next_lost = word[13:11] + ONE",
         becomes: "next_lost = word[13:11]",
     },
-    Bug { breaks: "promise_7_told_as_pulsed", text: "backward <= missing[2];", becomes: "backward <= 1'b0;" },
-    Bug { breaks: "promise_7_never_far_behind", text: "(missing != 3'd0) & !missing[2];", becomes: "1'b0;" },
+    Bug {
+        breaks: "promise_7_told_as_pulsed",
+        text: "backward <= missing[2];",
+        becomes: "backward <= 1'b0;",
+    },
+    Bug {
+        breaks: "promise_7_never_far_behind",
+        text: "(missing != 3'd0) & !missing[2];",
+        becomes: "1'b0;",
+    },
     Bug { breaks: "promise_10_dry_is_told", text: "& none & !ramp;", becomes: "& none;" },
-    Bug { breaks: "promise_10_dry_is_told", text: "lasts_write_data = SET;", becomes: "lasts_write_data = UNSET;" },
-    Bug { breaks: "promise_10_ramp_as_defined", text: "next_known = KNOWN_BIT;", becomes: "next_known = NO;" },
-    Bug { breaks: "promise_12_only_its_own_turn", text: "if (beat[12]) begin", becomes: "if (beat[11]) begin" },
+    Bug {
+        breaks: "promise_10_dry_is_told",
+        text: "lasts_write_data = SET;",
+        becomes: "lasts_write_data = UNSET;",
+    },
+    Bug {
+        breaks: "promise_10_ramp_as_defined",
+        text: "next_known = KNOWN_BIT;",
+        becomes: "next_known = NO;",
+    },
+    Bug {
+        breaks: "promise_12_only_its_own_time_slot",
+        text: "if (beat[12]) begin",
+        becomes: "if (beat[11]) begin",
+    },
     Bug {
         breaks: "promise_12_no_word_used_that_was_written",
         text: "if (beat[12]) begin",
@@ -37,14 +87,21 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let case =
-        Case { name: "any".into(), dut: "carrystep_queue".into(), verilog: built.1.clone(), numbers: Vec::new() };
+    let case = Case {
+        name: "any".into(),
+        dut: "carrystep_queue".into(),
+        parameters: Vec::new(),
+        verilog: built.1.clone(),
+        numbers: Vec::new(),
+    };
     Proof {
         module: "queue",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/queue/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/queue/promises.sv"),
+        },
         cases: vec![case],
         depth: 1,
-        reach: 30,
+        reach: 260,
         bugs: BUGS,
     }
 }

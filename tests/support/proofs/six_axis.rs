@@ -5,17 +5,33 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::{AXES, Build};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_12_any_fault_stops_all", text: "frozen = broken;", becomes: "frozen = 1'b0;" },
-    Bug { breaks: "promise_5_stays_frozen", text: "if (clear_now) begin", becomes: "if (frozen) begin" },
+    Bug {
+        breaks: "promise_12_any_fault_stops_all",
+        text: "frozen = broken;",
+        becomes: "frozen = 1'b0;",
+    },
+    Bug {
+        breaks: "promise_5_stays_frozen",
+        text: "if (clear_now) begin",
+        becomes: "if (frozen) begin",
+    },
     Bug {
         breaks: "promise_6_ready",
         text: "(selected[4] & axis_4_waiting)",
         becomes: "(selected[4] & axis_3_waiting)",
     },
-    Bug { breaks: "promise_6_taken_by_its_axis", text: "(push & selected[5])", becomes: "(push & selected[4])" },
+    Bug {
+        breaks: "promise_6_taken_by_its_axis",
+        text: "(push & selected[5])",
+        becomes: "(push & selected[4])",
+    },
     Bug { breaks: "promise_6_broken_is_told", text: "(taken & !push) | ", becomes: "" },
     Bug { breaks: "promise_6_start_ready", text: "!(frozen | armed)", becomes: "!frozen" },
-    Bug { breaks: "promise_6_no_start_is_missed", text: "armed & tick_strobe & ", becomes: "armed & " },
+    Bug {
+        breaks: "promise_6_no_start_is_missed",
+        text: "armed & tick_strobe & ",
+        becomes: "armed & ",
+    },
     Bug { breaks: "promise_8_idle", text: "at_rest = !armed;", becomes: "at_rest = 1'b1;" },
     Bug { breaks: "promise_12_go_is_the_start", text: ".go(go & mask[1])", becomes: ".go(go)" },
     Bug { breaks: "promise_13_inactive", text: "broken = 1'b0;", becomes: "broken = 1'b1;" },
@@ -25,12 +41,15 @@ pub(super) fn proof() -> Proof {
     let case = |(build, verilog): (Build, _)| Case {
         name: beat_name(&build.timebase),
         dut: "carrystep_six_axis".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![("AXES", AXES.to_string())],
     };
     Proof {
         module: "six_axis",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/parallel/six_axis/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/parallel/six_axis/promises.sv"),
+        },
         cases: [small(16), shipped()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,

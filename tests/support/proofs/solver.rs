@@ -14,18 +14,19 @@ use thiserror::Error;
 /// Time limit for one question in seconds; the slowest takes a tenth of it on an idle machine.
 pub(super) const LIMIT: &str = "300";
 
-/// Declares `look`, which reads a word of a memory inside the exported module. It is used as
-/// `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
-const LOOK: &str = r#"
+/// Declares `memory_probe`, which reads a word of a memory inside the exported module. It is used
+/// as `memory_probe #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
+const MEMORY_PROBE: &str = r#"
 (* blackbox *)
-module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
+module memory_probe #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
     (input wire CLK, input wire EN, input wire [ABITS-1:0] ADDR, output wire [WIDTH-1:0] DATA);
 endmodule
 "#;
 
-/// After `flatten` the memory has its own name, and a `look` becomes one more read port of it.
-const LOOKS_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:look\n\
-     chtype -set $memrd t:look\n";
+/// After `flatten` the memory has its own name, and a `memory_probe` becomes one more read port of
+/// it.
+const PROBES_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:memory_probe\n\
+     chtype -set $memrd t:memory_probe\n";
 
 /// Conversion of the system to gates; flip-flops without a value at configuration may have any
 /// value.
@@ -75,7 +76,11 @@ pub enum Question {
 /// Fails if a tool is missing.
 pub fn tools() -> Result<(), ProofError> {
     for tool in [YOSYS, YOSYS_SMTBMC, YOSYS_ABC, Z3] {
-        let started = Command::new(tool.name).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
+        let started = Command::new(tool.name)
+            .arg("--help")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
         started.map_err(|_| ProofError::Missing(tool))?;
     }
     Ok(())
@@ -90,7 +95,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
         _ => promises.text.to_owned(),
     };
     fs::write(dir.path().join("promises.sv"), text)?;
-    fs::write(dir.path().join("look.sv"), LOOK)?;
+    fs::write(dir.path().join("memory_probe.sv"), MEMORY_PROBE)?;
     fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
     let (fine, said) = run(dir.path(), YOSYS, &["-q", "prove.ys"])?;
     if !fine {
@@ -98,7 +103,9 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
     }
     let (wanted, said) = match question {
         Question::Base(clocks) => holds(promises, dir.path(), &["-t", &clocks.to_string()])?,
-        Question::Induction(depth) => holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?,
+        Question::Induction(depth) => {
+            holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?
+        }
         Question::Covers(clocks) => reached(dir.path(), clocks, promises.covers().len())?,
         Question::Fails(_, clocks) => reached(dir.path(), clocks, 1)?,
         Question::Broken(clocks) => any_reached(dir.path(), clocks)?,
@@ -126,7 +133,9 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
 /// tool.
 pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
     // They are asked one after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
-    let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
+    let ask = |output| {
+        format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}")
+    };
     let commands: Vec<String> = (0..count).map(ask).collect();
     let all = |said: &str| count > 0 && said.matches("was asserted in frame").count() == count;
     let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &commands.join("; ")], all)?;
@@ -144,7 +153,12 @@ fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
 /// The commands of yosys: they read the unchanged exported text and the promises, and name the
 /// internal signals that the promises refer to.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
-    let mut text = format!("read_verilog -sv exported.v look.sv\nread_verilog -formal -sv -D DUT={}", case.dut);
+    let mut text = "read_verilog -sv exported.v memory_probe.sv\n".to_owned();
+    for (name, value) in &case.parameters {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "chparam -set {name} {value} {}", case.dut);
+    }
+    let _ = write!(text, "read_verilog -formal -sv -D DUT={}", case.dut);
     for (name, number) in &case.numbers {
         // Writing to a string cannot fail.
         let _ = write!(text, " -D {name}={number}");
@@ -156,7 +170,7 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     for (name, signal) in promises.inside(case.axes()) {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
-    text.push_str(LOOKS_ARE_READ_PORTS);
+    text.push_str(PROBES_ARE_READ_PORTS);
     for signal in promises.free() {
         let _ = writeln!(text, "cutpoint w:{signal}");
     }
@@ -171,10 +185,14 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     text.push_str(&match question {
         Question::Covers(_) => "delete t:$assert c:cover_* %d\n".to_owned(),
         Question::Fails(label, _) => format!("delete t:$cover\ndelete t:$assert c:{label} %d\n"),
-        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => "delete t:$cover\n".to_owned(),
+        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => {
+            "delete t:$cover\n".to_owned()
+        }
     });
     text.push_str(match question {
-        Question::Base(_) | Question::Induction(_) => "opt_clean -purge\nwrite_smt2 promises.smt2\n",
+        Question::Base(_) | Question::Induction(_) => {
+            "opt_clean -purge\nwrite_smt2 promises.smt2\n"
+        }
         Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => TO_GATES,
     });
     text
@@ -183,7 +201,9 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
 /// Checks that every label of the file is in the transition system.
 fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
     let there = |label: &&str| {
-        system.lines().any(|line| line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}")))
+        system.lines().any(|line| {
+            line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}"))
+        })
     };
     match promises.labels().into_iter().find(|label| !there(label)) {
         Some(label) => Err(ProofError::Lost(label)),
@@ -192,7 +212,11 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 }
 
 /// Runs a tool; returns whether it succeeded, and its output.
-pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+pub(super) fn run(
+    dir: &Path,
+    tool: Tool,
+    arguments: &[&str],
+) -> Result<(bool, String), ProofError> {
     run_until(dir, tool, arguments, |_| true)
 }
 

@@ -5,7 +5,7 @@
 use carrystep_boards::{Board, Family, board, boards};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
-use carrystep_tools::ice40::{self, Part};
+use carrystep_tools::ice40::{self, NextpnrPart};
 use carrystep_tools::kept;
 
 const PLL: &str = "
@@ -27,8 +27,13 @@ endmodule
 /// The Verilog with yosys' models of its cells and the bench's PLL, whose reference comes from a
 /// pad or from a wire.
 fn simulated(verilog: &str) -> String {
-    let verilog = verilog.replace("SB_PLL40_CORE", "bench_pll").replace("SB_PLL40_PAD", "bench_pll");
-    let pll = if verilog.contains(".PACKAGEPIN(") { PLL.replace("REFERENCECLK", "PACKAGEPIN") } else { PLL.to_owned() };
+    let verilog =
+        verilog.replace("SB_PLL40_CORE", "bench_pll").replace("SB_PLL40_PAD", "bench_pll");
+    let pll = if verilog.contains(".PACKAGEPIN(") {
+        PLL.replace("REFERENCECLK", "PACKAGEPIN")
+    } else {
+        PLL.to_owned()
+    };
     ice40::simulated(&verilog).expect("models of its cells") + &pll
 }
 
@@ -36,12 +41,13 @@ fn simulated(verilog: &str) -> String {
 /// fills its block RAM more than any other memory.
 fn with_a_flipped_bit(asc: &str) -> String {
     let contents = |tile: &str| {
-        tile.split("\n.")
-            .next()
-            .map_or(0, |rows| rows.matches(|digit: char| digit.is_ascii_hexdigit() && digit != '0').count())
+        tile.split("\n.").next().map_or(0, |rows| {
+            rows.matches(|digit: char| digit.is_ascii_hexdigit() && digit != '0').count()
+        })
     };
     let tiles = asc.match_indices("\n.ram_data ").map(|(at, _)| at + 1);
-    let program = tiles.max_by_key(|&at| contents(&asc[at..])).expect("a block RAM with first contents");
+    let program =
+        tiles.max_by_key(|&at| contents(&asc[at..])).expect("a block RAM with first contents");
     let row = asc[program..].lines().nth(1).expect("its first row");
     let begin = program + asc[program..].find(row).expect("its first row");
     // The first word is the last of its row.
@@ -59,10 +65,12 @@ fn from_verilog_to_bitstream(board: &'static Board) {
         assert!(compare(&verilog).is_some(), "{name}: {fault} is not seen");
     }
 
-    let part = Part { device: &board.parts[0].name, package: &board.parts[0].package };
-    let netlist = ice40::synthesise_tight(&session.verilog, &session.gateware.top()).expect("a netlist");
+    let part = NextpnrPart { device: &board.parts[0].name, package: &board.parts[0].package };
+    let netlist =
+        ice40::synthesise_tight(&session.verilog, &session.gateware.top()).expect("a netlist");
     let clock_hz = session.gateware.build().timebase.clock_hz();
-    let placed = netlist.place_on(part, &session.file(".pcf"), clock_hz, 1).expect("a placed design");
+    let placed =
+        netlist.place_on(part, &session.file(".pcf"), clock_hz, 1).expect("a placed design");
     let read_back = |asc: &str| placed.read_back(&netlist, asc).expect("a bitstream");
     assert_eq!(compare(&read_back(&placed.asc)), None, "{name}: the bitstream");
     if effort::is_every_board() {
@@ -73,8 +81,16 @@ fn from_verilog_to_bitstream(board: &'static Board) {
     kept::say();
     if effort::is_every_board() && name == "icestick" {
         let longer = Session::with_a_limit(board);
-        assert_eq!(longer.difference(&simulated(&longer.verilog)), None, "{name}, a limit: the Verilog");
-        assert_eq!(longer.difference(&simulated(&read_back(&placed.asc))), None, "{name}, a limit: the bitstream");
+        assert_eq!(
+            longer.difference(&simulated(&longer.verilog)),
+            None,
+            "{name}, a limit: the Verilog"
+        );
+        assert_eq!(
+            longer.difference(&simulated(&read_back(&placed.asc))),
+            None,
+            "{name}, a limit: the bitstream"
+        );
         effort::say(&format!("{name}: {} cycles with a limit and its ramp", longer.cycles()));
     }
 }

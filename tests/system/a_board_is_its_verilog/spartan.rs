@@ -13,7 +13,8 @@ const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
 /// The EDIF with one bit of the link's first instruction flipped.
 fn with_a_flipped_bit(edif: &str) -> String {
     let program = edif.find("\"link.machine.instructions.words.0.0\"").expect("the program");
-    let begin = program + edif[program..].find("(property INIT_00 (string \"").expect("its first words");
+    let begin =
+        program + edif[program..].find("(property INIT_00 (string \"").expect("its first words");
     let at = begin + edif[begin..].find("\"))").expect("the last digit") - 1;
     let digit = u8::from_str_radix(&edif[at..=at], 16).expect("a digit");
     format!("{}{:x}{}", &edif[..at], digit ^ 1, &edif[at + 1..])
@@ -33,7 +34,9 @@ fn unknown_pin<'a>(ucf: &'a str, edif: &str) -> Option<&'a str> {
 fn from_verilog_to_edif(name: &str) {
     let board = board(name).expect("a board");
     let session = Session::of(board);
-    let compare = |verilog: &str| session.difference(&xilinx::simulated(verilog).expect("models of its cells"));
+    let compare = |verilog: &str| {
+        session.difference(&xilinx::simulated(verilog).expect("models of its cells"))
+    };
     let (family, top) = (board.family.facts().yosys().expect("a Spartan"), session.gateware.top());
     let edif = |verilog: &str| xilinx::to_edif(verilog, &top, family).expect("EDIF");
     let cells = |edif: &str| xilinx::from_edif(edif).expect("EDIF");
@@ -41,7 +44,10 @@ fn from_verilog_to_edif(name: &str) {
     let written = edif(&session.verilog);
     if board.family.facts().toolchain() == &ISE {
         let script = xilinx::script_for_ise(family, &top);
-        assert!(session.file("build.sh").contains(&script), "{name}: the build script does not say {script}");
+        assert!(
+            session.file("build.sh").contains(&script),
+            "{name}: the build script does not say {script}"
+        );
         assert_eq!(unknown_pin(&session.file(".ucf"), &written), None, "{name}");
     }
     assert_eq!(compare(&cells(&written)), None, "{name}: the EDIF");

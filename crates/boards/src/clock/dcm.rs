@@ -16,13 +16,20 @@ pub struct Dcm {
 
 /// All settings, in the order of preference: the smallest divider first, then the smallest
 /// multiplier, because small factors lock fastest.
-pub(super) fn ways(oscillator_hz: u64, least_in: u64, out: RangeInclusive<u64>) -> impl Iterator<Item = Way> {
+pub(super) fn ways(
+    oscillator_hz: u64,
+    least_in: u64,
+    out: RangeInclusive<u64>,
+) -> impl Iterator<Item = Way> {
     let f = if oscillator_hz < least_in { 0 } else { oscillator_hz.min(1 << 32) };
     (1..33_u8).flat_map(move |divide| {
         let (out, d) = (out.clone(), u64::from(divide));
         let pairs = (2..33_u8).map(move |multiply| (multiply, f * u64::from(multiply)));
-        pairs
-            .filter(move |(_, made)| *made >= out.start() * d && *made <= out.end() * d)
-            .map(move |(multiply, made)| Way { manager: ClockManager::Dcm(Dcm { multiply, divide }), made: (made, d) })
+        pairs.filter(move |(_, made)| *made >= out.start() * d && *made <= out.end() * d).map(
+            move |(multiply, made)| Way {
+                manager: ClockManager::Dcm(Dcm { multiply, divide }),
+                made: (made, d),
+            },
+        )
     })
 }

@@ -38,10 +38,12 @@ const fn within(a: u64, b: u64, range: (u64, u64)) -> bool {
 /// All settings, in the order in which `icepll` tries them.
 pub(super) fn ways(oscillator_hz: u64) -> impl Iterator<Item = Way> {
     let f = oscillator_hz.min(DETECTOR.1 * MHZ + 1);
-    let references = (0..16_u8).filter(move |&divr| within(f, 1, DETECTOR) && within(f, u64::from(divr) + 1, DETECTOR));
+    let references = (0..16_u8)
+        .filter(move |&divr| within(f, 1, DETECTOR) && within(f, u64::from(divr) + 1, DETECTOR));
     references.flat_map(move |divr| {
         let r = u64::from(divr) + 1;
-        let filter_range = FILTER.iter().find(|(from, _)| f >= from * MHZ * r).map_or(1, |&(_, range)| range);
+        let filter_range =
+            FILTER.iter().find(|(from, _)| f >= from * MHZ * r).map_or(1, |&(_, range)| range);
         let vcos = (0..128_u8).filter(move |&divf| within(f * (u64::from(divf) + 1), r, VCO));
         vcos.flat_map(move |divf| {
             let vco = f * (u64::from(divf) + 1);

@@ -31,10 +31,12 @@ pub(super) fn ways(oscillator_hz: u64) -> impl Iterator<Item = Way> {
     let references = (1..107_u8).filter(move |&divide| within(f, u64::from(divide), DETECTOR));
     references.flat_map(move |divide| {
         let d = u64::from(divide);
-        let vcos = (2..65_u8).rev().filter(move |&multiply| within(f * u64::from(multiply), d, VCO));
+        let vcos =
+            (2..65_u8).rev().filter(move |&multiply| within(f * u64::from(multiply), d, VCO));
         vcos.flat_map(move |multiply| {
             let vco = f * u64::from(multiply);
-            let outs = (1..129_u8).filter(move |&out_divide| within(vco, d * u64::from(out_divide), OUT));
+            let outs =
+                (1..129_u8).filter(move |&out_divide| within(vco, d * u64::from(out_divide), OUT));
             outs.map(move |out_divide| Way {
                 manager: ClockManager::Mmcm(Mmcm { multiply, divide, out_divide }),
                 made: (vco, d * u64::from(out_divide)),

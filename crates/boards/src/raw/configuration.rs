@@ -1,7 +1,7 @@
 //! Checks of a board's file that concern configuration: a port lies on a configuration pin only
 //! with a reason, and a gate holds outputs that exist.
 
-use super::super::configuration::{Gate, Mode, Package, Shared, packages};
+use super::super::configuration::{ConfigurationMode, Gate, Package, Shared, packages};
 use super::super::port::PORTS;
 use super::super::{Part, Wire};
 use super::{RawPart, Reader};
@@ -40,21 +40,28 @@ impl Reader<'_> {
     pub(super) fn gate(&mut self, gate: RawGate, wires: &[Wire]) -> Result<Gate, InputError> {
         let RawGate { port, pin, wait_ns, holds, why } = gate;
         if PORTS.iter().any(|known| known.name == port.as_ref()) {
-            return self.refuse(port.span(), format!("the gate needs a port of its own, not {}", port.as_ref()));
+            return self.refuse(
+                port.span(),
+                format!("the gate needs a port of its own, not {}", port.as_ref()),
+            );
         }
         self.take(&pin, port.as_ref())?;
         for held in &holds {
             if !HELD.contains(&held.as_ref().as_str()) {
-                let message = format!("a gate can hold {}, not '{}'", HELD.join(" and "), held.as_ref());
+                let message =
+                    format!("a gate can hold {}, not '{}'", HELD.join(" and "), held.as_ref());
                 return self.refuse(held.span(), message);
             }
         }
         let holds: Vec<String> = holds.into_iter().map(Spanned::into_inner).collect();
-        let open = HELD
-            .iter()
-            .find(|out| wires.iter().any(|wire| wire.port == **out) && !holds.iter().any(|held| held == *out));
+        let open = HELD.iter().find(|out| {
+            wires.iter().any(|wire| wire.port == **out) && !holds.iter().any(|held| held == *out)
+        });
         if let Some(open) = open {
-            return self.refuse(pin.span(), format!("the gate does not hold {open}: the host's lines belong together"));
+            return self.refuse(
+                pin.span(),
+                format!("the gate does not hold {open}: the host's lines belong together"),
+            );
         }
         Ok(Gate { port: port.into_inner(), pin: pin.into_inner(), wait_ns, holds, why })
     }
@@ -67,21 +74,28 @@ impl Reader<'_> {
     pub(super) fn configuration(
         &self,
         own: &[Package],
-        configured: &Spanned<Vec<Mode>>,
+        configured: &Spanned<Vec<ConfigurationMode>>,
         exceptions: &[Exception],
         written: &[Spanned<RawPart>],
         parts: &[Part],
     ) -> Result<(Vec<Shared>, Vec<String>), InputError> {
         let modes = configured.as_ref();
-        if modes.is_empty() || modes.contains(&Mode::Any) {
-            return self
-                .refuse(configured.span(), "the modes in which the board is configured are expected, as in [\"spi\"]");
+        if modes.is_empty() || modes.contains(&ConfigurationMode::Any) {
+            return self.refuse(
+                configured.span(),
+                "the modes in which the board is configured are expected, as in [\"spi\"]",
+            );
         }
         let mut tables = Vec::new();
         for (part, written) in parts.iter().zip(written) {
             let mut all = own.iter().chain(packages());
-            let Some(table) = all.find(|table| table.name == part.package && table.parts.contains(&part.name)) else {
-                let message = format!("the configuration pins of {} in {} are not known", part.name, part.package);
+            let Some(table) =
+                all.find(|table| table.name == part.package && table.parts.contains(&part.name))
+            else {
+                let message = format!(
+                    "the configuration pins of {} in {} are not known",
+                    part.name, part.package
+                );
                 return Err(InputError::at(self.source, written.span(), message)
                     .help("add a [[package]] table to this file, in the form of crates/boards/data/packages.toml"));
             };
@@ -89,8 +103,11 @@ impl Reader<'_> {
         }
         let sources: BTreeSet<&String> = tables.iter().flat_map(|table| &table.sources).collect();
         let mut shared = Vec::new();
-        for (pin, (port, span)) in self.used.iter().filter(|(_, (port, _))| !port.starts_with(RESERVED)) {
-            let found: BTreeSet<(Mode, &str)> = tables.iter().flat_map(|table| table.functions(pin)).collect();
+        for (pin, (port, span)) in
+            self.used.iter().filter(|(_, (port, _))| !port.starts_with(RESERVED))
+        {
+            let found: BTreeSet<(ConfigurationMode, &str)> =
+                tables.iter().flat_map(|table| table.functions(pin)).collect();
             if found.is_empty() {
                 continue;
             }
@@ -102,12 +119,18 @@ impl Reader<'_> {
             }
             let (function, in_modes) =
                 (functions.join("/"), found.iter().map(|(mode, _)| *mode).collect::<BTreeSet<_>>());
-            let why = exceptions.iter().find(|exception| exception.pins.iter().any(|named| named.as_ref() == pin));
-            let now = in_modes.iter().find(|mode| **mode == Mode::Any || modes.contains(mode));
+            let why = exceptions
+                .iter()
+                .find(|exception| exception.pins.iter().any(|named| named.as_ref() == pin));
+            let now = in_modes
+                .iter()
+                .find(|mode| **mode == ConfigurationMode::Any || modes.contains(mode));
             if let (Some(mode), None) = (now, why) {
-                let message = format!("{port} is on {pin}, which is {function} in configuration ({mode})");
-                return Err(InputError::at(self.source, span.clone(), message)
-                    .help("take another pin, or say in an [[exception]] why this one does no harm"));
+                let message =
+                    format!("{port} is on {pin}, which is {function} in configuration ({mode})");
+                return Err(InputError::at(self.source, span.clone(), message).help(
+                    "take another pin, or say in an [[exception]] why this one does no harm",
+                ));
             }
             shared.push(Shared {
                 port: port.clone(),
@@ -119,7 +142,10 @@ impl Reader<'_> {
         }
         for named in exceptions.iter().flat_map(|exception| &exception.pins) {
             if !shared.iter().any(|shared| shared.pin == *named.as_ref()) {
-                let message = format!("no port is on the configuration pin {}: this exception is none", named.as_ref());
+                let message = format!(
+                    "no port is on the configuration pin {}: this exception is none",
+                    named.as_ref()
+                );
                 return self.refuse(named.span(), message);
             }
         }

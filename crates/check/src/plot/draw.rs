@@ -4,7 +4,7 @@
 
 use super::{Curves, Plot};
 use crate::error::TraceError;
-use crate::report::{AxisReport, Report};
+use crate::report::{AxisReport, CheckReport};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -48,7 +48,7 @@ impl Clock {
     }
 }
 
-pub(super) fn svg(plot: &Plot<'_>, report: &Report) -> Result<String, TraceError> {
+pub(super) fn svg(plot: &Plot<'_>, report: &CheckReport) -> Result<String, TraceError> {
     let count = plot.axes.len().max(1);
     let columns = match count {
         1 => 1,
@@ -65,7 +65,9 @@ pub(super) fn svg(plot: &Plot<'_>, report: &Report) -> Result<String, TraceError
         let (head, body) = root.split_vertically(HEAD);
         heading(&head, plot, report)?;
         let clock = Clock::for_span(plot.span_s);
-        for (area, (index, curves)) in body.split_evenly((rows, columns)).iter().zip(plot.axes.iter().enumerate()) {
+        for (area, (index, curves)) in
+            body.split_evenly((rows, columns)).iter().zip(plot.axes.iter().enumerate())
+        {
             panel(area, plot, curves, report.axes.get(index), &clock)?;
         }
         root.present().map_err(failed)?;
@@ -77,7 +79,7 @@ fn label(size: u32, colour: RGBColor) -> TextStyle<'static> {
     (FONT, size).into_font().color(&colour)
 }
 
-fn heading(area: &Area<'_>, plot: &Plot<'_>, report: &Report) -> Result<(), TraceError> {
+fn heading(area: &Area<'_>, plot: &Plot<'_>, report: &CheckReport) -> Result<(), TraceError> {
     area.draw(&Text::new(plot.title.to_owned(), (24, 14), label(22, INK))).map_err(failed)?;
     let (verdict, colour) = if report.passed { ("passed", ERROR) } else { ("FAILED", BOUND) };
     let right = label(18, colour).pos(Pos::new(HPos::Right, VPos::Top));
@@ -110,7 +112,11 @@ fn panel(
     let (caption, charts) = area.margin(6, 2, 14, 16).split_vertically(26);
     let passed = report.is_none_or(|axis| axis.passed);
     caption
-        .draw(&Text::new(curves.axis.name.to_owned(), (8, 2), label(20, if passed { INK } else { BOUND })))
+        .draw(&Text::new(
+            curves.axis.name.to_owned(),
+            (8, 2),
+            label(20, if passed { INK } else { BOUND }),
+        ))
         .map_err(failed)?;
     let (above, below) = charts.split_vertically(charts.dim_in_pixel().1 * 58 / 100);
     let (metrics, below) = below.split_vertically(20);
@@ -138,7 +144,9 @@ fn summary(axis: &AxisReport) -> String {
 
 /// Jitter and ripple, each beside its allowed value.
 fn of_allowed(axis: &AxisReport) -> String {
-    let of = |found: Option<f64>, most: f64| found.map_or("none".to_owned(), |x| format!("{x:.3} of {most:.3}"));
+    let of = |found: Option<f64>, most: f64| {
+        found.map_or("none".to_owned(), |x| format!("{x:.3} of {most:.3}"))
+    };
     let [jitter_most, ripple_most] = allowed(axis);
     let jitter = of(axis.period_jitter_max_ns, jitter_most);
     let ripple = of(axis.speed_ripple_max_percent, ripple_most);
@@ -157,12 +165,18 @@ fn allowed(axis: &AxisReport) -> [f64; 2] {
 
 /// A range around all values with some room; never empty.
 fn roomy(values: impl Iterator<Item = f64>, least_room: f64) -> (f64, f64) {
-    let (low, high) = values.filter(|v| v.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    let (low, high) =
+        values.filter(|v| v.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     let room = (0.08 * (high - low)).max(least_room);
     (if low < 0.0 { low - room } else { -room / 3.0 }, high + room)
 }
 
-fn speed(area: &Area<'_>, plot: &Plot<'_>, curves: &Curves<'_>, clock: &Clock) -> Result<(), TraceError> {
+fn speed(
+    area: &Area<'_>,
+    plot: &Plot<'_>,
+    curves: &Curves<'_>,
+    clock: &Clock,
+) -> Result<(), TraceError> {
     let line = profile_line(plot, curves);
     let points: Vec<_> = curves.speed.points().collect();
     let (low, high) = roomy(line.iter().chain(&points).map(|p| p.1), 1.0);
@@ -189,7 +203,9 @@ fn speed(area: &Area<'_>, plot: &Plot<'_>, curves: &Curves<'_>, clock: &Clock) -
     let scale = |(t, v): (f64, f64)| (t * clock.per_second, v);
     let dot = |p| Circle::new(scale(p), 2, SPEED.mix(0.55).filled());
     chart.draw_series(points.into_iter().map(dot)).map_err(failed)?;
-    chart.draw_series(LineSeries::new(line.into_iter().map(scale), INK.stroke_width(1))).map_err(failed)?;
+    chart
+        .draw_series(LineSeries::new(line.into_iter().map(scale), INK.stroke_width(1)))
+        .map_err(failed)?;
     Ok(())
 }
 
@@ -226,11 +242,14 @@ fn error(
         .light_line_style(TRANSPARENT)
         .draw()
         .map_err(failed)?;
-    let dot = |(t, v): (f64, f64)| Circle::new((t * clock.per_second, v), 2, ERROR.mix(0.55).filled());
+    let dot =
+        |(t, v): (f64, f64)| Circle::new((t * clock.per_second, v), 2, ERROR.mix(0.55).filled());
     chart.draw_series(points.into_iter().map(dot)).map_err(failed)?;
     for level in bounds {
         let ends = [(0.0, level), (span, level)];
-        chart.draw_series(DashedLineSeries::new(ends, 6, 4, BOUND.stroke_width(1))).map_err(failed)?;
+        chart
+            .draw_series(DashedLineSeries::new(ends, 6, 4, BOUND.stroke_width(1)))
+            .map_err(failed)?;
     }
     Ok(())
 }
@@ -249,7 +268,10 @@ fn profile_line(plot: &Plot<'_>, curves: &Curves<'_>) -> Vec<(f64, f64)> {
     });
     let mut ticks: Vec<f64> = even.chain(bends).filter(|tick| (0.0..=end).contains(tick)).collect();
     ticks.sort_by(f64::total_cmp);
-    ticks.into_iter().map(|tick| (tick * plot.tick_seconds, curves.axis.timeline.speed_at(tick))).collect()
+    ticks
+        .into_iter()
+        .map(|tick| (tick * plot.tick_seconds, curves.axis.timeline.speed_at(tick)))
+        .collect()
 }
 
 /// Formats a number: 12000 as 12 000, and small numbers with as many digits as they need.

@@ -2,15 +2,15 @@
 #![allow(dead_code)] // Each test binary uses a part of it.
 
 use carrystep_check::*;
-use carrystep_core::{Segment, StartPhase, Timebase};
+use carrystep_core::{PinTimes, Segment, StartPhase, Timebase};
 use carrystep_profile::{Constant, Leg, Ramp, Timeline};
 use std::io::Cursor;
 use std::sync::Arc;
 
 pub const ORIGIN_PS: i64 = 123_456_789;
 pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
-/// Width, gap, set-up and hold, ns.
-pub const PINS_NS: [u64; 4] = [1000, 1000, 200, 200];
+pub const PINS_NS: PinTimes =
+    PinTimes { step_high: 1000, step_low: 1000, dir_setup: 200, dir_hold: 200 };
 pub const HIGH_PS: u64 = 1_041_667;
 
 pub struct Machine {
@@ -25,16 +25,24 @@ impl Machine {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let timeline = |index: usize| {
             let steps = 1000 / (index as u64 + 1);
-            let leg = |start_tick, backward, profile| Leg { start_tick, backward, steps, profile, fit_seconds: 0.0 };
+            let leg = |start_tick, backward, profile| Leg {
+                start_tick,
+                backward,
+                steps,
+                profile,
+                fit_seconds: 0.0,
+            };
             let out = Ramp::triangle(steps as f64, 0.25, 0.0, steps as f64 * 64.0);
             // The least acceleration is four times the distance divided by the time squared. Half
             // as much again leaves time for a cruise.
             let acceleration = 6.0 * steps as f64 / 0.0625;
             let cruise = (0.0625 - 4.0 * steps as f64 / acceleration).sqrt();
             let top = 2.0 * steps as f64 / (0.25 + cruise);
-            let back = Ramp::trapezoid(steps as f64, 0.25, 0.0, top, acceleration, top / acceleration);
+            let back =
+                Ramp::trapezoid(steps as f64, 0.25, 0.0, top, acceleration, top / acceleration);
             let flip = index % 2 == 1;
-            let legs = vec![leg(0, flip, Arc::new(out) as _), leg(250_000, !flip, Arc::new(back) as _)];
+            let legs =
+                vec![leg(0, flip, Arc::new(out) as _), leg(250_000, !flip, Arc::new(back) as _)];
             Timeline { tick_seconds: timebase.tick_seconds(), legs }
         };
         Self { timebase, timelines: (0..axes).map(timeline).collect(), total_ticks: 500_000 }
@@ -82,7 +90,8 @@ impl Machine {
                 let grid = tick_ps / u64::from(self.timebase.phases());
                 let local = (crossing.seconds * 1e12) as u64 / grid * grid;
                 let ps = ORIGIN_PS as u64 + crossing.start_tick * tick_ps + local;
-                let mut put = |ps, pin, level| all.push(PinChange { ps, axis: index as u8, pin, level });
+                let mut put =
+                    |ps, pin, level| all.push(PinChange { ps, axis: index as u8, pin, level });
                 if crossing.backward != dir {
                     dir = crossing.backward;
                     put(u64::midpoint(free, ps), Pin::Dir, dir);
@@ -96,11 +105,11 @@ impl Machine {
         all
     }
 
-    pub fn check(&self, train: &[PinChange], origin: Origin) -> Report {
+    pub fn check(&self, train: &[PinChange], origin: Origin) -> CheckReport {
         self.check_setup(train, self.setup(origin))
     }
 
-    pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> Report {
+    pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> CheckReport {
         let mut checker = Checker::new(setup);
         play(train, &mut checker);
         checker.finish()
@@ -147,7 +156,8 @@ impl Machine {
     }
 
     pub fn plot_setup(&self) -> PlotSetup<'_> {
-        let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| PlotAxis { name, timeline });
+        let axes =
+            self.timelines.iter().zip(NAMES).map(|(timeline, name)| PlotAxis { name, timeline });
         PlotSetup {
             title: "There and back",
             timebase: self.timebase,
@@ -177,10 +187,15 @@ pub fn rise(train: &[PinChange], axis: u8, k: usize) -> usize {
 /// The index of the falling edge of STEP after a rising one.
 pub fn fall(train: &[PinChange], rise: usize) -> usize {
     let axis = train[rise].axis;
-    (rise..train.len()).find(|&at| train[at].axis == axis && train[at].pin == Pin::Step && !train[at].level).unwrap()
+    (rise..train.len())
+        .find(|&at| train[at].axis == axis && train[at].pin == Pin::Step && !train[at].level)
+        .unwrap()
 }
 
 /// The index of the `k`-th change of DIR of an axis, with k counted from 1.
-pub fn turn(train: &[PinChange], axis: u8, k: usize) -> usize {
-    (0..train.len()).filter(|&at| train[at].axis == axis && train[at].pin == Pin::Dir).nth(k - 1).unwrap()
+pub fn dir_change(train: &[PinChange], axis: u8, k: usize) -> usize {
+    (0..train.len())
+        .filter(|&at| train[at].axis == axis && train[at].pin == Pin::Dir)
+        .nth(k - 1)
+        .unwrap()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// The arguments of `carrystep machine`.
 #[derive(Debug, Args)]
-pub struct Machine {
+pub struct MachineArguments {
     /// What to do with a machine file.
     #[command(subcommand)]
     pub command: MachineCommand,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// The port of the board.
 #[derive(Debug, Args)]
-pub struct Port {
+pub struct PortArguments {
     /// The serial port of the board; `carrystep doctor` lists them.
     #[arg(long = "port", value_name = "PORT")]
     pub name: String,
@@ -14,9 +14,9 @@ pub struct Port {
 
 /// The board, for commands that do not need a machine.
 #[derive(Debug, Args)]
-pub struct Peer {
+pub struct PeerArguments {
     #[command(flatten)]
-    pub port: Port,
+    pub port: PortArguments,
     /// The machine from which the board's gateware must be built; it names the axes. Default: any.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
@@ -27,12 +27,12 @@ pub struct Peer {
 
 /// The arguments of `carrystep run`.
 #[derive(Debug, Args)]
-pub struct Run {
+pub struct RunArguments {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
     #[command(flatten)]
-    pub port: Port,
+    pub port: PortArguments,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
@@ -48,7 +48,7 @@ pub struct Run {
 
 /// The arguments of `carrystep home`.
 #[derive(Debug, Args)]
-pub struct Home {
+pub struct HomeArguments {
     /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They
     /// go in the order of home_order.
     #[arg(value_name = "AXIS")]
@@ -57,7 +57,7 @@ pub struct Home {
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
     #[command(flatten)]
-    pub port: Port,
+    pub port: PortArguments,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -83,7 +83,7 @@ pub struct Jog {
     #[arg(long)]
     pub into_limit: bool,
     #[command(flatten)]
-    pub port: Port,
+    pub port: PortArguments,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -91,9 +91,9 @@ pub struct Jog {
 
 /// The arguments of `carrystep status`.
 #[derive(Debug, Args)]
-pub struct Status {
+pub struct StatusArguments {
     #[command(flatten)]
-    pub peer: Peer,
+    pub peer: PeerArguments,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -103,7 +103,7 @@ pub struct Status {
 #[derive(Debug, Args)]
 pub struct Stop {
     #[command(flatten)]
-    pub peer: Peer,
+    pub peer: PeerArguments,
     /// Then clear the stop and its cause: the queues are emptied, the positions stay. A `run`,
     /// `jog` or `home` that is stopped clears its own stop.
     #[arg(long)]

@@ -2,14 +2,16 @@
 
 use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
-use carrystep_profile::reference::{Drive, Length, Listing, Quantity, Request, Travel};
+use carrystep_profile::reference::{
+    Drive, Length, Listing, Quantity, ReferenceDistance, ReferenceRequest,
+};
 use clap::Args;
 use std::path::PathBuf;
 
 /// The arguments of `carrystep profile`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES, next_help_heading = "Curve")]
-pub struct Profile {
+pub struct ProfileArguments {
     /// The curves, one or several.
     #[arg(value_name = "KIND", required = true, value_parser = kind(), help_heading = None)]
     pub kinds: Vec<ProfileKind>,
@@ -138,7 +140,9 @@ struct Acceleration {
 /// The jerk limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
-#[command(next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve")]
+#[command(
+    next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve"
+)]
 struct Jerk {
     /// Steps/s^3.
     #[arg(long, value_name = "J", allow_negative_numbers = true)]
@@ -167,9 +171,7 @@ struct Motor {
 }
 
 fn kind() -> impl clap::builder::TypedValueParser<Value = ProfileKind> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    PossibleValuesParser::new(ProfileKind::ALL.iter().map(|kind| kind.name()))
-        .try_map(|name| name.parse::<ProfileKind>())
+    super::named()
 }
 
 fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {
@@ -183,36 +185,49 @@ fn given<const N: usize>(flags: [(Option<f64>, Length); N]) -> Option<Quantity> 
     flags.into_iter().find_map(|(value, length)| Some(Quantity::new(value?, length)))
 }
 
-impl Profile {
+impl ProfileArguments {
     /// The settings of the listing of each step.
     pub fn listing(&self) -> Listing {
         Listing { phase: self.phase, clock_hz: self.timer_hz }
     }
 
     /// The request that the options describe.
-    pub fn request(&self) -> Request {
+    pub fn request(&self) -> ReferenceRequest {
         use Length::{Degree, Millimetre, Step, Turn};
         let Self { distance, speed, start, acceleration, jerk, motor, .. } = self;
-        let per_minute = |value: Option<f64>, length| Some(Quantity::new(value?, length).per_minute());
-        let distance = given([(distance.steps, Step), (distance.mm, Millimetre), (distance.deg, Degree)]);
+        let per_minute =
+            |value: Option<f64>, length| Some(Quantity::new(value?, length).per_minute());
+        let distance =
+            given([(distance.steps, Step), (distance.mm, Millimetre), (distance.deg, Degree)]);
         let drive = Drive {
             step_angle_deg: motor.step_angle,
             microsteps: motor.microsteps,
             travel_per_rev_mm: motor.travel_per_rev,
         };
         let minutes = per_minute(speed.rpm, Turn).or(per_minute(speed.speed_mm_min, Millimetre));
-        let seconds = [(speed.speed, Step), (speed.speed_mm_s, Millimetre), (speed.speed_deg_s, Degree)];
-        let acceleration =
-            [(acceleration.accel, Step), (acceleration.accel_mm_s2, Millimetre), (acceleration.accel_deg_s2, Degree)];
-        Request {
+        let seconds =
+            [(speed.speed, Step), (speed.speed_mm_s, Millimetre), (speed.speed_deg_s, Degree)];
+        let acceleration = [
+            (acceleration.accel, Step),
+            (acceleration.accel_mm_s2, Millimetre),
+            (acceleration.accel_deg_s2, Degree),
+        ];
+        ReferenceRequest {
             time: self.time,
             centre: self.ti,
             speed: minutes.or(given(seconds)),
             start_speed: per_minute(start.start_rpm, Turn)
                 .or(given([(start.start_speed, Step), (start.start_mm_s, Millimetre)])),
             acceleration: given(acceleration),
-            jerk: given([(jerk.jerk, Step), (jerk.jerk_mm_s3, Millimetre), (jerk.jerk_deg_s3, Degree)]),
-            ..Request::new(drive, distance.map_or(Travel::Ramp, Travel::Move))
+            jerk: given([
+                (jerk.jerk, Step),
+                (jerk.jerk_mm_s3, Millimetre),
+                (jerk.jerk_deg_s3, Degree),
+            ]),
+            ..ReferenceRequest::new(
+                drive,
+                distance.map_or(ReferenceDistance::Ramp, ReferenceDistance::Move),
+            )
         }
     }
 }

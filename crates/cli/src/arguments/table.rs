@@ -1,6 +1,8 @@
 //! The arguments of `carrystep table`. The docstrings of the fields are the command's help.
 
-use carrystep_table::{AVR_PRESCALERS, Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, TableError};
+use carrystep_table::{
+    AVR_PRESCALERS, Arithmetic, Kind, Motor, Options, Pulses, Speed, TableError, TimerMode,
+};
 use carrystep_table::{TableRequest, Timer, Width};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -8,7 +10,7 @@ use std::path::PathBuf;
 /// The arguments of `carrystep table`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
-pub struct Table {
+pub struct TableArguments {
     #[command(subcommand)]
     pub kind: TableKind,
 }
@@ -23,7 +25,13 @@ pub enum TableKind {
         #[arg(long, value_name = "N")]
         entries: u32,
         /// How steep the middle is: Fle, the source's "curve".
-        #[arg(long, visible_alias = "fle", value_name = "FLE", default_value_t = 6.0, allow_negative_numbers = true)]
+        #[arg(
+            long,
+            visible_alias = "fle",
+            value_name = "FLE",
+            default_value_t = 6.0,
+            allow_negative_numbers = true
+        )]
         steepness: f64,
         /// Entry at which half of the rise is done; default: half of the entries.
         #[arg(long, value_name = "ENTRY", allow_negative_numbers = true)]
@@ -81,7 +89,7 @@ pub struct Common {
     #[command(flatten)]
     pulses: PulsesFlags,
     #[command(flatten)]
-    pub output: Output,
+    pub output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -156,7 +164,7 @@ struct PulsesFlags {
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
-pub struct Output {
+pub struct OutputArguments {
     /// Folder for NAME.h and the player.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -174,7 +182,7 @@ pub struct Output {
     pub json: bool,
 }
 
-impl Output {
+impl OutputArguments {
     /// The settings of the header.
     pub fn options(&self) -> Result<Options, TableError> {
         Ok(Options::new(&self.name)?.program_memory(self.progmem).player(!self.bare))
@@ -185,16 +193,21 @@ impl TableKind {
     /// The options that all kinds share.
     pub fn common(&self) -> &Common {
         match self {
-            Self::Logistic { common, .. } | Self::Avr446 { common, .. } | Self::Sine { common, .. } => common,
+            Self::Logistic { common, .. }
+            | Self::Avr446 { common, .. }
+            | Self::Sine { common, .. } => common,
         }
     }
 
     /// The request that the options describe.
     pub fn request(&self) -> TableRequest {
         let kind = match self {
-            &Self::Logistic { entries, steepness, centre, .. } => Kind::Logistic { entries, steepness, centre },
+            &Self::Logistic { entries, steepness, centre, .. } => {
+                Kind::Logistic { entries, steepness, centre }
+            }
             Self::Avr446 { ramp_steps, arithmetic, .. } => {
-                let arithmetic = if arithmetic == "integer" { Arithmetic::Integer } else { Arithmetic::Float };
+                let arithmetic =
+                    if arithmetic == "integer" { Arithmetic::Integer } else { Arithmetic::Float };
                 Kind::Avr446 { ramp_steps: *ramp_steps, arithmetic }
             }
             &Self::Sine { ramp_steps, inverse, .. } => Kind::Sine { ramp_steps, inverse },
@@ -205,7 +218,7 @@ impl TableKind {
             prescaler: timer.prescaler,
             prescalers: timer.prescalers.clone(),
             width: if timer.bits == "8" { Width::Bits8 } else { Width::Bits16 },
-            mode: if timer.mode == "ctc" { Mode::Ctc } else { Mode::FreeRunning },
+            mode: if timer.mode == "ctc" { TimerMode::Ctc } else { TimerMode::FreeRunning },
             interrupt_clocks: timer.interrupt_clocks,
         };
         let motor = Motor { step_angle_deg: speeds.step_angle, microsteps: speeds.microsteps };
@@ -213,6 +226,13 @@ impl TableKind {
         let top_speed = speeds.top.rpm.map_or_else(steps, Speed::Rpm);
         let by_group = || pulses.pulses_by_group.clone().map_or(Pulses::One, Pulses::ByGroup);
         let pulses = pulses.pulses_by_time.map_or_else(by_group, Pulses::ByTime);
-        TableRequest { timer, motor, start_frequency: speeds.start_frequency, top_speed, kind, pulses }
+        TableRequest {
+            timer,
+            motor,
+            start_frequency: speeds.start_frequency,
+            top_speed,
+            kind,
+            pulses,
+        }
     }
 }

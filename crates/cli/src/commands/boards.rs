@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_boards::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
 use carrystep_core::tick::mhz;
-use carrystep_files::Source;
+use carrystep_files::SourceText;
 use carrystep_verilog::Gateware;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -14,11 +14,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// The notice under every list: no board has been tested.
-const UNTRIED: &str = "None of these boards was at hand: nothing of carrystep was ever run on one.\n";
+const UNTRIED: &str =
+    "None of these boards was at hand: nothing of carrystep was ever run on one.\n";
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Shown<'a> {
+pub struct ShownBoards<'a> {
     passed: bool,
     /// Whether carrystep was ever tested on real hardware.
     tried_on_hardware: bool,
@@ -39,8 +40,9 @@ pub fn run(arguments: &Boards) -> Result<(), Failure> {
     let one = arguments.board.as_deref().map(find).transpose()?;
     let shown = one.as_deref().map_or(boards(), std::slice::from_ref);
     if arguments.json {
-        let boards = shown.iter().map(|board| ShownBoard { board, measured: board.measured() }).collect();
-        return output::print_json(&Shown { passed: true, tried_on_hardware: false, boards });
+        let boards =
+            shown.iter().map(|board| ShownBoard { board, measured: board.measured() }).collect();
+        return output::print_json(&ShownBoards { passed: true, tried_on_hardware: false, boards });
     }
     output::print(&one.as_deref().map_or_else(list, in_full))
 }
@@ -60,10 +62,14 @@ pub fn find(name: &str) -> Result<Cow<'static, Board>, Failure> {
 }
 
 /// The gateware of a machine file, or of the shipped machine, for one of the board's parts.
-pub fn gateware<'a>(board: &'a Board, part: Option<&str>, machine: Option<&Path>) -> Result<Gateware<'a>, Failure> {
+pub fn gateware<'a>(
+    board: &'a Board,
+    part: Option<&str>,
+    machine: Option<&Path>,
+) -> Result<Gateware<'a>, Failure> {
     let part = board.part(part)?;
     Ok(match machine {
-        Some(path) => Gateware::new(board, part, Source::read(path)?)?,
+        Some(path) => Gateware::new(board, part, SourceText::read(path)?)?,
         None => Gateware::shipped(board, part)?,
     })
 }
@@ -82,9 +88,11 @@ fn list() -> String {
                 format!("{block_rams}/{}", part.block_rams),
                 format!("{nextpnr_mhz:.1}"),
             ],
-            Some(Measured::Mapped(Mapped { luts, block_rams, .. })) => {
-                [format!("{luts} LUTs"), format!("{block_rams}/{}", part.block_rams), "-".to_owned()]
-            }
+            Some(Measured::Mapped(Mapped { luts, block_rams, .. })) => [
+                format!("{luts} LUTs"),
+                format!("{block_rams}/{}", part.block_rams),
+                "-".to_owned(),
+            ],
             None => ["-".to_owned(), "-".to_owned(), "-".to_owned()],
         };
         // Writing to a string cannot fail.
@@ -130,7 +138,13 @@ fn in_full(board: &Board) -> String {
     }
     let first = &board.parts[0];
     let _ = match board.measured() {
-        Some(Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, icetime_mhz, .. })) => writeln!(
+        Some(Measured::Placed(Placed {
+            logic_cells,
+            block_rams,
+            nextpnr_mhz,
+            icetime_mhz,
+            ..
+        })) => writeln!(
             text,
             "measured     {logic_cells} of {} logic cells, {block_rams} of {} block RAMs, {nextpnr_mhz:.1} MHz by nextpnr, {icetime_mhz:.1} MHz by icetime",
             first.logic_cells.unwrap_or_default(),
@@ -145,10 +159,10 @@ fn in_full(board: &Board) -> String {
     };
     let _ = writeln!(text, "\n{:<12}  {:<4}  at", "port", "pin");
     for wire in &board.wires {
-        let at = wire
-            .at
-            .as_ref()
-            .map_or_else(|| "on the board".to_owned(), |Place { connector, label }| format!("{connector}, {label}"));
+        let at = wire.at.as_ref().map_or_else(
+            || "on the board".to_owned(),
+            |Place { connector, label }| format!("{connector}, {label}"),
+        );
         let _ = writeln!(text, "{:<12}  {:<4}  {at}", wire.port, wire.pin);
     }
     for tie in &board.ties {

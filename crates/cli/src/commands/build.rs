@@ -1,6 +1,6 @@
 //! `carrystep build`: makes a board's bitstream and reports the results of the tools.
 
-use crate::arguments::Build;
+use crate::arguments::BuildArguments;
 use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
@@ -8,7 +8,7 @@ use crate::progress::Stages;
 use carrystep_boards::Board;
 use carrystep_core::tick::mhz;
 use carrystep_files::{InputError, Machine};
-use carrystep_tools::board::{Built, Job, build};
+use carrystep_tools::board::{BuildJob, Built, build};
 use carrystep_tools::{ice40, kept};
 use carrystep_verilog::{Gateware, TextFile};
 use schemars::JsonSchema;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Report {
+pub struct BuildReport {
     /// Whether the clock is reached.
     passed: bool,
     /// Whether carrystep was ever tested on real hardware.
@@ -47,14 +47,15 @@ struct Use {
 }
 
 /// Writes the board's folder and the bitstream into it.
-pub fn run(arguments: &Build) -> Result<(), Failure> {
+pub fn run(arguments: &BuildArguments) -> Result<(), Failure> {
     let board = boards::find(&arguments.board)?;
     if let (Some(path), false) = (&arguments.machine, arguments.try_clock) {
         reachable(&board, arguments.part.as_deref(), path)?;
     }
     // Whoever builds a bitstream expects the tools to be run.
     kept::never();
-    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let gateware =
+        boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
     carrystep_verilog::write(&out, &files)?;
@@ -86,22 +87,26 @@ fn not_ours(out: &Path, name: &str, how: &str) -> Failure {
 }
 
 fn bitstream(
-    arguments: &Build,
+    arguments: &BuildArguments,
     board: &Board,
     gateware: &Gateware<'_>,
     files: &[TextFile],
     out: &Path,
 ) -> Result<(), Failure> {
     let texts = |extension: &str| {
-        files.iter().filter(|file| file.name.ends_with(extension)).map(|file| file.text.as_str()).collect::<String>()
+        files
+            .iter()
+            .filter(|file| file.name.ends_with(extension))
+            .map(|file| file.text.as_str())
+            .collect::<String>()
     };
     let (part, top) = (gateware.part(), gateware.top());
     let clock_hz = gateware.build().timebase.clock_hz();
-    let job = Job {
+    let job = BuildJob {
         verilog: &texts(".v"),
         top: &top,
         pcf: &texts(".pcf"),
-        part: ice40::Part { device: &part.name, package: &part.package },
+        part: ice40::NextpnrPart { device: &part.name, package: &part.package },
         clock_hz,
     };
     let file = out.join(format!("{top}.{}", board.bitstream));
@@ -116,7 +121,7 @@ fn bitstream(
             .map_err(|error| Failure::input(format!("cannot write {}: {error}", file.display())))?;
         whole.keep()?;
     }
-    let report = Report {
+    let report = BuildReport {
         passed,
         tried_on_hardware: false,
         board: board.name.clone(),
@@ -139,12 +144,12 @@ fn bitstream(
     if passed { Ok(()) } else { Err(Failure::Check) }
 }
 
-fn told(report: &Report, built: &Built, proposed: &str) -> String {
+fn told(report: &BuildReport, built: &Built, proposed: &str) -> String {
     let share = |Use { used, of }: &Use| match of {
         Some(of) => format!("{used:>6}  of {of}, {} %", used * 100 / of),
         None => format!("{used:>6}"),
     };
-    let Report { board, part, build_id, clock_hz, seed, .. } = report;
+    let BuildReport { board, part, build_id, clock_hz, seed, .. } = report;
     let head = format!(
         "{board}: {part}, build {build_id}\nlogic cells  {}\nblock RAMs   {}\nclock        {:>6.1}  MHz by nextpnr (seed {seed}), {:.1} by icetime, {} needed\n",
         share(&report.logic_cells),
@@ -159,6 +164,8 @@ fn told(report: &Report, built: &Built, proposed: &str) -> String {
             file.display(),
             report.load
         ),
-        None => format!("{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"),
+        None => format!(
+            "{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"
+        ),
     }
 }

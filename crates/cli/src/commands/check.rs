@@ -1,10 +1,10 @@
 //! `carrystep check`: checks any VCD against a move file.
 
-use crate::arguments::Check;
+use crate::arguments::CheckArguments;
 use crate::failure::{Failure, refused};
 use crate::junit::JunitFile;
 use crate::{job, output};
-use carrystep_check::{Checker, Origin, Report, SignalMap, TraceError, VcdReader};
+use carrystep_check::{CheckReport, Checker, Origin, SignalMap, TraceError, VcdReader};
 use carrystep_core::Timebase;
 use carrystep_files::MoveFile;
 use carrystep_plan::plan;
@@ -17,11 +17,11 @@ use std::io::BufReader;
 pub struct Checked<'a> {
     passed: bool,
     capture: &'a std::path::Path,
-    check: &'a Report,
+    check: &'a CheckReport,
 }
 
 /// Checks a capture and prints the report.
-pub fn run(arguments: &Check) -> Result<(), Failure> {
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let timelines = plan.timelines();
@@ -35,25 +35,36 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
         junit.keep()?;
     }
     if arguments.json {
-        output::print_json(&Checked { passed: report.passed(), capture: &arguments.capture, check: &report })?;
+        output::print_json(&Checked {
+            passed: report.passed(),
+            capture: &arguments.capture,
+            check: &report,
+        })?;
     } else {
-        output::print(&format!("{report}{}\n", if report.passed() { "ALL HOLDS" } else { "FAILED" }))?;
+        output::print(&format!(
+            "{report}{}\n",
+            if report.passed() { "ALL HOLDS" } else { "FAILED" }
+        ))?;
     }
     if report.passed() { Ok(()) } else { Err(Failure::Check) }
 }
 
 fn read(
-    arguments: &Check,
+    arguments: &CheckArguments,
     file: &MoveFile,
     plan: &carrystep_plan::Plan,
     timelines: &[carrystep_profile::Timeline],
-) -> Result<Report, Failure> {
+) -> Result<CheckReport, Failure> {
     job::fits_a_capture(plan)?;
-    let unusable = |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
-    let capture = carrystep_files::open(&arguments.capture).map_err(|error| Failure::input(error.to_string()))?;
-    let map = SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
+    let unusable =
+        |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
+    let capture = carrystep_files::open(&arguments.capture)
+        .map_err(|error| Failure::input(error.to_string()))?;
+    let map =
+        SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
-    let reader = VcdReader::new(BufReader::new(capture), &names, &map).map_err(|error| unusable(error.to_string()))?;
+    let reader = VcdReader::new(BufReader::new(capture), &names, &map)
+        .map_err(|error| unusable(error.to_string()))?;
     if let Some(own) = reader.own().filter(|own| own.timebase != plan.build.timebase) {
         return Err(unusable(format!(
             "recorded from gateware with {}, but the machine of {} has {}",
@@ -83,13 +94,17 @@ fn read(
 
 /// Refuses a slack of more than half of the shortest period, because a pulse could then match the
 /// neighbouring step.
-fn uncertain_by_less_than_a_period(slack_ns: u64, plan: &carrystep_plan::Plan) -> Result<(), Failure> {
+fn uncertain_by_less_than_a_period(
+    slack_ns: u64,
+    plan: &carrystep_plan::Plan,
+) -> Result<(), Failure> {
     let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
     let fastest = axes.map(|axis| axis.peaks.steps_per_s(&plan.build.timebase)).fold(0.0, f64::max);
     let most_ns = (0.5e9 / fastest).floor();
     if fastest > 0.0 && slack_ns as f64 > most_ns {
-        let text =
-            format!("--slack-ns {slack_ns} is over half of the shortest period; at most {most_ns} can be checked");
+        let text = format!(
+            "--slack-ns {slack_ns} is over half of the shortest period; at most {most_ns} can be checked"
+        );
         return Err(Failure::input(text));
     }
     Ok(())
@@ -98,7 +113,8 @@ fn uncertain_by_less_than_a_period(slack_ns: u64, plan: &carrystep_plan::Plan) -
 /// Checks that moves that start at `origin_ps` overlap a capture that ends at `end_ps`; the error
 /// is the reason.
 fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(), String> {
-    let length_ps = i128::from(plan.total_ticks()) * i128::from(plan.build.timebase.tick_ns()) * 1000;
+    let length_ps =
+        i128::from(plan.total_ticks()) * i128::from(plan.build.timebase.tick_ns()) * 1000;
     let (from, to) = (i128::from(origin_ps), i128::from(origin_ps) + length_ps);
     if from <= i128::from(end_ps) && to >= 0 {
         return Ok(());
@@ -110,5 +126,10 @@ fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(
 
 /// The settings in which two builds must agree to have the same time base.
 fn figures(timebase: &Timebase) -> String {
-    format!("clock_hz = {}, tick_ns = {}, phases = {}", timebase.clock_hz(), timebase.tick_ns(), timebase.phases())
+    format!(
+        "clock_hz = {}, tick_ns = {}, phases = {}",
+        timebase.clock_hz(),
+        timebase.tick_ns(),
+        timebase.phases()
+    )
 }

@@ -3,12 +3,13 @@
 use crate::arguments::Demo;
 use crate::commands::verilog;
 use crate::failure::{Failure, refused};
-use crate::job::{self, Done};
+use crate::job::{self, RunResult};
 use crate::output::{self, write_file};
 use crate::shipped::{MACHINE, MACHINE_FILE};
 use crate::wanted::Wanted;
 use carrystep_files::MoveFile;
 use carrystep_plan::plan;
+use carrystep_verilog::Prefix;
 use std::path::Path;
 
 /// The move file of the demo.
@@ -21,7 +22,13 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     write_file(&out("demo.toml"), MOVES)?;
     let file = MoveFile::load(&out("demo.toml"))?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
-    let verilog = verilog::write(arguments.core, &arguments.out, &file.machine, MACHINE_FILE)?;
+    let verilog = verilog::write(
+        arguments.core,
+        &arguments.out,
+        &file.machine,
+        &Prefix::default(),
+        MACHINE_FILE,
+    )?;
     let wanted = Wanted {
         vcd: Some(out("demo.vcd")),
         fst: None,
@@ -35,7 +42,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     done.verdict()
 }
 
-fn print(done: &Done, json: bool, out: &Path) -> Result<(), Failure> {
+fn print(done: &RunResult, json: bool, out: &Path) -> Result<(), Failure> {
     if json {
         return output::print_json(done);
     }

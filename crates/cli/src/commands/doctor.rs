@@ -4,7 +4,7 @@ use crate::arguments::Doctor;
 use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_tools::doctor::{Access, Host, Report};
+use carrystep_tools::doctor::{Computer, DoctorReport, PortAccess};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -15,15 +15,16 @@ use std::path::Path;
 pub struct Examined {
     passed: bool,
     #[serde(flatten)]
-    report: Report,
+    report: DoctorReport,
 }
 
 /// Prints the report. Fails with status 3 if a tool is missing and with status 1 if a device cannot
 /// be used.
 pub fn run(arguments: &Doctor) -> Result<(), Failure> {
     let board = arguments.board.as_deref().map(boards::find).transpose()?;
-    let report = Report::of(&Host::this(), board.as_deref());
-    let missing: Vec<&str> = report.tools.iter().filter(|tool| tool.path.is_none()).map(|tool| tool.name).collect();
+    let report = DoctorReport::of(&Computer::this(), board.as_deref());
+    let missing: Vec<&str> =
+        report.tools.iter().filter(|tool| tool.path.is_none()).map(|tool| tool.name).collect();
     let missing = missing.join(", ");
     let (has_tools, has_access) = (report.has_all_tools(), report.has_all_access());
     if arguments.json {
@@ -38,19 +39,25 @@ pub fn run(arguments: &Doctor) -> Result<(), Failure> {
     }
 }
 
-fn told(report: &Report) -> String {
+fn told(report: &DoctorReport) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     for tool in &report.tools {
         let _ = match (&tool.path, &tool.version) {
-            (None, _) => writeln!(text, "{:<14}  MISSING, for {}: {}", tool.name, tool.purpose, tool.install),
+            (None, _) => {
+                writeln!(text, "{:<14}  MISSING, for {}: {}", tool.name, tool.purpose, tool.install)
+            }
             (Some(_), Some(version)) => writeln!(text, "{:<14}  {version}", tool.name),
             (Some(_), None) => writeln!(text, "{:<14}  there", tool.name),
         };
     }
-    let mut device = |path: &Path, usb: Option<&str>, maybe: &[String], access: &Access| {
+    let mut device = |path: &Path, usb: Option<&str>, maybe: &[String], access: &PortAccess| {
         let usb = usb.map_or_else(String::new, |usb| format!(" ({usb})"));
-        let maybe = if maybe.is_empty() { String::new() } else { format!("; a board like {}", maybe.join(", ")) };
+        let maybe = if maybe.is_empty() {
+            String::new()
+        } else {
+            format!("; a board like {}", maybe.join(", "))
+        };
         let _ = writeln!(text, "{}{usb}  {access}{maybe}", path.display());
     };
     for port in &report.serial_ports {

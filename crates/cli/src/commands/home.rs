@@ -1,17 +1,17 @@
 //! `carrystep home`: the axes of a machine find their limit switches, and the command stores where
 //! machine zero is.
 
-use crate::arguments::Home;
+use crate::arguments::HomeArguments;
 use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::drive::{Culprit, How};
 use crate::failure::Failure;
-use crate::memory::{self, Limit, Memory};
+use crate::memory::{self, BoardMemory, MetLimit};
 use crate::{found, homing, output};
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
-use carrystep_link::{Ended, Homed, Homing, HomingFault, HostError, Stage};
+use carrystep_link::{Ended, Homed, Homing, HomingFault, HomingStage, HostError};
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -20,7 +20,7 @@ use std::time::Instant;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Report {
+pub struct HomeReport {
     passed: bool,
     port: String,
     build: String,
@@ -48,25 +48,42 @@ struct AxisReport {
     homed: bool,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for HomeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
-        writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}", "axis", "before", "switch at", "position", "machine")?;
+        writeln!(
+            f,
+            "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}",
+            "axis", "before", "switch at", "position", "machine"
+        )?;
         for AxisReport { axis, before, edge, position, machine, unit, .. } in &self.axes {
             let edge = edge.map_or_else(|| "-".to_owned(), |edge| edge.to_string());
-            let machine = machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4} {unit}"));
+            let machine =
+                machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4} {unit}"));
             writeln!(f, "{axis:<6}  {before:>11}  {edge:>11}  {position:>11}  {machine:>12}")?;
         }
         match self.ended {
             How::Done => f.write_str("HOMED\n"),
             How::Stopped => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                let by = if self.stopped_by == Some(StoppedBy::Stop) {
+                    "`carrystep stop`"
+                } else {
+                    "Ctrl-C"
+                };
                 writeln!(f, "STOPPED by {by}; these axes are not homed")
             }
             How::Fault => {
                 let names: Vec<&str> = self.culprits.iter().map(|culprit| &*culprit.axis).collect();
-                let from = if names.is_empty() { String::new() } else { format!(", from {}", names.join(", ")) };
-                writeln!(f, "STOPPED by the machine: {}{from}; these axes are not homed", self.cause.unwrap_or("?"))?;
+                let from = if names.is_empty() {
+                    String::new()
+                } else {
+                    format!(", from {}", names.join(", "))
+                };
+                writeln!(
+                    f,
+                    "STOPPED by the machine: {}{from}; these axes are not homed",
+                    self.cause.unwrap_or("?")
+                )?;
                 self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
             }
         }
@@ -74,15 +91,15 @@ impl fmt::Display for Report {
 }
 
 /// Homes the named axes, or all that have a home table.
-pub fn run(arguments: &Home) -> Result<(), Failure> {
+pub fn run(arguments: &HomeArguments) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let groups = homing::groups(&machine, &arguments.axes)?;
     let mut homing = homing::of(&machine, &groups);
-    homing
-        .check()
-        .map_err(|(axis, why)| Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name)))?;
+    homing.check().map_err(|(axis, why)| {
+        Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name))
+    })?;
     let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
-    let mut memory = Memory::recall(&connection);
+    let mut memory = BoardMemory::recall(&connection);
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
     let report = drive(connection, &machine, &homing, &mut memory)?;
     if arguments.json {
@@ -97,8 +114,8 @@ fn drive(
     connection: Connection,
     machine: &Machine,
     homing: &Homing<'_>,
-    memory: &mut Memory,
-) -> Result<Report, Failure> {
+    memory: &mut BoardMemory,
+) -> Result<HomeReport, Failure> {
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -113,7 +130,7 @@ fn drive(
     let powered = board
         .enable_while(|progress| control.wish(progress.status))
         .map_err(|error| connection::broken(&error, &axes))?;
-    let mut last = (0, Stage::MoveOff);
+    let mut last = (0, HomingStage::MoveOff);
     let outcome = match powered {
         Ended::Stopped => Ok(Homed::Stopped),
         Ended::Done => board.home(homing, |moving, stage, progress| {
@@ -131,8 +148,11 @@ fn drive(
     let mut edges = None;
     let ended = match outcome {
         Ok(Homed::At(places)) => {
-            for (number, home) in
-                machine.axes.iter().enumerate().filter_map(|(number, axis)| Some((number, axis.home?)))
+            for (number, home) in machine
+                .axes
+                .iter()
+                .enumerate()
+                .filter_map(|(number, axis)| Some((number, axis.home?)))
             {
                 if homing.mask() >> number & 1 == 1 {
                     memory.set_offset(number, Some(home.position - i64::from(places[number])));
@@ -154,7 +174,9 @@ fn drive(
         }
         Err(HostError::Homing { axes: mask, why }) => {
             let positions = board.status().positions;
-            for number in (0..axes.len()).filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1) {
+            for number in (0..axes.len())
+                .filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1)
+            {
                 memory.set_limit(number, closed(machine, number, last.1, positions[number]));
             }
             // If the file cannot be written, the old one no longer matches the board and is
@@ -170,14 +192,16 @@ fn drive(
     let end = *board.status();
     let is_culprit = |number: usize| cause.is_some() && answer.culprits >> number & 1 == 1;
     let culprits = (0..axes.len()).filter(|&number| is_culprit(number));
-    let report = Report {
+    let report = HomeReport {
         passed: ended == How::Done,
         port,
         build: format!("{:016x}", facts.build),
         ended,
         stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
         cause: answer.cause_name().filter(|_| ended == How::Fault),
-        culprits: culprits.map(|number| Culprit { axis: axes[number].clone(), direction: 0 }).collect(),
+        culprits: culprits
+            .map(|number| Culprit { axis: axes[number].clone(), direction: 0 })
+            .collect(),
         remedy: cause.map(Cause::remedy),
         run_s: begun.elapsed().as_secs_f64(),
         axes: (0..axes.len())
@@ -202,8 +226,12 @@ fn drive(
 }
 
 /// The limit to remember for an axis that met a limit while it moved away from its home switch.
-fn closed(machine: &Machine, number: usize, stage: Stage, at: i32) -> Option<Limit> {
+fn closed(machine: &Machine, number: usize, stage: HomingStage, at: i32) -> Option<MetLimit> {
     let home = machine.axes[number].home.as_ref()?;
     let away = if home.toward == End::Max { -1 } else { 1 };
-    (stage != Stage::PullOff).then_some(Limit { direction: away, at, clear: home.move_off })
+    (stage != HomingStage::PullOff).then_some(MetLimit {
+        direction: away,
+        at,
+        clear: home.move_off,
+    })
 }

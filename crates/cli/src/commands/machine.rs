@@ -4,15 +4,15 @@
 mod ask;
 mod axis;
 
-use crate::arguments::{Machine as Arguments, MachineCommand, MachineNew};
+use crate::arguments::{MachineArguments as Arguments, MachineCommand, MachineNew};
 use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output::{self, OutputFile};
-use axis::Axis;
+use axis::AxisKeys;
 use carrystep_boards::Board;
 use carrystep_core::tick::{Ticks, mhz};
 use carrystep_core::{ChosenTick, Timebase};
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_verilog::Gateware;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -22,7 +22,7 @@ use std::path::Path;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Written<'a> {
+pub struct WrittenMachine<'a> {
     passed: bool,
     file: &'a Path,
     clock_hz: u64,
@@ -33,16 +33,16 @@ pub struct Written<'a> {
 }
 
 /// The source of the clock.
-pub enum Clock {
+pub enum ClockSource {
     Board(Box<Cow<'static, Board>>),
     Hz(u64),
 }
 
 /// The content of the new file, as far as it is known.
 pub struct Wishes {
-    clock: Option<Clock>,
+    clock: Option<ClockSource>,
     limits: Option<String>,
-    axes: Vec<Axis>,
+    axes: Vec<AxisKeys>,
 }
 
 /// Runs a subcommand of `machine`.
@@ -57,30 +57,45 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     let path = &arguments.file;
     if path.exists() && !arguments.force {
         let message = format!("{} is there already", path.display());
-        return Err(Failure::Input(InputError::new(message).help("take another name, or replace it with --force")));
+        return Err(Failure::Input(
+            InputError::new(message).help("take another name, or replace it with --force"),
+        ));
     }
-    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(|board| Clock::Board(Box::new(board)));
+    let board = arguments
+        .board
+        .as_deref()
+        .map(boards::find)
+        .transpose()?
+        .map(|board| ClockSource::Board(Box::new(board)));
     let mut wishes = Wishes {
-        clock: board.or(arguments.clock_hz.map(Clock::Hz)),
+        clock: board.or(arguments.clock_hz.map(ClockSource::Hz)),
         limits: arguments.limits.clone(),
-        axes: arguments.axes.iter().map(|option| Axis::parse(option)).collect::<Result<_, _>>()?,
+        axes: arguments
+            .axes
+            .iter()
+            .map(|option| AxisKeys::parse(option))
+            .collect::<Result<_, _>>()?,
     };
     let missing = wishes.missing();
     if !missing.is_empty() {
         if !std::io::stdin().is_terminal() {
             let help = "give them as options, or run it on a terminal, where it asks; --help has an example";
-            let message = format!("to write {} these are missing:\n  {}", path.display(), missing.join("\n  "));
+            let message = format!(
+                "to write {} these are missing:\n  {}",
+                path.display(),
+                missing.join("\n  ")
+            );
             return Err(Failure::Input(InputError::new(message).help(help)));
         }
         ask::complete(&mut wishes)?;
     }
-    let source = Source { path: path.clone(), text: wishes.text()?.into() };
+    let source = SourceText { path: path.clone(), text: wishes.text()?.into() };
     let (machine, build_id) = wishes.check(&source)?;
     let mut file = OutputFile::create(path)?;
     file.text(&source.text)?;
     file.keep()?;
     let timebase = &machine.timebase;
-    let written = Written {
+    let written = WrittenMachine {
         passed: true,
         file: path,
         clock_hz: timebase.clock_hz(),
@@ -92,10 +107,12 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     if arguments.json {
         return output::print_json(&written);
     }
-    let Written { clock_hz, tick_ns, phases, axes, build_id, .. } = &written;
+    let WrittenMachine { clock_hz, tick_ns, phases, axes, build_id, .. } = &written;
     let shown = path.display();
     let next = match &wishes.clock {
-        Some(Clock::Board(board)) => format!("carrystep build --board {} --machine {shown}", board.name),
+        Some(ClockSource::Board(board)) => {
+            format!("carrystep build --board {} --machine {shown}", board.name)
+        }
         _ => format!("carrystep verilog --machine {shown}"),
     };
     output::print(&format!(
@@ -121,7 +138,11 @@ impl Wishes {
             missing.push("--axis NAME,KEY=VALUE,... for each axis".to_owned());
         }
         for axis in &self.axes {
-            missing.extend(axis.missing().into_iter().map(|(_, ways)| format!("of axis {}: {ways}", axis.name)));
+            missing.extend(
+                axis.missing()
+                    .into_iter()
+                    .map(|(_, ways)| format!("of axis {}: {ways}", axis.name)),
+            );
         }
         missing
     }
@@ -130,13 +151,16 @@ impl Wishes {
     fn text(&self) -> Result<String, Failure> {
         let (clock_hz, tick_ns, phases, why) = self.time()?;
         let title = match &self.clock {
-            Some(Clock::Board(board)) => format!(" for the {}", board.title),
+            Some(ClockSource::Board(board)) => format!(" for the {}", board.title),
             _ => String::new(),
         };
         let link = match &self.clock {
-            Some(Clock::Board(board)) => {
-                let baud = board.uart(clock_hz).map_err(|error| Failure::input(error.to_string()))?.baud();
-                format!("\n[machine.link]\nbaud = {baud:<21} # the fastest that board and clock make exactly enough\n")
+            Some(ClockSource::Board(board)) => {
+                let baud =
+                    board.uart(clock_hz).map_err(|error| Failure::input(error.to_string()))?.baud();
+                format!(
+                    "\n[machine.link]\nbaud = {baud:<21} # the fastest that board and clock make exactly enough\n"
+                )
             }
             _ => String::new(),
         };
@@ -145,7 +169,7 @@ impl Wishes {
         let tick = format!("tick_ns = {tick_ns}");
         let phased = format!("phases = {phases}");
         let wired = format!("limits = {limits:?}");
-        let axes: Vec<String> = self.axes.iter().map(Axis::text).collect();
+        let axes: Vec<String> = self.axes.iter().map(AxisKeys::text).collect();
         Ok(format!(
             "# A machine{title}, written by `carrystep machine new`. Every key is explained in docs/machine-files.md.\n\
              [machine]\n\
@@ -169,9 +193,14 @@ impl Wishes {
     /// Clock (Hz), tick (ns), number of phases, and the reason for this tick.
     fn time(&self) -> Result<(u64, u64, u32, String), Failure> {
         let axes = self.axes.len();
-        let no_tick = |hz: u64| Failure::input(format!("no tick at {} MHz holds the turns of {axes} axes", mhz(hz)));
+        let no_tick = |hz: u64| {
+            Failure::input(format!(
+                "no tick at {} MHz holds the time slots of {axes} axes",
+                mhz(hz)
+            ))
+        };
         match self.clock.as_ref() {
-            Some(Clock::Board(board)) => {
+            Some(ClockSource::Board(board)) => {
                 let clocking = &board.clocks[0];
                 let (hz, phases) = (clocking.clock_hz, clocking.phases);
                 let fits = Timebase::new(hz, clocking.tick_ns, phases)
@@ -182,13 +211,16 @@ impl Wishes {
                 let tick_ns = Ticks::for_engine(hz, phases, axes).ok_or_else(|| no_tick(hz))?;
                 Ok((hz, tick_ns, phases, format!("the shortest that {axes} axes take")))
             }
-            Some(&Clock::Hz(hz)) => {
+            Some(&ClockSource::Hz(hz)) => {
                 let chosen = ChosenTick::new(hz, 16, axes).ok_or_else(|| no_tick(hz))?;
                 let why = "the shortest that these axes take".to_owned();
                 match chosen.fewer_phases_ns {
-                    Some(shorter) => {
-                        Ok((hz, shorter, 4, format!("{why}; in 16 phases it would be {}", chosen.tick_ns)))
-                    }
+                    Some(shorter) => Ok((
+                        hz,
+                        shorter,
+                        4,
+                        format!("{why}; in 16 phases it would be {}", chosen.tick_ns),
+                    )),
                     None => Ok((hz, chosen.tick_ns, 16, why)),
                 }
             }
@@ -198,12 +230,12 @@ impl Wishes {
 
     /// Reads the text as any machine file is read, and checks that its engine can be built, on the
     /// board if there is one.
-    fn check(&self, source: &Source) -> Result<(Machine, String), Failure> {
+    fn check(&self, source: &SourceText) -> Result<(Machine, String), Failure> {
         let machine = Machine::from_source(source)?;
         let refused = |error: String| Failure::input(format!("{}: {error}", source.path.display()));
         let engine = machine.engine();
         engine.check().map_err(|error| refused(error.to_string()))?;
-        if let Some(Clock::Board(board)) = &self.clock {
+        if let Some(ClockSource::Board(board)) = &self.clock {
             Gateware::new(board, board.part(None)?, source.clone())?;
         }
         let line = machine.line().map_err(|error| refused(error.to_string()))?;

@@ -1,10 +1,10 @@
 //! `carrystep plan`: the integer segments of a move file, or the reason why it cannot be planned.
 
-use crate::arguments::Plan as Arguments;
+use crate::arguments::PlanArguments as Arguments;
 use crate::failure::{Failure, refused};
 use crate::job;
 use crate::output;
-use crate::table::{self, Limits};
+use crate::table::{self, LimitsJson};
 use carrystep_core::Segment;
 use carrystep_files::{Axis, MoveFile};
 use carrystep_plan::{Plan, PlannedMove, plan};
@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 pub struct Planned<'a> {
     passed: bool,
     tick_ns: u64,
-    limits: Limits,
+    limits: LimitsJson,
     moves: Vec<MoveJson<'a>>,
 }
 
@@ -113,10 +113,15 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
         let _ = table::columns(&mut text, head, cells, |column| column == 0 || column == 3);
         for ((planned, axis), rounding) in rows {
             text.push_str(&rounded(axis, *rounding));
-            for (index, Segment { ticks, v, a, j, last }) in planned.segments.iter().filter(|_| segments).enumerate() {
+            for (index, Segment { ticks, v, a, j, last }) in
+                planned.segments.iter().filter(|_| segments).enumerate()
+            {
                 let name = if index == 0 { axis.name.as_str() } else { "" };
                 let mark = if *last { "  last" } else { "" };
-                let _ = writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
+                let _ = writeln!(
+                    text,
+                    "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}"
+                );
             }
         }
     }

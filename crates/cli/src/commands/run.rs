@@ -1,17 +1,17 @@
 //! `carrystep run` and `jog`: plan the moves, connect to the board, stream them and report the
 //! outcome.
 
-use crate::arguments::{Jog, Port, Run};
+use crate::arguments::{Jog, PortArguments, RunArguments};
 use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
-use carrystep_files::{Machine, MoveFile, Source, decimal};
+use carrystep_files::{Machine, MoveFile, SourceText, decimal};
 use carrystep_plan::plan;
 use std::path::Path;
 
 /// Executes the moves of a file.
-pub fn run(arguments: &Run) -> Result<(), Failure> {
+pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
     told(&moved(&file, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
@@ -24,12 +24,16 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     // Quoted as a TOML key, so that the name cannot contain TOML syntax.
     let axis = serde_json::to_string(axis).map_err(|error| Failure::Run(error.to_string()))?;
     let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
-    let text = format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
-    let file = MoveFile::of_moves(machine, Source { path: "jog".into(), text: text.into() })?;
+    let text =
+        format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
+    let file = MoveFile::of_moves(machine, SourceText { path: "jog".into(), text: text.into() })?;
     if let Some(failure) = nothing_to_do(&file, arguments) {
         return Err(failure);
     }
-    told(&moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?, arguments.json)
+    told(
+        &moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?,
+        arguments.json,
+    )
 }
 
 /// Plans and executes the moves. Everything is planned before the port is opened, and nothing moves
@@ -37,7 +41,7 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
 fn moved(
     file: &MoveFile,
     name: &Path,
-    port: &Port,
+    port: &PortArguments,
     command: &'static str,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
@@ -50,7 +54,8 @@ fn moved(
 /// The failure for a jog of less than half a step, which states the size of a step.
 fn nothing_to_do(file: &MoveFile, arguments: &Jog) -> Option<Failure> {
     let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
-    let (number, axis) = (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == arguments.axis)?;
+    let (number, axis) =
+        (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == arguments.axis)?;
     let part = first.rounding.get(number).copied().unwrap_or_default().abs();
     let step = 1.0 / decimal::to_f64(&axis.steps_per_unit);
     let Jog { axis, distance, .. } = arguments;

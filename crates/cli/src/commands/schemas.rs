@@ -10,7 +10,8 @@ use std::fmt::Write as _;
 pub fn run(arguments: &Schemas, documents: &[(&str, Schema)]) -> Result<(), Failure> {
     let mut wrote = String::new();
     for (name, schema) in documents {
-        let text = serde_json::to_string_pretty(schema).map_err(|error| Failure::Run(error.to_string()))?;
+        let text = serde_json::to_string_pretty(schema)
+            .map_err(|error| Failure::Run(error.to_string()))?;
         let file = arguments.out.join(format!("{name}.json"));
         write_file(&file, &format!("{text}\n"))?;
         // Writing to a string cannot fail.

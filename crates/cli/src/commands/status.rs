@@ -1,11 +1,11 @@
 //! `carrystep status`: the state of a board and the positions of its axes.
 
-use crate::arguments::Status;
+use crate::arguments::StatusArguments;
 use crate::connection::{self, Connection};
-use crate::control::{self, Reply, Request};
+use crate::control::{self, Reply, SocketRequest};
 use crate::failure::Failure;
-use crate::found::{self, Found, Known};
-use crate::memory::{self, Memory};
+use crate::found::{self, FoundBoard, Known};
+use crate::memory::{self, BoardMemory};
 use crate::output;
 use carrystep_link::frame;
 use carrystep_link::registers::DISCARDED;
@@ -17,17 +17,19 @@ const ANSWER: Duration = Duration::from_secs(2);
 
 /// Reports the state of a board. If another command drives the board, the state comes from that
 /// command.
-pub fn status(arguments: &Status) -> Result<(), Failure> {
+pub fn status(arguments: &StatusArguments) -> Result<(), Failure> {
     let begin = Instant::now();
     loop {
         if let Some(found) = asked(&arguments.peer.port.name)? {
             return tell(&found, arguments.json);
         }
         match connection::to_peer(&arguments.peer, arguments.peer.baud, "status") {
-            Ok(connection) => return tell(&look(connection)?, arguments.json),
+            Ok(connection) => return tell(&read_status(connection)?, arguments.json),
             // A command that has just begun will listen; one that has just ended will release the
             // port.
-            Err(refused) if refused.busy && begin.elapsed() < ANSWER => std::thread::sleep(Duration::from_millis(5)),
+            Err(refused) if refused.busy && begin.elapsed() < ANSWER => {
+                std::thread::sleep(Duration::from_millis(5));
+            }
             Err(refused) => return Err(refused.failure),
         }
     }
@@ -35,31 +37,36 @@ pub fn status(arguments: &Status) -> Result<(), Failure> {
 
 /// The state as the driving command reports it; `None` if no command drives the board or it is not
 /// yet connected.
-fn asked(port: &str) -> Result<Option<Found>, Failure> {
+fn asked(port: &str) -> Result<Option<FoundBoard>, Failure> {
     let Some(mut caller) = control::call(port) else { return Ok(None) };
-    match caller.ask(Request::Status, ANSWER) {
+    match caller.ask(SocketRequest::Status, ANSWER) {
         Reply::Line(line) if line.is_empty() => Ok(None),
         Reply::Ended => Ok(None),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Status, "answer"))),
-        Reply::Line(line) => serde_json::from_str(&line)
-            .map(Some)
-            .map_err(|error| Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))),
+        Reply::Silent => Err(Failure::Run(connection::hangs(
+            port,
+            &caller.holder,
+            SocketRequest::Status,
+            "answer",
+        ))),
+        Reply::Line(line) => serde_json::from_str(&line).map(Some).map_err(|error| {
+            Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))
+        }),
     }
 }
 
 /// Prints the state.
-pub fn tell(found: &Found, json: bool) -> Result<(), Failure> {
+pub fn tell(found: &FoundBoard, json: bool) -> Result<(), Failure> {
     if json { output::print_json(found) } else { output::print(&found.to_string()) }
 }
 
 /// Reads the whole state from the board and releases the port.
-pub fn look(connection: Connection) -> Result<Found, Failure> {
-    let memory = Memory::recall(&connection);
+pub fn read_status(connection: Connection) -> Result<FoundBoard, Failure> {
+    let memory = BoardMemory::recall(&connection);
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
     let failed = |error| connection::broken(&error, &axes);
-    let status = board.look().map_err(failed)?;
+    let status = board.read_status().map_err(failed)?;
     let mut discarded = Vec::new();
     for axis in (0..).take(axes.len()) {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
@@ -68,7 +75,7 @@ pub fn look(connection: Connection) -> Result<Found, Failure> {
     // so they are not shown before it either.
     let frozen = found::cause(&status.answer).is_some_and(memory::always_freezes);
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
-    let mut found = Found::new(&status, &known, Some(&discarded));
+    let mut found = FoundBoard::new(&status, &known, Some(&discarded));
     for (number, axis) in found.axes.iter_mut().enumerate() {
         axis.machine = memory.coordinate(number, axis.position).filter(|_| !frozen);
     }

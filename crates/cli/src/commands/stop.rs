@@ -1,12 +1,12 @@
 //! `carrystep stop`: stops all axes of a board, through the command that drives it if there is one.
 
 use crate::arguments::Stop;
-use crate::commands::status::{look, tell};
+use crate::commands::status::{read_status, tell};
 use crate::connection::{self, Connection};
-use crate::control::{self, Caller, Holder, Reply, Request};
+use crate::control::{self, Caller, Holder, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::memory::Memory;
+use crate::memory::BoardMemory;
 use carrystep_link::HostError;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -23,7 +23,7 @@ const BUSY: Duration = Duration::from_secs(2);
 /// Stops all axes; then clears the stop and switches the drivers off, if the arguments say so.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let (mut connection, stopped) = reach(arguments)?;
-    let mut memory = Memory::recall(&connection);
+    let mut memory = BoardMemory::recall(&connection);
     let Connection { board, axes, .. } = &mut connection;
     let failed = |error| connection::broken(&error, axes);
     if !board.status().answer.idle {
@@ -31,7 +31,9 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     }
     if arguments.clear {
         board.clear().map_err(|error| match error {
-            HostError::StillPressed => Failure::Run(format!("{error}; then `carrystep stop --clear` again")),
+            HostError::StillPressed => {
+                Failure::Run(format!("{error}; then `carrystep stop --clear` again"))
+            }
             _ => failed(error),
         })?;
     }
@@ -40,7 +42,7 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     }
     // If the file cannot be written, the old one no longer matches the board and is ignored.
     let _ = memory.keep(board);
-    let mut found = look(connection)?;
+    let mut found = read_status(connection)?;
     found.stopped = stopped;
     tell(&found, arguments.json)
 }
@@ -70,14 +72,16 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
                 std::thread::sleep(Duration::from_millis(5));
             }
             Err(refused) if refused.busy && cfg!(not(unix)) => {
-                let help = "press Ctrl-C in its terminal: on this system `stop` reaches no other command";
+                let help =
+                    "press Ctrl-C in its terminal: on this system `stop` reaches no other command";
                 return Err(Failure::Run(format!("{}; {help}", refused.failure.message())));
             }
             Err(refused) => {
                 return Err(match stopped {
-                    Some(holder) => {
-                        Failure::Run(format!("{holder} was stopped; but then {}", refused.failure.message()))
-                    }
+                    Some(holder) => Failure::Run(format!(
+                        "{holder} was stopped; but then {}",
+                        refused.failure.message()
+                    )),
                     None => refused.failure,
                 });
             }
@@ -87,10 +91,17 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
 
 /// Returns true if the command has accepted the stop and ended, and false if it had ended before.
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
-    match caller.ask(Request::Stop, TAKEN) {
+    match caller.ask(SocketRequest::Stop, TAKEN) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),
-        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "end"))),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "answer"))),
+        Reply::Line(_) => {
+            Err(Failure::Run(connection::hangs(port, &caller.holder, SocketRequest::Stop, "end")))
+        }
+        Reply::Silent => Err(Failure::Run(connection::hangs(
+            port,
+            &caller.holder,
+            SocketRequest::Stop,
+            "answer",
+        ))),
         Reply::Ended => Ok(false),
     }
 }

@@ -8,20 +8,24 @@ use crate::{interrupt, job, output};
 use carrystep_check::AxisReport;
 use carrystep_plan::{PlanError, plan};
 use carrystep_simulators::Level;
-use carrystep_sweep::{Case, Report, SweepError, SweepFile, Verdict};
+use carrystep_sweep::{Case, CaseVerdict, SweepError, SweepFile, SweepReport};
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Runs a shard, or merges reports, and prints the report.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
-    let name = arguments.file.as_ref().map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
+    let name = arguments
+        .file
+        .as_ref()
+        .map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
     let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
     let report = match &arguments.file {
         Some(file) => {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
             let cases = arguments.shard.cases(sweep.cases()).count() as u64;
-            let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
+            let bar =
+                ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
             let report = carrystep_sweep::run(
                 &sweep,
                 arguments.shard,
@@ -34,7 +38,9 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             interrupt::check()?;
             report
         }
-        None => Report::merge(arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?)?,
+        None => SweepReport::merge(
+            arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?,
+        )?,
     };
     if let Some(junit) = junit {
         cases(junit, &report)?;
@@ -52,43 +58,49 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
 }
 
 /// Writes one test case for the whole sweep and one for each failed case that the report lists.
-fn cases(mut junit: JunitFile, report: &Report) -> Result<(), Failure> {
-    let Report { passed, cases_passed, cases_refused, cases_failed, .. } = report;
+fn cases(mut junit: JunitFile, report: &SweepReport) -> Result<(), Failure> {
+    let SweepReport { passed, cases_passed, cases_refused, cases_failed, .. } = report;
     let counts = format!("{cases_passed} passed, {cases_refused} refused, {cases_failed} failed");
     let wrong = if *passed == Some(true) { Vec::new() } else { vec![counts] };
     junit.case("all cases", &wrong);
     for failed in &report.failures {
-        junit.case(format!("case {}", failed.case), &[format!("{}: {}", failed.filled(), failed.message)]);
+        junit.case(
+            format!("case {}", failed.case),
+            &[format!("{}: {}", failed.filled(), failed.message)],
+        );
     }
     junit.keep()
 }
 
-fn read(path: &Path) -> Result<Report, Failure> {
+fn read(path: &Path) -> Result<SweepReport, Failure> {
     let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
-    let text = carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
+    let text =
+        carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
     serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
 }
 
 /// Plans, simulates and checks a case.
-fn judge(case: &Case, core: Core) -> Verdict {
-    let Ok(file) = &case.file else { return Verdict::Failed("no move file".to_owned()) };
+fn judge(case: &Case, core: Core) -> CaseVerdict {
+    let Ok(file) = &case.file else { return CaseVerdict::Failed("no move file".to_owned()) };
     let plan = match plan::<f64>(file) {
         Ok(plan) => plan,
-        Err(error @ PlanError::Broken { .. }) => return Verdict::Failed(error.to_string()),
-        Err(error) => return Verdict::Refused(error.to_string()),
+        Err(error @ PlanError::Broken { .. }) => return CaseVerdict::Failed(error.to_string()),
+        Err(error) => return CaseVerdict::Refused(error.to_string()),
     };
     match job::run(file, &plan, core, Level::Fast, &Wanted::default()) {
-        Ok(done) if done.passed => Verdict::Passed(figures(&done)),
+        Ok(done) if done.passed => CaseVerdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();
-            Verdict::Failed(first.map_or_else(|| format!("faults: {}", done.faults), str::to_owned))
+            CaseVerdict::Failed(
+                first.map_or_else(|| format!("faults: {}", done.faults), str::to_owned),
+            )
         }
-        Err(failure) => Verdict::Failed(failure.message()),
+        Err(failure) => CaseVerdict::Failed(failure.message()),
     }
 }
 
 /// The worst figure of all axes, each as a fraction of its limit: 1 is at the limit.
-fn figures(done: &job::Done) -> BTreeMap<&'static str, f64> {
+fn figures(done: &job::RunResult) -> BTreeMap<&'static str, f64> {
     let needed = |required: f64, found: Option<f64>| found.map(|found| required / found);
     let early = |axis: &AxisReport| axis.error_min_ns.map(|error| -error / axis.error_bound_ns);
     let late = |axis: &AxisReport| axis.error_max_ns.map(|error| error / axis.error_bound_ns);
@@ -102,14 +114,17 @@ fn figures(done: &job::Done) -> BTreeMap<&'static str, f64> {
     for axis in &done.check.axes {
         add("early", early(axis));
         add("late", late(axis));
-        add("step high", needed(axis.high_required_ns, axis.high_min_ns));
-        add("step low", needed(axis.low_required_ns, axis.low_min_ns));
-        add("dir set-up", needed(axis.setup_required_ns, axis.setup_min_ns));
-        add("dir hold", needed(axis.hold_required_ns, axis.hold_min_ns));
+        add("step high", needed(axis.step_high_required_ns, axis.step_high_min_ns));
+        add("step low", needed(axis.step_low_required_ns, axis.step_low_min_ns));
+        add("dir set-up", needed(axis.dir_setup_required_ns, axis.dir_setup_min_ns));
+        add("dir hold", needed(axis.dir_hold_required_ns, axis.dir_hold_min_ns));
     }
     for limits in &done.limits.axes {
         add("speed", Some(limits.speed_steps_per_s / limits.speed_limit_steps_per_s));
-        add("acceleration", Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2));
+        add(
+            "acceleration",
+            Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2),
+        );
     }
     worst
 }

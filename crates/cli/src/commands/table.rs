@@ -1,9 +1,9 @@
 //! `carrystep table`: makes a timer compare table as a C header, and writes the player for it.
 
-use crate::arguments::{Table as Arguments, TableKind};
+use crate::arguments::{TableArguments as Arguments, TableKind};
 use crate::failure::Failure;
 use crate::output::{self, OutputFile};
-use carrystep_table::{Figures, PLAYER, Table, TableError};
+use carrystep_table::{PLAYER, Table, TableError, TableFigures};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if output.json {
         return json(&table, files);
     }
-    let wrote: Vec<String> = files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
+    let wrote: Vec<String> =
+        files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
     output::print(&format!("{}{}", figures(table.figures()), wrote.concat()))
 }
 
@@ -60,10 +61,11 @@ fn write(folder: &Path, texts: &[(String, &str)]) -> Result<Vec<PathBuf>, Failur
     files.into_iter().map(OutputFile::keep).collect()
 }
 
-fn figures(figures: &Figures) -> String {
-    let Figures { timer_hz, entries, ramp_pulses, ramp_seconds, ramp_seconds_ideal, .. } = figures;
-    let Figures { first_speed, top_speed_asked, top_speed, top_rpm, .. } = figures;
-    let Figures { worst_speed_error, peak_acceleration, bytes, .. } = figures;
+fn figures(figures: &TableFigures) -> String {
+    let TableFigures { timer_hz, entries, ramp_pulses, ramp_seconds, ramp_seconds_ideal, .. } =
+        figures;
+    let TableFigures { first_speed, top_speed_asked, top_speed, top_rpm, .. } = figures;
+    let TableFigures { worst_speed_error, peak_acceleration, bytes, .. } = figures;
     format!(
         "table              {entries} entries, {ramp_pulses} pulses, {bytes} bytes\n\
          timer              {timer_hz} counts/s\n\

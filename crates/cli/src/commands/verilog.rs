@@ -9,16 +9,16 @@ use crate::{output, shipped};
 use carrystep_core::engine::GuardFigures;
 use carrystep_core::link::Uart;
 use carrystep_files::Machine;
-use carrystep_verilog::{CORE_NAME, ENGINE_NAME, ExportError};
+use carrystep_verilog::{CORE_NAME, ENGINE_NAME, ExportError, Prefix};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Written {
+pub struct WrittenVerilog {
     passed: bool,
-    top: &'static str,
+    top: String,
     /// The tick that is built in, ns.
     tick_ns: u64,
     /// How the tick was chosen, if the machine file gives none and the clock is not the default.
@@ -42,7 +42,7 @@ pub fn run(arguments: &Verilog) -> Result<(), Failure> {
         None => (shipped::machine()?, SHIPPED.to_owned()),
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new("hdl-out/core"));
-    let written = write(arguments.core, out, &machine, &name)?;
+    let written = write(arguments.core, out, &machine, &arguments.prefix, &name)?;
     if arguments.json {
         return output::print_json(&written);
     }
@@ -73,7 +73,9 @@ pub struct WrittenForBoard<'a> {
 /// Writes all files of a board's folder.
 fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     let board = boards::find(board)?;
-    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let gateware =
+        boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?
+            .with_prefix(arguments.prefix.clone());
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = carrystep_verilog::write(&out, &gateware.files()?)?;
     let tick_note = gateware.chosen_tick().map(|chosen| chosen.to_string());
@@ -95,24 +97,35 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
 }
 
 /// Writes a core's Verilog for a machine.
-pub fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Written, Failure> {
+pub fn write(
+    core: Core,
+    out: &Path,
+    machine: &Machine,
+    prefix: &Prefix,
+    name: &str,
+) -> Result<WrittenVerilog, Failure> {
     let refused = |error: ExportError| match error {
         ExportError::Io { .. } => Failure::input(error.to_string()),
         _ => Failure::input(format!("{name}: {error}")),
     };
-    let (tick_ns, tick_note) = (machine.timebase.tick_ns(), machine.chosen_tick.map(|chosen| chosen.to_string()));
+    let (tick_ns, tick_note) =
+        (machine.timebase.tick_ns(), machine.chosen_tick.map(|chosen| chosen.to_string()));
     match core {
         Core::Parallel => {
-            let build = machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
-            let files = carrystep_verilog::write_core(out, &build, name).map_err(refused)?;
-            Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
+            let build =
+                machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+            let files =
+                carrystep_verilog::write_core(out, &build, prefix, name).map_err(refused)?;
+            let top = prefix.name(CORE_NAME);
+            Ok(WrittenVerilog { passed: true, top, tick_ns, tick_note, guard: None, files })
         }
         Core::Engine => {
             let build = gateware::engine(machine, name)?;
-            let files = carrystep_verilog::write_engine(out, &build, name).map_err(refused)?;
-            Ok(Written {
+            let files =
+                carrystep_verilog::write_engine(out, &build, prefix, name).map_err(refused)?;
+            Ok(WrittenVerilog {
                 passed: true,
-                top: ENGINE_NAME,
+                top: prefix.name(ENGINE_NAME),
                 tick_ns,
                 tick_note,
                 guard: Some(build.guard_figures()),

@@ -2,18 +2,20 @@
 
 use crate::arguments::{BoardLevel, VirtualBoard};
 use crate::connection;
-use crate::desk::Manned;
 use crate::failure::Failure;
 use crate::gateware;
+use crate::operated::OperatedBoard;
 use crate::output::{self, OutputFile};
-use crate::switches::Panel;
+use crate::switches::SwitchPanel;
 use carrystep_check::{OwnCapture, PinsVcd};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::EngineOutputs;
 use carrystep_files::Machine;
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::replay::Replay;
-use carrystep_virtual_board::{Board, Desk, Gateware, Pace, Terminal, VerilatedBoard};
+use carrystep_virtual_board::{
+    ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal, VerilatedBoard,
+};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -51,17 +53,22 @@ pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
     let (uart, _) = connection::wanted(&machine, &arguments.machine)?;
     let build = machine.engine();
     match arguments.level {
-        BoardLevel::Model => serve(Board::new(&build, uart), &machine, arguments),
+        BoardLevel::Model => serve(ModelBoard::new(&build, uart), &machine, arguments),
         BoardLevel::Verilator => serve(VerilatedBoard::new(&build, uart)?, &machine, arguments),
     }
 }
 
-fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> Result<(), Failure> {
+fn serve(
+    board: impl SimulatedBoard,
+    machine: &Machine,
+    arguments: &VirtualBoard,
+) -> Result<(), Failure> {
     let build = machine.engine();
     let (uart, id) = connection::wanted(machine, &arguments.machine)?;
-    let panel = Panel::new(machine, &arguments.min, &arguments.max)?;
+    let panel = SwitchPanel::new(machine, &arguments.min, &arguments.max)?;
     let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
-    let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
+    let terminal =
+        Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
     let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
     if arguments.json {
         // If this write fails, there is no channel left to report it.
@@ -70,14 +77,16 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
         output::print(&told)?;
     }
     let clock_hz = build.timebase.clock_hz();
-    let pace = if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
-    let mut manned = Manned { desk: Desk::new(board, terminal, pace, clock_hz), panel };
+    let pace =
+        if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
+    let mut operated =
+        OperatedBoard { real_time: RealTimeBoard::new(board, terminal, pace, clock_hz), panel };
     match &mut vcd {
-        None => while manned.step(&mut ())? {},
-        Some(out) => capture(&mut manned, machine, &build, out)?,
+        None => while operated.step(&mut ())? {},
+        Some(out) => capture(&mut operated, machine, &build, out)?,
     }
     let files = vcd.map(OutputFile::appear).transpose()?.into_iter().collect();
-    tell(&served(&manned.desk.board, machine, files), arguments.json)
+    tell(&served(&operated.real_time.board, machine, files), arguments.json)
 }
 
 /// How far a fast board may run ahead of its host, in clocks.
@@ -92,29 +101,30 @@ fn ahead(build: &EngineBuild) -> u64 {
 /// Runs the board and records its pins. The capture begins at the first start, because no pin
 /// changes before it.
 fn capture(
-    manned: &mut Manned<impl Gateware>,
+    operated: &mut OperatedBoard<impl SimulatedBoard>,
     machine: &Machine,
     build: &EngineBuild,
     out: &mut OutputFile,
 ) -> Result<(), Failure> {
-    let goes_on = manned.until_start()?;
+    let goes_on = operated.until_start()?;
     let time = build.timebase;
-    let load = manned.desk.board.loads().first().copied().unwrap_or(0);
+    let load = operated.real_time.board.loads().first().copied().unwrap_or(0);
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let mut vcd = PinsVcd::new(out, OwnCapture { origin_ps, timebase: time }, names)?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
-    let mut tell = |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
+    let mut tell =
+        |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
     let mut replay = Replay::new(&build.pins, &mut tell);
-    while goes_on && manned.step(&mut replay)? {
-        replay.reach(manned.desk.board.cycle());
+    while goes_on && operated.step(&mut replay)? {
+        replay.reach(operated.real_time.board.cycle());
     }
     // The replay reports the last outputs when the next cycle begins.
-    replay.reach(manned.desk.board.cycle() + 1);
-    Ok(feed.end(manned.desk.board.cycle())?)
+    replay.reach(operated.real_time.board.cycle() + 1);
+    Ok(feed.end(operated.real_time.board.cycle())?)
 }
 
-fn served(board: &impl Gateware, machine: &Machine, files: Vec<PathBuf>) -> Served {
+fn served(board: &impl SimulatedBoard, machine: &Machine, files: Vec<PathBuf>) -> Served {
     let axis = |(number, axis): (usize, &carrystep_files::Axis)| AxisServed {
         axis: axis.name.clone(),
         position: board.position(number),
@@ -137,7 +147,9 @@ fn tell(served: &Served, json: bool) -> Result<(), Failure> {
     let mut text = format!("{:.3} s of the board's time\n", served.seconds);
     // Writing to a string cannot fail.
     for AxisServed { axis, position, discarded } in &served.axes {
-        let lost = discarded.filter(|&count| count > 0).map_or(String::new(), |count| format!(", {count} discarded"));
+        let lost = discarded
+            .filter(|&count| count > 0)
+            .map_or(String::new(), |count| format!(", {count} discarded"));
         let _ = writeln!(text, "{axis} at {position}{lost}");
     }
     if let Some(fault) = &served.fault {

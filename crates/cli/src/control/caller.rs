@@ -1,7 +1,7 @@
 //! The client end of the socket: a command that sends a request to the command that drives the
 //! board.
 
-use super::{Holder, Request, claim, folder};
+use super::{Holder, SocketRequest, claim, folder};
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
@@ -30,14 +30,15 @@ pub enum Reply {
 pub fn call(port: &str) -> Option<Caller> {
     let holder = claim::holder(port).filter(|holder| holder.listens)?;
     let name = claim::device(port)?;
-    let sockets = folder::all().into_iter().map(|folder| folder.join(&name).with_extension("socket"));
+    let sockets =
+        folder::all().into_iter().map(|folder| folder.join(&name).with_extension("socket"));
     let stream = sockets.into_iter().find_map(|path| UnixStream::connect(path).ok())?;
     Some(Caller { stream: BufReader::new(stream), holder })
 }
 
 impl Caller {
     /// Sends a request and waits up to `wait` for the answer.
-    pub fn ask(&mut self, request: Request, wait: Duration) -> Reply {
+    pub fn ask(&mut self, request: SocketRequest, wait: Duration) -> Reply {
         match writeln!(self.stream.get_mut(), "{}", request.word()) {
             Ok(()) => self.line(wait),
             Err(_) => Reply::Ended,
@@ -66,7 +67,11 @@ impl Caller {
         }
         match self.stream.read_line(&mut line) {
             Ok(1..) => Reply::Line(line.trim_end().to_owned()),
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Reply::Silent,
+            Err(error)
+                if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) =>
+            {
+                Reply::Silent
+            }
             Ok(0) | Err(_) => Reply::Ended,
         }
     }

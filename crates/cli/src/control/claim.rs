@@ -1,16 +1,16 @@
 //! The claim on a port: a lock file named after the device's number, so that every path of the
 //! device leads to the same file.
 
-use super::door::Door;
+use super::control_socket::ControlSocket;
 use super::{Holder, folder};
-use carrystep_link::Facts;
+use carrystep_link::BuildFacts;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Seek as _, Write as _};
 use std::os::unix::fs::{FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
 /// A port that this command holds until the claim is dropped or the process ends.
-pub struct Claim {
+pub struct PortClaim {
     /// The locked file; `None` if the port is not a device, in which case opening the port fails
     /// with its own message.
     lock: Option<(File, PathBuf)>,
@@ -21,20 +21,36 @@ pub struct Claim {
 /// holds it.
 ///
 /// # Errors The system refuses the folder or the lock file.
-pub fn claim(port: &str, baud: u32, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
+pub fn claim(
+    port: &str,
+    baud: u32,
+    command: &'static str,
+    listens: bool,
+) -> io::Result<Option<PortClaim>> {
     claim_in(
         folder::folder,
         port,
-        Holder { pid: std::process::id(), command: command.to_owned(), baud, listens, watchdog: None },
+        Holder {
+            pid: std::process::id(),
+            command: command.to_owned(),
+            baud,
+            listens,
+            watchdog: None,
+        },
     )
 }
 
-fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder) -> io::Result<Option<Claim>> {
-    let Some(name) = device(port) else { return Ok(Some(Claim { lock: None, holder })) };
+fn claim_in(
+    folder: impl Fn() -> io::Result<PathBuf>,
+    port: &str,
+    holder: Holder,
+) -> io::Result<Option<PortClaim>> {
+    let Some(name) = device(port) else { return Ok(Some(PortClaim { lock: None, holder })) };
     let path = folder()?.join(name).with_extension("lock");
     loop {
         let mut options = OpenOptions::new();
-        let file = options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
+        let file =
+            options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => return Ok(None),
             Err(TryLockError::Error(error)) => return Err(error),
@@ -42,27 +58,33 @@ fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder
         }
         // The previous holder may have removed the file after it was opened and before it was
         // locked.
-        if path.metadata().is_ok_and(|there| file.metadata().is_ok_and(|own| own.ino() == there.ino())) {
-            let mut claim = Claim { lock: Some((file, path)), holder };
+        if path
+            .metadata()
+            .is_ok_and(|there| file.metadata().is_ok_and(|own| own.ino() == there.ino()))
+        {
+            let mut claim = PortClaim { lock: Some((file, path)), holder };
             claim.tell();
             return Ok(Some(claim));
         }
     }
 }
 
-impl Claim {
+impl PortClaim {
     /// The holder that the lock file names.
     pub const fn holder(&self) -> &Holder {
         &self.holder
     }
 
     /// Opens the socket beside the lock file. A socket that a killed holder has left is replaced.
-    pub(super) fn listen(&self) -> io::Result<Option<Door>> {
-        self.lock.as_ref().map(|(_, path)| Door::open(path.with_extension("socket"))).transpose()
+    pub(super) fn listen(&self) -> io::Result<Option<ControlSocket>> {
+        self.lock
+            .as_ref()
+            .map(|(_, path)| ControlSocket::open(path.with_extension("socket")))
+            .transpose()
     }
 
     /// Adds the watchdog's time of the connected board to the lock file.
-    pub(super) fn connected(&mut self, facts: &Facts) {
+    pub(super) fn connected(&mut self, facts: &BuildFacts) {
         self.holder.watchdog = Some((facts.watchdog_ticks, facts.tick_ns));
         self.tell();
     }
@@ -73,12 +95,15 @@ impl Claim {
         if let Some((file, _)) = &mut self.lock
             && let Ok(text) = serde_json::to_string(&self.holder)
         {
-            let _ = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(text.as_bytes()));
+            let _ = file
+                .set_len(0)
+                .and_then(|()| file.rewind())
+                .and_then(|()| file.write_all(text.as_bytes()));
         }
     }
 }
 
-impl Drop for Claim {
+impl Drop for PortClaim {
     fn drop(&mut self) {
         if let Some((_, path)) = &self.lock {
             // The file is still locked, so no other command uses it.
@@ -133,13 +158,23 @@ mod tests {
     #[test]
     fn a_port_has_one_holder_at_a_time() {
         let folder = tempfile::tempdir().unwrap();
-        let who =
-            |command: &str| Holder { pid: 7, command: command.to_owned(), baud: 9600, listens: true, watchdog: None };
-        let take = |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
+        let who = |command: &str| Holder {
+            pid: 7,
+            command: command.to_owned(),
+            baud: 9600,
+            listens: true,
+            watchdog: None,
+        };
+        let take =
+            |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
         let mut first = take("run").expect("nobody has it");
         let path = first.lock.as_ref().unwrap().1.clone();
         assert!(take("jog").is_none());
-        first.connected(&Facts { watchdog_ticks: 50_000, tick_ns: 2000, ..Facts::default() });
+        first.connected(&BuildFacts {
+            watchdog_ticks: 50_000,
+            tick_ns: 2000,
+            ..BuildFacts::default()
+        });
         assert_eq!(held(&path), Some(Holder { watchdog: Some((50_000, 2000)), ..who("run") }));
         drop(first);
         assert_eq!(held(&path), None);

@@ -14,7 +14,9 @@ pub fn folder() -> Result<PathBuf> {
     for path in all() {
         match private(&path) {
             Ok(()) => return Ok(path),
-            Err(error) => refused = Error::new(error.kind(), format!("{}: {error}", path.display())),
+            Err(error) => {
+                refused = Error::new(error.kind(), format!("{}: {error}", path.display()));
+            }
         }
     }
     Err(refused)
@@ -23,9 +25,12 @@ pub fn folder() -> Result<PathBuf> {
 /// All folders in which another command of this user may have its files.
 pub fn all() -> Vec<PathBuf> {
     let user = rustix::process::geteuid().as_raw();
-    let mut folders =
-        vec![PathBuf::from(format!("/run/user/{user}/carrystep")), PathBuf::from(format!("/tmp/carrystep-{user}"))];
-    folders.extend(std::env::var_os("XDG_RUNTIME_DIR").map(|path| Path::new(&path).join("carrystep")));
+    let mut folders = vec![
+        PathBuf::from(format!("/run/user/{user}/carrystep")),
+        PathBuf::from(format!("/tmp/carrystep-{user}")),
+    ];
+    folders
+        .extend(std::env::var_os("XDG_RUNTIME_DIR").map(|path| Path::new(&path).join("carrystep")));
     folders
 }
 
@@ -40,7 +45,10 @@ fn private(path: &Path) -> Result<()> {
     if there.is_dir() && own && there.mode() & 0o077 == 0 {
         return Ok(());
     }
-    Err(Error::new(ErrorKind::PermissionDenied, "it must be a folder of this user with the permissions 0700"))
+    Err(Error::new(
+        ErrorKind::PermissionDenied,
+        "it must be a folder of this user with the permissions 0700",
+    ))
 }
 
 #[cfg(test)]
@@ -51,7 +59,8 @@ mod tests {
     #[test]
     fn folder_accessible_to_others_is_refused() {
         let top = tempfile::tempdir().unwrap();
-        let [own, open, file, link] = ["own", "open", "file", "link"].map(|name| top.path().join(name));
+        let [own, open, file, link] =
+            ["own", "open", "file", "link"].map(|name| top.path().join(name));
         private(&own).unwrap();
         assert_eq!(own.metadata().unwrap().mode() & 0o777, 0o700);
         private(&own).unwrap();
@@ -60,7 +69,12 @@ mod tests {
         std::fs::write(&file, "").unwrap();
         symlink(&own, &link).unwrap();
         for path in [&open, &file, &link] {
-            assert_eq!(private(path).unwrap_err().kind(), ErrorKind::PermissionDenied, "{}", path.display());
+            assert_eq!(
+                private(path).unwrap_err().kind(),
+                ErrorKind::PermissionDenied,
+                "{}",
+                path.display()
+            );
         }
     }
 }

@@ -1,35 +1,41 @@
 //! The control on systems without local sockets. The serial port's own lock prevents a second
 //! command; `stop` cannot reach the first one.
 
-use super::{Holder, Request};
-use carrystep_link::Facts;
+use super::{Holder, SocketRequest};
+use carrystep_link::BuildFacts;
 use std::io;
 use std::time::Duration;
 
 /// A port that this command holds; the serial port itself is the lock.
-pub struct Claim {
+pub struct PortClaim {
     holder: Holder,
 }
 
 /// Always succeeds: opening the port shows whether it is free.
 ///
 /// # Errors None.
-pub fn claim(_: &str, baud: u32, command: &'static str, _: bool) -> io::Result<Option<Claim>> {
-    let holder = Holder { pid: std::process::id(), command: command.to_owned(), baud, listens: false, watchdog: None };
-    Ok(Some(Claim { holder }))
+pub fn claim(_: &str, baud: u32, command: &'static str, _: bool) -> io::Result<Option<PortClaim>> {
+    let holder = Holder {
+        pid: std::process::id(),
+        command: command.to_owned(),
+        baud,
+        listens: false,
+        watchdog: None,
+    };
+    Ok(Some(PortClaim { holder }))
 }
 
-impl Claim {
+impl PortClaim {
     /// This command.
     pub const fn holder(&self) -> &Holder {
         &self.holder
     }
 
-    pub(super) fn listen(&self) -> io::Result<Option<Door>> {
+    pub(super) fn listen(&self) -> io::Result<Option<ControlSocket>> {
         Ok(None)
     }
 
-    pub(super) fn connected(&mut self, facts: &Facts) {
+    pub(super) fn connected(&mut self, facts: &BuildFacts) {
         self.holder.watchdog = Some((facts.watchdog_ticks, facts.tick_ns));
     }
 }
@@ -40,11 +46,11 @@ pub fn holder(_: &str) -> Option<Holder> {
 }
 
 /// A type without values: there is no socket.
-pub enum Door {}
+pub enum ControlSocket {}
 
-impl Door {
+impl ControlSocket {
     /// Never called.
-    pub fn poll(&mut self, _: &mut dyn FnMut(Request) -> String) -> bool {
+    pub fn poll(&mut self, _: &mut dyn FnMut(SocketRequest) -> String) -> bool {
         match *self {}
     }
 }
@@ -72,7 +78,7 @@ pub fn call(_: &str) -> Option<Caller> {
 
 impl Caller {
     /// Never called.
-    pub fn ask(&mut self, _: Request, _: Duration) -> Reply {
+    pub fn ask(&mut self, _: SocketRequest, _: Duration) -> Reply {
         Reply::Ended
     }
 

@@ -40,7 +40,18 @@ fn truncated_captures_are_refused() {
     let (folder, bytes) = captured();
     let header = String::from_utf8_lossy(&bytes).find("$enddefinitions").unwrap();
     let end = bytes.len() - 1; // The last line need not have a newline.
-    for cut in [1, header / 2, header, header + 14, header + 20, end / 2, end * 3 / 4, end - 30, end - 2, end - 1] {
+    for cut in [
+        1,
+        header / 2,
+        header,
+        header + 14,
+        header + 20,
+        end / 2,
+        end * 3 / 4,
+        end - 30,
+        end - 2,
+        end - 1,
+    ] {
         folder.write("c.vcd", &bytes[..cut]);
         folder.run("check c.vcd move.toml").refuses("c.vcd: the capture is cut off at line ");
     }
@@ -52,14 +63,21 @@ fn truncated_captures_are_refused() {
 fn captures_without_the_signals_are_refused_with_a_list_of_theirs() {
     let (folder, _) = captured();
     folder.write("c.vcd", FOREIGN);
-    let check = |map: &str, says: &str| folder.run(&format!("check c.vcd move.toml{map}")).refuses(says);
-    check("", "the capture has no signal x.step (nor a vector step with a bit 0); it has la.D0, la.D1");
+    let check =
+        |map: &str, says: &str| folder.run(&format!("check c.vcd move.toml{map}")).refuses(says);
+    check(
+        "",
+        "the capture has no signal x.step (nor a vector step with a bit 0); it has la.D0, la.D1",
+    );
     check(
         " --map x.step=la.D0",
         "the capture has no signal x.dir (nor a vector dir with a bit 0); it has la.D0, la.D1",
     );
     check(" --map x.step=la.D7", "the capture has no signal la.D7 for x.step; it has la.D0, la.D1");
-    check(" --map x.step", "signal map 'x.step': write <axis>.step=<signal> or <axis>.dir=<signal>");
+    check(
+        " --map x.step",
+        "signal map 'x.step': write <axis>.step=<signal> or <axis>.dir=<signal>",
+    );
     check(" --map x.clock=la.D0", "signal map 'x.clock=la.D0': write <axis>.step=<signal>");
     check(" --map q.step=la.D0", "there is no axis 'q'; the axes are x");
     check(" --map x.step=la.D0 --map x.step=la.D1", "this pin is already mapped");
@@ -73,15 +91,24 @@ fn pins_that_are_too_wide_are_refused() {
     let check = |says: &str| folder.run("check c.vcd move.toml").refuses(says);
     let named = FOREIGN.replace("module la", "module x").replace("D0", "step").replace("D1", "dir");
     folder.write("c.vcd", named.replace("wire 1 ! step", "wire 2 ! step"));
-    check("c.vcd: the signal x.step of the capture has 2 bits, a pin has 1; name a bit of it with --map");
-    folder.write("c.vcd", named.replace("module x", "module la").replace("wire 1 ! step", "wire 2 ! step"));
-    check("c.vcd: the signal la.step of the capture has 2 bits, the machine has 1 axes; name a bit of it with --map");
+    check(
+        "c.vcd: the signal x.step of the capture has 2 bits, a pin has 1; name a bit of it with --map",
+    );
+    folder.write(
+        "c.vcd",
+        named.replace("module x", "module la").replace("wire 1 ! step", "wire 2 ! step"),
+    );
+    check(
+        "c.vcd: the signal la.step of the capture has 2 bits, the machine has 1 axes; name a bit of it with --map",
+    );
 }
 
 #[test]
 fn offsets_and_uncertainties_that_check_nothing_are_refused() {
     let (folder, _) = captured();
-    for origin in ["1000000000000000", "-1000000000000000", "9223372036854775807", "-9223372036854775808"] {
+    for origin in
+        ["1000000000000000", "-1000000000000000", "9223372036854775807", "-9223372036854775808"]
+    {
         let says = format!("own.vcd: with --origin-ps {origin} the moves last from {origin} to ");
         folder.run(&format!("check own.vcd move.toml --origin-ps {origin}")).refuses(&says);
     }

@@ -32,7 +32,10 @@ const REFUSED: &[(&str, &str)] = &[
         "profile trapezoid --steps 1000 --time 1 --accel 1e5 --speed 1000",
         "trapezoid cannot be done with a speed limit of 1000 steps/s: it needs at least 1010.20515 steps/s, or a time of 1.01 s",
     ),
-    ("profile constant --speed 10", "constant has no ramp: it is for whole moves; give it a distance"),
+    (
+        "profile constant --speed 10",
+        "constant has no ramp: it is for whole moves; give it a distance",
+    ),
     (
         "profile constant --steps 100 --start-speed 50 --time 1",
         "constant cannot be done with a start speed of 50 steps/s: it needs at least 100 steps/s, or a time of 2 s",
@@ -65,16 +68,37 @@ const REFUSED: &[(&str, &str)] = &[
         "profile sine --speed-mm-s 20 --accel 100",
         "millimetres need the travel per revolution of the motor; degrees, rpm and steps do without",
     ),
-    ("profile sine --speed -5 --accel 1", "the speed is -5: it must be over 0: 1e-9 to 1e15 in steps"),
-    ("profile sine --speed 5 --accel nan", "the acceleration is NaN: it must be over 0: 1e-9 to 1e15 in steps"),
+    (
+        "profile sine --speed -5 --accel 1",
+        "the speed is -5: it must be over 0: 1e-9 to 1e15 in steps",
+    ),
+    (
+        "profile sine --speed 5 --accel nan",
+        "the acceleration is NaN: it must be over 0: 1e-9 to 1e15 in steps",
+    ),
     ("profile sine --speed 5 --time 0", "the time is 0: it must be over 0: 1e-9 to 1e15 s"),
-    ("profile sine --rpm 5 --accel 1 --step-angle 0", "the step angle is 0: it must be over 0 and at most 180 degrees"),
+    (
+        "profile sine --rpm 5 --accel 1 --step-angle 0",
+        "the step angle is 0: it must be over 0 and at most 180 degrees",
+    ),
     ("profile sine --rpm 5 --accel 1 --microsteps 0", "the microsteps is 0: it must be 1 to 65536"),
-    ("profile sine --steps 0 --accel 1", "the distance is 0: it must be one step or more, and at most 2^53"),
-    ("profile sine --steps 10.5 --accel 1", "10.5 steps is no whole number of steps: 10 or 11 steps would do"),
-    ("profile sine --deg 361 --accel 1", "361 degrees is no whole number of steps: 360 or 361.8 degrees would do"),
+    (
+        "profile sine --steps 0 --accel 1",
+        "the distance is 0: it must be one step or more, and at most 2^53",
+    ),
+    (
+        "profile sine --steps 10.5 --accel 1",
+        "10.5 steps is no whole number of steps: 10 or 11 steps would do",
+    ),
+    (
+        "profile sine --deg 361 --accel 1",
+        "361 degrees is no whole number of steps: 360 or 361.8 degrees would do",
+    ),
     ("profile sine sine --speed 5 --accel 1", "sine is named twice"),
-    ("profile sine --speed 5 --accel 1 --csv a --plot a", "cannot write a: it is also the output a"),
+    (
+        "profile sine --speed 5 --accel 1 --csv a --plot a",
+        "cannot write a: it is also the output a",
+    ),
     (
         "profile sine --speed 5 --accel 1 --csv - --json",
         "--csv - and --json would both go to standard output: give --csv a file",
@@ -156,7 +180,8 @@ fn files_appear_only_when_they_are_complete() {
     // The second file cannot be created, so the first one does not appear either.
     std::fs::create_dir(folder.path().join("taken")).unwrap();
     let (csv, plot) = (path("a.csv"), path("taken"));
-    let output = carrystep(&format!("profile sine --speed 500 --accel 1000 --csv {csv} --plot {plot}"));
+    let output =
+        carrystep(&format!("profile sine --speed 500 --accel 1000 --csv {csv} --plot {plot}"));
     assert_eq!(output.status.code(), Some(2));
     let long = carrystep(&format!("profile sine --steps 1e9 --accel 1000 --csv {csv}"));
     assert_eq!(long.status.code(), Some(2));

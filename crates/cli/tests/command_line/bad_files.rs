@@ -41,13 +41,21 @@ fn errors_in_a_machine_file_are_reported_with_its_own_path() {
     refused("machine_file = \"nowhere.toml\"\n", 16, "there is no machine file nowhere.toml");
     refused("machine_file = \".\"\n", 16, "cannot read .: it is a folder");
     refused("machine_file = 3\n", 16, "expected path string");
-    refused(&format!("machine_file = \"m.toml\"\n{}", machine()), 16, "both machine_file and [machine] are given");
+    refused(
+        &format!("machine_file = \"m.toml\"\n{}", machine()),
+        16,
+        "both machine_file and [machine] are given",
+    );
 
     // The path is relative to the move file, and errors in the machine file name that file.
     let (bad, place) = edit(machine(), "speed_limit = 1000", "speed_limit = ^-1");
     folder.write("shop/machines/m.toml", bad);
     folder.write("shop/move.toml", format!("machine_file = \"machines/m.toml\"\n{MOVE}"));
-    folder.run("plan shop/move.toml").refuses_at("shop/machines/m.toml", place, "speed_limit = -1: must be over zero");
+    folder.run("plan shop/move.toml").refuses_at(
+        "shop/machines/m.toml",
+        place,
+        "speed_limit = -1: must be over zero",
+    );
     folder.run("verilog --machine shop/machines/m.toml --out out").refuses_at(
         "shop/machines/m.toml",
         place,
@@ -56,7 +64,9 @@ fn errors_in_a_machine_file_are_reported_with_its_own_path() {
     folder
         .run("verilog --machine shop/move.toml --out out")
         .refuses("unknown field `machine_file`, expected `machine`");
-    folder.run("verilog --machine nowhere.toml --out out").refuses("cannot read nowhere.toml: No such file");
+    folder
+        .run("verilog --machine nowhere.toml --out out")
+        .refuses("cannot read nowhere.toml: No such file");
     assert!(!folder.path("out").exists());
 }
 

@@ -12,8 +12,16 @@ fn unknown_and_missing_keys_are_refused() {
             "^colour = 3\n[machine]\n",
             "unknown field `colour`, expected one of `machine_file`, `machine`",
         ),
-        ("phases = 16", "^colour = 3", "unknown field `colour`, expected one of `clock_hz`, `tick_ns`"),
-        ("start_speed = 200", "^colour = 3", "unknown field `colour`, expected one of `name`, `steps_per_unit`"),
+        (
+            "phases = 16",
+            "^colour = 3",
+            "unknown field `colour`, expected one of `clock_hz`, `tick_ns`",
+        ),
+        (
+            "start_speed = 200",
+            "^colour = 3",
+            "unknown field `colour`, expected one of `name`, `steps_per_unit`",
+        ),
         ("start_speed = 200", "start_speed = 200\n^start_speed = 1", "duplicate key"),
         ("[[machine.axis]]\nname = \"x\"\n", "^[[machine.axis]]\n", "missing field `name`"),
         (
@@ -41,9 +49,17 @@ fn values_of_the_wrong_type_are_refused() {
             "clock_hz = ^4.8e7",
             "floating point `48000000.0`, expected a whole number, zero or more",
         ),
-        ("clock_hz = 48_000_000", "clock_hz = ^-48", "integer `-48`, expected a whole number, zero or more"),
+        (
+            "clock_hz = 48_000_000",
+            "clock_hz = ^-48",
+            "integer `-48`, expected a whole number, zero or more",
+        ),
         ("phases = 16", "phases = ^99999999999", "expected a whole number, zero or more"),
-        ("phase = \"half\"", "phase = ^\"quarter\"", "unknown variant `quarter`, expected `half` or `zero`"),
+        (
+            "phase = \"half\"",
+            "phase = ^\"quarter\"",
+            "unknown variant `quarter`, expected `half` or `zero`",
+        ),
         ("[[machine.axis]]", "^[machine.axis]", "map, expected tables in double brackets"),
         ("steps_per_unit = 5", "steps_per_unit = ^= 5", "extra `=`"),
     ]);
@@ -67,10 +83,14 @@ fn numbers_that_are_not_finite_or_of_the_wrong_sign_are_refused() {
         ("0", "must be over zero"),
         ("-0.0", "must be over zero"),
     ];
-    for field in ["steps_per_unit = 5", "start_speed = 200", "speed_limit = 1000", "accel_limit = 5000"] {
+    for field in
+        ["steps_per_unit = 5", "start_speed = 200", "speed_limit = 1000", "accel_limit = 5000"]
+    {
         let key = field.split(' ').next().unwrap();
         let may_be_zero = key == "start_speed";
-        for (value, says) in rows.iter().filter(|(_, says)| !(may_be_zero && says.ends_with("over zero"))) {
+        for (value, says) in
+            rows.iter().filter(|(_, says)| !(may_be_zero && says.ends_with("over zero")))
+        {
             all_refused(&[(field, &format!("{key} = ^{value}"), says)]);
         }
     }
@@ -96,15 +116,27 @@ fn clocks_ticks_and_phases_that_do_not_divide_are_refused() {
         ("clock_hz = 48_000_000", "clock_hz = ^0", "a clock of 0 Hz"),
         ("clock_hz = 48_000_000", "clock_hz = ^1_000_000_016", "a clock of 1000000016 Hz"),
         ("tick_ns = 1000", "tick_ns = ^0", "0 clocks per tick: between 16 and 65536 are needed"),
-        ("tick_ns = 1000", "tick_ns = ^1_000_000_000", "48000000 clocks per tick: between 16 and 65536 are needed"),
-        ("tick_ns = 1000", "tick_ns = ^333", "a tick of 333 ns is not a whole number of clocks at 48000000 Hz"),
+        (
+            "tick_ns = 1000",
+            "tick_ns = ^1_000_000_000",
+            "48000000 clocks per tick: between 16 and 65536 are needed",
+        ),
+        (
+            "tick_ns = 1000",
+            "tick_ns = ^333",
+            "a tick of 333 ns is not a whole number of clocks at 48000000 Hz",
+        ),
         ("48_000_000\ntick_ns = 1000", "^48_000_001", "a clock of 48000001 Hz has no tick"),
         (
             "tick_ns = 1000\nphases = 16",
             "tick_ns = 500\nphases = ^16",
             "24 clocks per tick do not divide into 16 equal phases",
         ),
-        ("tick_ns = 1000\nphases = 16", "tick_ns = ^500", "24 clocks per tick do not divide into 16 equal phases"),
+        (
+            "tick_ns = 1000\nphases = 16",
+            "tick_ns = ^500",
+            "24 clocks per tick do not divide into 16 equal phases",
+        ),
     ]);
 }
 
@@ -116,7 +148,11 @@ fn speeds_too_high_for_gateware_or_driver_are_refused() {
             "speed_limit = ^100_000",
             "speed_limit is 100000 units/s (500000 steps/s): half a step per tick or more",
         ),
-        ("speed_limit = 1000", "speed_limit = ^96_970", "over what the driver's width and gap allow"),
+        (
+            "speed_limit = 1000",
+            "speed_limit = ^96_970",
+            "over what the driver's step_high and step_low allow",
+        ),
         (
             "speed_limit = 1000",
             "speed_limit = ^96_970",
@@ -131,17 +167,25 @@ fn speeds_too_high_for_gateware_or_driver_are_refused() {
 
 #[test]
 fn unknown_drivers_and_bad_pin_timings_are_refused() {
-    let known = "known: a4988, dm542, drv8825, tb6600, tmc2130, tmc2208, tmc2209, tmc5160; or give step_ns";
+    let known = "known: a4988, dm542, drv8825, tb6600, tmc2130, tmc2208, tmc2209, tmc5160; or give step_high_ns";
     all_refused(&[
         ("\"a4988\"", "^\"a4989\"", "no driver is called 'a4989'"),
         ("\"a4988\"", "^\"a4989\"", known),
         (
             "\"x\"\nsteps_per_unit = 5\nstart_speed = 200\nspeed_limit = 1000\naccel_limit = 5000\ndriver = \"a4988\"",
-            "^\"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\nstep_ns = 100",
-            "axis 'x' has no driver and no gap_ns",
+            "^\"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\nstep_high_ns = 100",
+            "axis 'x' has no driver and no step_low_ns",
         ),
-        ("driver = \"a4988\"", "driver = \"a4988\"\nhold_ns = ^9_000_000_000", "the timers count to 65535"),
-        ("driver = \"a4988\"", "driver = \"a4988\"\nhold_ns = ^-1", "expected a whole number, zero or more"),
+        (
+            "driver = \"a4988\"",
+            "driver = \"a4988\"\ndir_hold_ns = ^9_000_000_000",
+            "the timers count to 65535",
+        ),
+        (
+            "driver = \"a4988\"",
+            "driver = \"a4988\"\ndir_hold_ns = ^-1",
+            "expected a whole number, zero or more",
+        ),
     ]);
 }
 
@@ -151,7 +195,8 @@ fn badly_named_duplicate_and_surplus_axes_are_refused() {
         let says = format!("{name:?} cannot name an axis");
         all_refused(&[("\"x\"", &format!("^\"{name}\""), &says)]);
     }
-    let axes: String = (0..5).map(|i| format!("[[machine.axis]]\nname = \"x{i}\"\n{AXIS}\n")).collect();
+    let axes: String =
+        (0..5).map(|i| format!("[[machine.axis]]\nname = \"x{i}\"\n{AXIS}\n")).collect();
     let and = |more: &str| format!("driver = \"a4988\"\n\n{axes}{more}");
     all_refused(&[
         (

@@ -11,7 +11,11 @@ fn malformed_moves_are_refused() {
             "unknown field `too`, expected one of `profile`, `path`, `time`, `fit_ns`, `to`",
         ),
         ("[[move]]\nprofile = \"ranade\"", "^[[move]]", "missing field `profile`"),
-        ("[[move]]\nprofile = \"ranade\"\nto = { x = 2 }", "^[[move]]\nprofile = \"ranade\"", "missing field `to`"),
+        (
+            "[[move]]\nprofile = \"ranade\"\nto = { x = 2 }",
+            "^[[move]]\nprofile = \"ranade\"",
+            "missing field `to`",
+        ),
         (
             "\"ranade\"",
             "^\"fast\"",
@@ -32,7 +36,11 @@ fn malformed_moves_are_refused() {
         ("time = 0.05", "time = ^\"soon\"", "string \"soon\", expected a number"),
         ("time = 0.05", "fit_ns = ^0", "fit_ns = 0: no fit is without an error"),
         ("time = 0.05", "fit_ns = ^-1", "integer `-1`, expected"),
-        ("time = 0.05", "path = ^\"crooked\"", "unknown variant `crooked`, expected `free` or `straight`"),
+        (
+            "time = 0.05",
+            "path = ^\"crooked\"",
+            "unknown variant `crooked`, expected `free` or `straight`",
+        ),
         ("\"ranade\"", "^\"scurve\"", "axis \"x\" has no jerk_limit"),
     ]);
 }
@@ -41,12 +49,20 @@ fn malformed_moves_are_refused() {
 #[test]
 fn curves_in_too_short_a_time_are_refused_with_a_time_that_works() {
     let jerk = GOOD.replace("driver =", "jerk_limit = 40_000\ndriver =");
-    for (profile, limit) in [("sine", "accel_limit"), ("logistic", "accel_limit"), ("scurve", "accel_limit")] {
-        let timed = |time: &str| jerk.replace("\"ranade\"", &format!("\"{profile}\"\ntime = {time}"));
+    for (profile, limit) in
+        [("sine", "accel_limit"), ("logistic", "accel_limit"), ("scurve", "accel_limit")]
+    {
+        let timed =
+            |time: &str| jerk.replace("\"ranade\"", &format!("\"{profile}\"\ntime = {time}"));
         let ran = Folder::with_move(timed("0.001")).run("plan move.toml");
         ran.refuses(&format!("over {limit} 5000 units/s^2 (25000 steps/s^2); at least "));
-        let least = ran.stderr.split("at least ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
-        assert_eq!(Folder::with_move(timed(least)).run("plan move.toml").status, 0, "{profile} in {least} s");
+        let least =
+            ran.stderr.split("at least ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        assert_eq!(
+            Folder::with_move(timed(least)).run("plan move.toml").status,
+            0,
+            "{profile} in {least} s"
+        );
     }
 }
 
@@ -97,8 +113,10 @@ fn times_that_are_too_short_name_the_limit_and_the_least_time() {
             "move 1, axis x: needs 2000 units/s (10000 steps/s), over start_speed 200 units/s (1000 steps/s); at least 0.01 s would do",
         ),
     ]);
-    let (rest, times) = (GOOD.replace("start_speed = 200", "start_speed = 0"), "profile = \"constant\"\ntime = 1");
-    let ran = Folder::with_move(rest.replacen("profile = \"ranade\"", times, 1)).run("plan move.toml");
+    let (rest, times) =
+        (GOOD.replace("start_speed = 200", "start_speed = 0"), "profile = \"constant\"\ntime = 1");
+    let ran =
+        Folder::with_move(rest.replacen("profile = \"ranade\"", times, 1)).run("plan move.toml");
     ran.refuses_at(
         "move.toml",
         (15, 1),
@@ -121,9 +139,13 @@ fn moves_that_take_longer_than_any_capture_are_refused() {
     let move_of_days = "[[move]]\nprofile = \"ranade\"\ntime = 1e6\nto = { x = 20 }\n";
     let folder = Folder::with_move(format!("{machine}{}", move_of_days.repeat(5)));
     assert_eq!(folder.run("plan move.toml").status, 0);
-    folder.run("simulate move.toml --vcd a.vcd").refuses("a capture holds at most 4000000 s; split the file");
+    folder
+        .run("simulate move.toml --vcd a.vcd")
+        .refuses("a capture holds at most 4000000 s; split the file");
     folder.write("a.vcd", "");
-    folder.run("check a.vcd move.toml").refuses("a capture holds at most 4000000 s; split the file");
+    folder
+        .run("check a.vcd move.toml")
+        .refuses("a capture holds at most 4000000 s; split the file");
 
     let crawling = GOOD
         .replace("start_speed = 200", "")

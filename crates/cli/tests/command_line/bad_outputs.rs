@@ -16,7 +16,9 @@ fn output_paths_that_no_file_can_have_are_refused() {
         let refused = |path: &str, says: &str| {
             // The other output must not appear either.
             let other = if option == "--csv" { "--vcd" } else { "--csv" };
-            folder.run(&format!("simulate move.toml {other} out/other {option} {path}")).refuses(says);
+            folder
+                .run(&format!("simulate move.toml {other} out/other {option} {path}"))
+                .refuses(says);
             assert_eq!(folder.files(), before, "{option} {path}");
         };
         refused("out", "cannot write out: is a directory");
@@ -67,12 +69,20 @@ fn full_standard_output_is_reported() {
     let full = |arguments: &str| -> Ran {
         let out = File::options().write(true).open("/dev/full").unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-        let child = command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::from(out));
+        let child = command
+            .args(arguments.split(' '))
+            .current_dir(folder.path(""))
+            .stdout(Stdio::from(out));
         let output = child.stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         Ran { status: output.status.code().unwrap(), stdout: String::new(), stderr }
     };
-    for arguments in ["plan move.toml", "plan move.toml --json", "simulate move.toml", "simulate move.toml --json"] {
+    for arguments in [
+        "plan move.toml",
+        "plan move.toml --json",
+        "simulate move.toml",
+        "simulate move.toml --json",
+    ] {
         full(arguments).refuses("cannot write to standard output: No space left on device");
     }
 }

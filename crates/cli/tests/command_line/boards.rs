@@ -4,7 +4,7 @@
 
 use crate::command::{Folder, GOOD, Ran};
 use crate::device::{Device, Done};
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use serialport::{SerialPort as _, TTYPort};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::sync::mpsc::{Sender, channel};
@@ -12,19 +12,19 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// The homing of axis x, which is not part of the build.
-const HOME: &str =
-    "travel = [0, 300]\nhome = { toward = \"min\", seek_speed = 20, slow_speed = 2, pull_off = 2, position = 0 }\n";
+const HOME: &str = "travel = [0, 300]\nhome = { toward = \"min\", seek_speed = 20, slow_speed = 2, pull_off = 2, position = 0 }\n";
 
 /// The move of [`GOOD`], whose machine is in a file of its own with a tick that the engine can
 /// keep.
-const MOVE: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"ranade\"\nto = { x = 2 }\n";
+const MOVE: &str =
+    "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"ranade\"\nto = { x = 2 }\n";
 
 fn machine() -> String {
     GOOD.split("[[move]]").next().unwrap().replace("tick_ns = 1000", "tick_ns = 2000") + HOME
 }
 
 fn build_id() -> [u32; 2] {
-    let source = Source { path: "machine.toml".into(), text: machine().into() };
+    let source = SourceText { path: "machine.toml".into(), text: machine().into() };
     let machine = Machine::from_source(&source).unwrap();
     machine.line().unwrap().build_id(&machine.engine()).halves()
 }
@@ -74,7 +74,9 @@ impl Port {
                     device.elapse(1000);
                 }
                 let answers: Vec<u8> = match &mut peer {
-                    Peer::Device(device) => bytes[..come].iter().flat_map(|&byte| device.byte(byte)).collect(),
+                    Peer::Device(device) => {
+                        bytes[..come].iter().flat_map(|&byte| device.byte(byte)).collect()
+                    }
                     Peer::Chatter => b"ok T:21\r\n".to_vec(),
                     Peer::Nobody => Vec::new(),
                 };
@@ -111,7 +113,10 @@ fn wrong_peer_on_the_port_is_named() {
     for (peer, says) in [
         (Peer::Nobody, "nothing has answered for"),
         (Peer::Chatter, "something answers"),
-        (Peer::Device(Box::new(Device::new(1, 0))), "the gateware is build 0123456789abcdef, this machine needs build"),
+        (
+            Peer::Device(Box::new(Device::new(1, 0))),
+            "the gateware is build 0123456789abcdef, this machine needs build",
+        ),
     ] {
         let port = Port::new(peer);
         for ran in movers(&folder, &port.name) {
@@ -139,7 +144,11 @@ fn a_port_that_is_absent_busy_or_no_port_is_named() {
         // The message names the process if the system reports it.
         assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
         let begin = format!("error: serial port {} ", port.name);
-        assert!(ran.stderr.starts_with(&begin) && ran.stderr.contains("in use by"), "{}", ran.stderr);
+        assert!(
+            ran.stderr.starts_with(&begin) && ran.stderr.contains("in use by"),
+            "{}",
+            ran.stderr
+        );
         assert!(ran.stderr.contains("close that first"), "{}", ran.stderr);
     }
     drop(other);
@@ -154,20 +163,28 @@ fn impossible_moves_are_refused_before_the_port_is_opened() {
         folder.run("run bad.toml --port /dev/carrystep-none").refuses(says);
     };
     refused(&MOVE.replace("x = 2", "z = 2"), "the machine has no axis \"z\"");
-    refused(&MOVE.replace("to =", "time = 0.001\nto ="), "over speed_limit 1000 units/s (5000 steps/s); at least");
+    refused(
+        &MOVE.replace("to =", "time = 0.001\nto ="),
+        "over speed_limit 1000 units/s (5000 steps/s); at least",
+    );
     // A curve that is fitted closely needs many segments.
     folder.write("slow.toml", format!("[machine.link]\nbaud = 1200\n{}", machine()));
-    let wavy = MOVE.replace("machine.toml", "slow.toml").replace("ranade", "sine").replace("to =", "fit_ns = 1\nto =");
+    let wavy = MOVE
+        .replace("machine.toml", "slow.toml")
+        .replace("ranade", "sine")
+        .replace("to =", "fit_ns = 1\nto =");
     refused(&wavy, "1200 baud are too slow for this move: axis 0 would run dry");
     folder.write("odd.toml", format!("[machine.link]\nbaud = 5_600_000\n{}", machine()));
     refused(&MOVE.replace("machine.toml", "odd.toml"), "the next ones that it makes are");
 
-    let jog =
-        |arguments: &str| folder.run(&format!("jog {arguments} --machine machine.toml --port /dev/carrystep-none"));
+    let jog = |arguments: &str| {
+        folder.run(&format!("jog {arguments} --machine machine.toml --port /dev/carrystep-none"))
+    };
     jog("y 1").refuses("the machine has no axis \"y\"");
     jog("x inf").refuses("not a usable number");
     jog("x 1 --time 1e-9").refuses("move 1, axis x");
-    let home = |arguments: &str| folder.run(&format!("home {arguments} --port /dev/carrystep-none"));
+    let home =
+        |arguments: &str| folder.run(&format!("home {arguments} --port /dev/carrystep-none"));
     home("y --machine machine.toml").refuses("no axis is called 'y'");
     folder.write("homeless.toml", machine().replace(HOME, ""));
     home("--machine homeless.toml").refuses("no axis of the machine has a home table");
@@ -189,7 +206,11 @@ fn stopped_machine_does_not_move_until_the_stop_is_cleared() {
     }
     let status = folder.run(&format!("status --port {name}"));
     assert!(status.stdout.contains("STOPPED: underrun; drivers "), "{}", status.stdout);
-    assert!(status.stdout.contains("to do: `carrystep stop --clear`, plan anew"), "{}", status.stdout);
+    assert!(
+        status.stdout.contains("to do: `carrystep stop --clear`, plan anew"),
+        "{}",
+        status.stdout
+    );
     let stop = folder.run(&format!("stop --clear --off --port {name} --json"));
     assert_eq!(stop.status, 0, "{}", stop.stderr);
     let found: serde_json::Value = serde_json::from_str(&stop.stdout).unwrap();

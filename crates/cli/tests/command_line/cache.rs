@@ -32,13 +32,16 @@ fn ran(folder: &Folder) -> usize {
 
 #[test]
 fn compiled_simulations_are_kept_where_only_the_user_can_write() {
-    for (cache, kept) in [(("XDG_CACHE_HOME", "user"), "user/carrystep"), (("CARRYSTEP_CACHE", "mine"), "mine")] {
+    for (cache, kept) in
+        [(("XDG_CACHE_HOME", "user"), "user/carrystep"), (("CARRYSTEP_CACHE", "mine"), "mine")]
+    {
         let folder = folder();
         simulate(&folder, cache);
         simulate(&folder, cache);
         assert_eq!(ran(&folder), 2);
         let there = folder.files();
-        let simulations: Vec<&String> = there.iter().filter(|name| name.contains("engine_")).collect();
+        let simulations: Vec<&String> =
+            there.iter().filter(|name| name.contains("engine_")).collect();
         assert!(simulations.len() == 1 && simulations[0].starts_with(kept), "{there:?}");
         for name in [kept, simulations[0]] {
             assert_eq!(fs::metadata(folder.path(name)).unwrap().mode() & 0o777, 0o700, "{name}");
@@ -64,7 +67,8 @@ fn a_cache_that_others_can_write_is_refused() {
     assert_eq!(ran(&folder), 1);
     let planted = fs::read_dir(folder.path("open")).unwrap().next().unwrap().unwrap().path();
     fs::set_permissions(&planted, fs::Permissions::from_mode(0o720)).unwrap();
-    simulate(&folder, ("CARRYSTEP_CACHE", "open")).refuses(&format!("{}: other users may", planted.display()));
+    simulate(&folder, ("CARRYSTEP_CACHE", "open"))
+        .refuses(&format!("{}: other users may", planted.display()));
     assert_eq!(ran(&folder), 1);
 }
 
@@ -74,7 +78,8 @@ fn a_cache_of_another_user_is_refused() {
     const NOBODY: u32 = 65_534;
     let folder = folder();
     fs::create_dir(folder.path("other")).unwrap();
-    let other = if chown(folder.path("other"), Some(NOBODY), None).is_ok() { "other" } else { "/usr" };
+    let other =
+        if chown(folder.path("other"), Some(NOBODY), None).is_ok() { "other" } else { "/usr" };
     simulate(&folder, ("CARRYSTEP_CACHE", other)).refuses("another user owns it");
     assert_eq!(ran(&folder), 0);
 }

@@ -25,7 +25,10 @@ fn action() -> (BTreeMap<String, String>, Vec<Step>) {
         }
     }
     let step = |step: &str| {
-        let run = step.lines().find_map(|line| line.trim().strip_prefix("run: ")).expect("a step runs something");
+        let run = step
+            .lines()
+            .find_map(|line| line.trim().strip_prefix("run: "))
+            .expect("a step runs something");
         let variable = |line: &str| {
             let (name, value) = line.strip_prefix("        ")?.split_once(": ")?;
             Some((name.to_owned(), value.to_owned()))
@@ -38,7 +41,9 @@ fn action() -> (BTreeMap<String, String>, Vec<Step>) {
 /// Runs the action's steps with these inputs; the first failing step ends the action.
 fn run(folder: &Folder, given: &[(&str, &str)]) -> Ran {
     let (mut inputs, steps) = action();
-    for (name, value) in given.iter().copied().chain([("carrystep", env!("CARGO_BIN_EXE_carrystep"))]) {
+    for (name, value) in
+        given.iter().copied().chain([("carrystep", env!("CARGO_BIN_EXE_carrystep"))])
+    {
         assert!(inputs.insert(name.to_owned(), value.to_owned()).is_some(), "{name}");
     }
     let runner = tempfile::tempdir().unwrap();
@@ -49,7 +54,10 @@ fn run(folder: &Folder, given: &[(&str, &str)]) -> Ran {
     for (run, variables) in steps {
         let mut command = Command::new("bash");
         command.args(["--noprofile", "--norc", "-eo", "pipefail", "-c", &run]);
-        command.env("GITHUB_ACTION_PATH", ACTION).env("GITHUB_ENV", &file).env("RUNNER_TEMP", runner.path());
+        command
+            .env("GITHUB_ACTION_PATH", ACTION)
+            .env("GITHUB_ENV", &file)
+            .env("RUNNER_TEMP", runner.path());
         for (name, value) in variables {
             let input = value.trim_start_matches("${{ inputs.").trim_end_matches(" }}");
             command.env(name, &inputs[input]);
@@ -71,7 +79,10 @@ fn repository() -> Folder {
     let folder = Folder::new();
     let (machine, moves) = GOOD.split_at(GOOD.find("[[move]]").unwrap());
     folder.write("machines/mill one.toml", machine);
-    folder.write("moves/there/and back.toml", format!("machine_file = \"../../machines/mill one.toml\"\n{moves}"));
+    folder.write(
+        "moves/there/and back.toml",
+        format!("machine_file = \"../../machines/mill one.toml\"\n{moves}"),
+    );
     folder.write("machine.toml", machine);
     let made = folder.run("verilog --core engine --machine machine.toml --out hdl");
     assert_eq!(made.status, 0, "{}", made.stderr);
@@ -110,13 +121,22 @@ fn every_wrong_file_fails_and_is_named() {
         ),
         ("machines/mill one.toml", "[machine]\n".to_owned(), "machines/mill one.toml", "axis"),
         ("hdl/carrystep_engine.v", verilog.replacen("<=", "=", 1), "hdl", "<="),
-        ("machine.toml", GOOD.split("[[move]]").next().unwrap().replace("a4988", "tmc2209"), "hdl", "@@"),
+        (
+            "machine.toml",
+            GOOD.split("[[move]]").next().unwrap().replace("a4988", "tmc2209"),
+            "hdl",
+            "@@",
+        ),
     ] {
         let folder = repository();
         folder.write(file, wrong);
         let ran = run(&folder, &INPUTS);
         assert_eq!(ran.status, 1, "{file}: {}{}", ran.stdout, ran.stderr);
-        assert!(ran.stdout.contains(&format!("::error::failed: {name}\n")), "{file}: {}", ran.stdout);
+        assert!(
+            ran.stdout.contains(&format!("::error::failed: {name}\n")),
+            "{file}: {}",
+            ran.stdout
+        );
         assert!(ran.stdout.contains(says), "{file}: {}", ran.stdout);
     }
     std::fs::remove_file(good.path("hdl/carrystep_engine.v")).unwrap();

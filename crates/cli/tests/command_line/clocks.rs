@@ -12,11 +12,16 @@ fn at(mhz: u64) -> String {
 
 #[test]
 fn common_clocks_use_and_report_the_shortest_tick() {
-    for (mhz, tick_ns, proposed) in
-        [(25, 1280, false), (27, 16_000, true), (50, 640, false), (100, 320, false), (125, 256, false)]
-    {
+    for (mhz, tick_ns, proposed) in [
+        (25, 1280, false),
+        (27, 16_000, true),
+        (50, 640, false),
+        (100, 320, false),
+        (125, 256, false),
+    ] {
         let folder = Folder::with_move(at(mhz));
-        let note = format!("tick_ns = {tick_ns}, the shortest at {mhz} MHz in 16 phases with 1 axis");
+        let note =
+            format!("tick_ns = {tick_ns}, the shortest at {mhz} MHz in 16 phases with 1 axis");
         let proposal = "16000 ns is long: `phases = 4` would allow 4000 ns";
         for command in [
             "plan move.toml",
@@ -28,7 +33,8 @@ fn common_clocks_use_and_report_the_shortest_tick() {
             assert_eq!(ran.status, 0, "{command} at {mhz} MHz: {}{}", ran.stdout, ran.stderr);
             assert!(ran.stdout.contains(&note), "{command}: {}", ran.stdout);
             assert_eq!(ran.stdout.contains(proposal), proposed, "{command}: {}", ran.stdout);
-            let json: Value = serde_json::from_str(&folder.run(&format!("{command} --json")).stdout).unwrap();
+            let json: Value =
+                serde_json::from_str(&folder.run(&format!("{command} --json")).stdout).unwrap();
             assert_eq!(json["limits"]["tick_ns"], tick_ns);
             assert!(json["limits"]["tick_note"].as_str().unwrap().starts_with(&note), "{json}");
         }
@@ -36,7 +42,8 @@ fn common_clocks_use_and_report_the_shortest_tick() {
         for core in ["engine", "parallel"] {
             let command = format!("verilog --machine machine.toml --core {core} --out out");
             assert!(folder.run(&command).stdout.contains(&note), "{core} at {mhz} MHz");
-            let json: Value = serde_json::from_str(&folder.run(&format!("{command} --json")).stdout).unwrap();
+            let json: Value =
+                serde_json::from_str(&folder.run(&format!("{command} --json")).stdout).unwrap();
             assert_eq!(json["tick_ns"], tick_ns);
         }
     }
@@ -47,15 +54,26 @@ fn at_the_default_clock_the_tick_is_1_us_and_nothing_is_said() {
     for text in [at(80), at(80).replace("clock_hz = 80_000_000\n", "")] {
         let folder = Folder::with_move(text);
         let ran = folder.run("plan move.toml");
-        assert!(ran.stdout.contains(" ticks of 1000 ns, ") && !ran.stdout.contains("shortest"), "{}", ran.stdout);
-        let json: Value = serde_json::from_str(&folder.run("plan move.toml --json").stdout).unwrap();
-        assert_eq!((&json["limits"]["tick_ns"], &json["limits"]["tick_note"]), (&1000.into(), &Value::Null));
+        assert!(
+            ran.stdout.contains(" ticks of 1000 ns, ") && !ran.stdout.contains("shortest"),
+            "{}",
+            ran.stdout
+        );
+        let json: Value =
+            serde_json::from_str(&folder.run("plan move.toml --json").stdout).unwrap();
+        assert_eq!(
+            (&json["limits"]["tick_ns"], &json["limits"]["tick_note"]),
+            (&1000.into(), &Value::Null)
+        );
     }
 }
 
 #[test]
 fn a_tick_that_does_not_fit_is_refused_with_the_nearest_that_do() {
-    let (text, says) = (at(25).replace("phases", "tick_ns = 1000\nphases"), "640 ns and 1280 ns are the nearest ticks");
+    let (text, says) = (
+        at(25).replace("phases", "tick_ns = 1000\nphases"),
+        "640 ns and 1280 ns are the nearest ticks",
+    );
     Folder::with_move(text).run("plan move.toml").refuses_at("move.toml", (4, 10), says);
 }
 

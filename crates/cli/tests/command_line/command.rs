@@ -90,7 +90,9 @@ impl Folder {
     #[cfg(target_os = "linux")]
     pub fn begun_by(&self, child: &Child) -> Option<u64> {
         let files = std::fs::read_dir(format!("/proc/{}/fd", child.id())).ok()?.flatten();
-        let inside = files.filter(|file| std::fs::read_link(file.path()).is_ok_and(|to| to.starts_with(self.0.path())));
+        let inside = files.filter(|file| {
+            std::fs::read_link(file.path()).is_ok_and(|to| to.starts_with(self.0.path()))
+        });
         inside.filter_map(|file| file.path().metadata().ok()).map(|there| there.len()).max()
     }
 
@@ -102,7 +104,11 @@ impl Folder {
     /// Runs `carrystep` as the command is configured. With `--json` the output must be one document
     /// that fits its schema, whatever the exit status is.
     pub fn output(&self, command: &mut Command) -> Ran {
-        let output = command.current_dir(self.0.path()).env("CARRYSTEP_STATE", self.state()).output().unwrap();
+        let output = command
+            .current_dir(self.0.path())
+            .env("CARRYSTEP_STATE", self.state())
+            .output()
+            .unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the command writes UTF-8");
         let ran = Ran {
             status: output.status.code().expect("no signal ended the command"),
@@ -124,7 +130,11 @@ impl Ran {
     #[track_caller]
     pub fn refuses(&self, says: &str) {
         assert_eq!(self.status, 2, "{}{}", self.stdout, self.stderr);
-        assert!(self.stdout.is_empty() || schemas::check(&self.stdout)["passed"] == false, "{}", self.stdout);
+        assert!(
+            self.stdout.is_empty() || schemas::check(&self.stdout)["passed"] == false,
+            "{}",
+            self.stdout
+        );
         assert!(self.stderr.contains(says), "wanted: {says}\nfound:\n{}", self.stderr);
     }
 
@@ -156,7 +166,9 @@ pub fn all_refused(rows: &[(&str, &str, &str)]) {
     for (old, new, says) in rows {
         let (text, place) = edit(GOOD, old, new);
         let folder = Folder::with_move(text);
-        let ran = folder.run("simulate move.toml --vcd out/a.vcd --save out/a.gtkw --csv out/a.csv --plot out/a.svg");
+        let ran = folder.run(
+            "simulate move.toml --vcd out/a.vcd --save out/a.gtkw --csv out/a.csv --plot out/a.svg",
+        );
         ran.refuses_at("move.toml", place, says);
         assert_eq!(folder.files(), ["move.toml"]);
     }

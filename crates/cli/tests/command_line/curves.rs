@@ -38,7 +38,8 @@ pub fn golden(name: &str) -> Value {
 /// Compares two numbers to twelve digits.
 #[track_caller]
 pub fn close(found: &Value, golden: &Value) {
-    let number = |value: &Value| value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap());
+    let number =
+        |value: &Value| value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap());
     let (found, golden) = (number(found), number(golden));
     assert!((found / golden - 1.0).abs() < 1e-12, "{found}, golden {golden}");
 }
@@ -51,7 +52,8 @@ fn the_examples_of_the_help_work() {
         let text = stdout(&format!("{help} --help"));
         for line in text.lines().filter_map(|line| line.trim().strip_prefix("carrystep ")) {
             let mut example = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-            let output = example.args(line.split_whitespace()).current_dir(folder.path()).output().unwrap();
+            let output =
+                example.args(line.split_whitespace()).current_dir(folder.path()).output().unwrap();
             assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
             run += 1;
         }

@@ -11,7 +11,8 @@ fn committed_schemas_equal_the_generated_ones() {
     let folder = Folder::new();
     assert_eq!(folder.run("schemas --out schemas").status, 0);
     let names = |folder: &std::path::Path| {
-        let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name()).collect();
+        let mut names: Vec<_> =
+            std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name()).collect();
         names.sort();
         names
     };
@@ -19,7 +20,11 @@ fn committed_schemas_equal_the_generated_ones() {
     assert_eq!(names(SCHEMAS.as_ref()), names(&made), "run `cargo xtask generate`");
     for name in names(&made) {
         let text = |folder: &std::path::Path| std::fs::read_to_string(folder.join(&name)).unwrap();
-        assert!(text(SCHEMAS.as_ref()) == text(&made), "{}: run `cargo xtask generate`", name.display());
+        assert!(
+            text(SCHEMAS.as_ref()) == text(&made),
+            "{}: run `cargo xtask generate`",
+            name.display()
+        );
     }
 }
 
@@ -47,7 +52,10 @@ fn every_report_fits_its_schema() {
         ("verilog --core parallel --out parallel", "verilog"),
         ("verilog --board papilio-pro --out board", "verilog-board"),
         ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000", "table"),
-        ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000 --out table", "table"),
+        (
+            "table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000 --out table",
+            "table",
+        ),
         ("profile ranade trapezoid --steps 1000 --accel 1e5 --timer-hz 1e6", "profile"),
         ("profile logistic --steps 1000 --accel 1e5", "profile"),
         ("simulate move.toml", "simulate"),
@@ -56,7 +64,10 @@ fn every_report_fits_its_schema() {
     ] {
         let ran = folder.run(&format!("{arguments} --json"));
         assert_eq!(ran.status, 0, "{arguments}: {}", ran.stderr);
-        assert_eq!(check(&ran.stdout)["schema"], json!({"name": format!("carrystep.{name}"), "version": 1}));
+        assert_eq!(
+            check(&ran.stdout)["schema"],
+            json!({"name": format!("carrystep.{name}"), "version": 1})
+        );
     }
 }
 
@@ -65,7 +76,10 @@ fn every_report_fits_its_schema() {
 fn error(ran: &Ran, status: i32) -> Value {
     assert_eq!(ran.status, status, "{}", ran.stderr);
     let document = check(&ran.stdout);
-    assert_eq!((&document["schema"]["name"], &document["passed"]), (&json!("carrystep.failure"), &json!(false)));
+    assert_eq!(
+        (&document["schema"]["name"], &document["passed"]),
+        (&json!("carrystep.failure"), &json!(false))
+    );
     let error = document["error"].clone();
     assert!(error["message"].as_str().is_some_and(|message| !message.is_empty()), "{error}");
     error
@@ -84,7 +98,10 @@ fn bad_input_is_reported_as_a_document_with_its_place() {
     let found = error(&folder.run("simulate move.toml --json --vcd a.vcd"), 2);
     assert_eq!((&found["kind"], &found["line"]), (&json!("input"), &json!(19)));
     let found = error(&folder.run("sweep nowhere.toml --json"), 2);
-    assert_eq!((&found["kind"], &found["file"], &found["line"]), (&json!("input"), &Value::Null, &Value::Null));
+    assert_eq!(
+        (&found["kind"], &found["file"], &found["line"]),
+        (&json!("input"), &Value::Null, &Value::Null)
+    );
     error(&folder.run("boards iceraker --json"), 2);
     error(&folder.run("status --port nowhere --json"), 2);
     error(&folder.run("jog x 1 --machine nowhere.toml --port nowhere --json"), 2);
@@ -108,7 +125,10 @@ fn refused_arguments_are_reported_as_a_document() {
     let ran = folder.output(Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--help"]));
     assert!(ran.status == 0 && ran.stdout.contains("Usage:"), "{}", ran.stdout);
     // After `--`, `--json` is the name of a file.
-    let ran = Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--", "--json"]).output().unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_carrystep"))
+        .args(["plan", "--", "--json"])
+        .output()
+        .unwrap();
     assert_eq!((ran.status.code(), ran.stdout.len()), (Some(2), 0));
 }
 
@@ -119,12 +139,17 @@ fn missing_tool_is_reported_as_a_document() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
         folder.output(command.args(arguments.split(' ')).env("PATH", folder.path("no-tools")))
     };
-    for arguments in ["simulate move.toml --level icarus --json", "build --board icestick --out out --json"] {
+    for arguments in
+        ["simulate move.toml --level icarus --json", "build --board icestick --out out --json"]
+    {
         let found = error(&without_tools(arguments), 3);
         assert_eq!(found["kind"], "tool");
         assert!(found["message"].as_str().unwrap().contains("is not installed"), "{found}");
     }
     // The doctor has printed its report already, so there is no second document.
     let ran = without_tools("doctor --json");
-    assert_eq!((ran.status, &check(&ran.stdout)["schema"]["name"]), (3, &json!("carrystep.doctor")));
+    assert_eq!(
+        (ran.status, &check(&ran.stdout)["schema"]["name"]),
+        (3, &json!("carrystep.doctor"))
+    );
 }

@@ -64,7 +64,9 @@ fn folder(limits: &str) -> Folder {
 
 /// The machine for a board that runs in real time and whose host may be delayed; y searches far.
 fn patient(max_travel: &str) -> String {
-    MACHINE.replace("watchdog_ms = 100", "watchdog_ms = 4000").replace("max_travel = 30, ", max_travel)
+    MACHINE
+        .replace("watchdog_ms = 100", "watchdog_ms = 4000")
+        .replace("max_travel = 30, ", max_travel)
 }
 
 /// Runs a command on the board of the machine.
@@ -98,7 +100,9 @@ fn homing_finds_the_same_zero_in_each_wiring_from_every_start() {
         let folder = folder(limits);
         let board = Board::new(&folder, "--fast --min x=-300 --max x=900 --min y=40 --max z=-30");
         let first = home(&folder, &board, "");
-        for (name, switch, rests, place) in [("x", -300, 50, 1.0), ("y", 40, 100, -0.5), ("z", -30, -50, -0.5)] {
+        for (name, switch, rests, place) in
+            [("x", -300, 50, 1.0), ("y", 40, 100, -0.5), ("z", -30, -50, -0.5)]
+        {
             let found = axis(&first, name);
             let edge = found["edge"].as_i64().unwrap();
             // The limit is accepted within two steps at the slow speed.
@@ -109,7 +113,8 @@ fn homing_finds_the_same_zero_in_each_wiring_from_every_start() {
         assert_eq!(coordinates(&folder, &board), [Some(1.0), Some(-0.5), Some(-0.5)], "{limits}");
         let second = home(&folder, &board, "");
         for name in ["x", "y", "z"] {
-            let [first, second] = [&first, &second].map(|told| axis(told, name)["edge"].as_i64().unwrap());
+            let [first, second] =
+                [&first, &second].map(|told| axis(told, name)["edge"].as_i64().unwrap());
             assert!((first - second).abs() <= 1, "{limits}: {first}, then {second}");
         }
         passed(&on(&folder, &board, "jog x 2.5"));
@@ -164,7 +169,10 @@ fn machine_zero_is_forgotten_if_the_board_was_changed_or_moved() {
         ("steps_per_unit = 50", "steps_per_unit = 25"),
         ("accel_limit = 2000", "accel_limit = 4000"),
     ];
-    folder.write("machine.toml", half.iter().fold(MACHINE.to_owned(), |text, (old, new)| text.replace(old, new)));
+    folder.write(
+        "machine.toml",
+        half.iter().fold(MACHINE.to_owned(), |text, (old, new)| text.replace(old, new)),
+    );
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
     drop(board);
     // A file that is incomplete, or of another kind.
@@ -221,7 +229,9 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
             "move.toml",
             "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { y = -1 }\n",
         );
-        folder.run(&format!("run move.toml --port {}", board.port)).refuses("axis y has met its limit");
+        folder
+            .run(&format!("run move.toml --port {}", board.port))
+            .refuses("axis y has met its limit");
         passed(&on(&folder, &board, "jog x 1"));
         passed(&jog("3"));
         passed(&jog("-1"));
@@ -233,7 +243,13 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         let ran = jog("-0.1 --into-limit");
         // With two switches, a closed limit still stops an axis that moves toward it. With one
         // switch it is not seen.
-        assert_eq!(ran.status, if limits == "pair" { 1 } else { 0 }, "{}{}", ran.stdout, ran.stderr);
+        assert_eq!(
+            ran.status,
+            if limits == "pair" { 1 } else { 0 },
+            "{}{}",
+            ran.stdout,
+            ran.stderr
+        );
     }
 }
 
@@ -247,7 +263,11 @@ fn homing_without_a_switch_reports_axis_and_distance() {
     // The distance is 20 units of travel and twice move_off, which is a ramp from full speed, the
     // debounce time and a hundredth of the travel.
     assert!(ran.stderr.starts_with("error: no limit was met: moved x by 2"), "{}", ran.stderr);
-    assert!(ran.stderr.contains(", y by 30 units (1500 steps), which is max_travel"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains(", y by 30 units (1500 steps), which is max_travel"),
+        "{}",
+        ran.stderr
+    );
     // Nothing else is wrong with the machine, and z can still be homed.
     passed(&on(&folder, &board, "jog x 1"));
 }
@@ -282,7 +302,9 @@ fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
         serde_json::from_slice(&output.stdout).unwrap()
     };
     let child = begin();
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
+    );
     let first = told(child);
     assert_eq!((&first["ended"], &first["stopped_by"]), (&"stopped".into(), &"interrupt".into()));
     let child = begin();
@@ -302,11 +324,14 @@ fn axes_that_cannot_home_are_refused_before_any_motion() {
     let folder = folder("pair");
     let board = Board::new(&folder, "--fast");
     on(&folder, &board, "home w").refuses("no axis is called 'w': the axes are x, y, z");
-    let (odd, place) = edit(MACHINE, "slow_speed = 5, pull_off = 1", "slow_speed = ^60, pull_off = 1");
+    let (odd, place) =
+        edit(MACHINE, "slow_speed = 5, pull_off = 1", "slow_speed = ^60, pull_off = 1");
     folder.write("bad.toml", odd);
-    let bad = |axes: &str| folder.run(&format!("home {axes}--machine bad.toml --port {}", board.port));
+    let bad =
+        |axes: &str| folder.run(&format!("home {axes}--machine bad.toml --port {}", board.port));
     bad("").refuses_at("bad.toml", place, "slow_speed is over seek_speed");
-    let without = MACHINE.lines().filter(|line| !line.starts_with("home")).collect::<Vec<_>>().join("\n");
+    let without =
+        MACHINE.lines().filter(|line| !line.starts_with("home")).collect::<Vec<_>>().join("\n");
     folder.write("bad.toml", without);
     bad("").refuses("no axis of the machine has a home table");
     bad("x ").refuses("axis 'x' has no home table");

@@ -21,7 +21,11 @@ fn ends(folder: &Folder, arguments: &str) -> Ran {
     });
     waits.join().unwrap().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
-    Ran { status: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    Ran {
+        status: output.status.code().unwrap(),
+        stdout: text(output.stdout),
+        stderr: text(output.stderr),
+    }
 }
 
 /// Every command line that reads a file; `FILE` stands for the file.
@@ -50,16 +54,22 @@ fn devices_pipes_sockets_and_folders_are_refused() {
     let _socket = UnixListener::bind(folder.path("socket.toml")).unwrap();
     std::fs::create_dir(folder.path("folder.toml")).unwrap();
     let before = folder.files();
-    for (name, kind) in
-        [("zero.toml", "device"), ("fifo.toml", "pipe (FIFO)"), ("socket.toml", "socket"), ("folder.toml", "folder")]
-    {
-        let says = format!("cannot read {name}: it is a {kind}, and an input must be a regular file");
+    for (name, kind) in [
+        ("zero.toml", "device"),
+        ("fifo.toml", "pipe (FIFO)"),
+        ("socket.toml", "socket"),
+        ("folder.toml", "folder"),
+    ] {
+        let says =
+            format!("cannot read {name}: it is a {kind}, and an input must be a regular file");
         for reader in READERS {
             ends(&folder, &reader.replace("FILE", name)).refuses(&says);
         }
         folder.write(
             "by-name.toml",
-            format!("machine_file = \"{name}\"\n[[move]]\nprofile = \"ranade\"\nto = {{ x = 2 }}\n"),
+            format!(
+                "machine_file = \"{name}\"\n[[move]]\nprofile = \"ranade\"\nto = {{ x = 2 }}\n"
+            ),
         );
         ends(&folder, "plan by-name.toml").refuses_at("by-name.toml", (1, 16), &says);
         std::fs::remove_file(folder.path("by-name.toml")).unwrap();
@@ -112,7 +122,12 @@ fn an_excerpt_of_a_long_line_is_short() {
         let ran = ends(&folder, "plan move.toml");
         ran.refuses(says);
         assert!(ran.stderr.contains(&format!("move.toml:{line}:")), "{}", ran.stderr);
-        let longest = ran.stderr.lines().filter(|line| line.contains(" | ")).map(|line| line.chars().count()).max();
+        let longest = ran
+            .stderr
+            .lines()
+            .filter(|line| line.contains(" | "))
+            .map(|line| line.chars().count())
+            .max();
         assert!(longest.is_some_and(|chars| chars <= 210), "{longest:?}: {}", ran.stderr);
         assert!(ran.stderr.len() < 4000, "{}", ran.stderr);
     }

@@ -16,7 +16,11 @@ fn endless() -> String {
 /// Begins a run, and waits until it has begun its output file.
 fn begin(folder: &Folder, arguments: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-    command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(arguments.split(' '))
+        .current_dir(folder.path(""))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     while folder.begun_by(&child).is_none() && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(5));
@@ -38,9 +42,13 @@ fn end(child: Child) -> Ran {
 fn killed_run_leaves_no_file() {
     let folder = Folder::with_move(endless());
     folder.write("old.vcd", "as it was");
-    for output in
-        ["--vcd a.vcd", "--fst a.fst", "--csv a.csv", "--vcd old.vcd", "--vcd a.vcd --save a.gtkw --plot a.svg"]
-    {
+    for output in [
+        "--vcd a.vcd",
+        "--fst a.fst",
+        "--csv a.csv",
+        "--vcd old.vcd",
+        "--vcd a.vcd --save a.gtkw --plot a.svg",
+    ] {
         let mut child = begin(&folder, &format!("simulate move.toml {output}"));
         assert!(folder.begun_by(&child).is_some(), "{output}");
         child.kill().unwrap();
@@ -67,9 +75,19 @@ fn interrupted_run_reports_it_and_leaves_no_file() {
             "simulate move.toml --core engine --level model --vcd a.vcd --save a.gtkw",
         ] {
             let child = begin(&folder, arguments);
-            assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+            assert!(
+                Command::new("kill")
+                    .args([signal, &child.id().to_string()])
+                    .status()
+                    .unwrap()
+                    .success()
+            );
             let ran = end(child);
-            assert_eq!((ran.status, ran.stdout.is_empty()), (1, !arguments.contains("--json")), "{arguments}");
+            assert_eq!(
+                (ran.status, ran.stdout.is_empty()),
+                (1, !arguments.contains("--json")),
+                "{arguments}"
+            );
             assert_eq!(ran.stderr, "error: interrupted: nothing is kept\n", "{arguments}");
             assert_eq!(folder.files(), ["move.toml"], "{arguments}");
         }

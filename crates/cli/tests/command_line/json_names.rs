@@ -20,8 +20,8 @@ const CHECK: &str = "check check.passed check.origin check.origin_ps check.slack
     check.axes[].error_min_ns check.axes[].error_max_ns check.axes[].error_rms_ns
     check.axes[].error_fit_ns check.axes[].error_bound_ns
     check.axes[].error_std_ns check.axes[].error_std_theory_ns
-    check.axes[].high_min_ns check.axes[].high_required_ns check.axes[].low_min_ns check.axes[].low_required_ns
-    check.axes[].setup_min_ns check.axes[].setup_required_ns check.axes[].hold_min_ns check.axes[].hold_required_ns
+    check.axes[].step_high_min_ns check.axes[].step_high_required_ns check.axes[].step_low_min_ns check.axes[].step_low_required_ns
+    check.axes[].dir_setup_min_ns check.axes[].dir_setup_required_ns check.axes[].dir_hold_min_ns check.axes[].dir_hold_required_ns
     check.axes[].period_jitter_max_ns check.axes[].period_jitter_theory_ns
     check.axes[].speed_ripple_max_percent check.axes[].speed_ripple_theory_percent
     check.axes[].line_off_max_steps check.axes[].line_off_bound_steps";
@@ -34,12 +34,14 @@ const PLAN: &str = "passed tick_ns moves
 
 const RUN: &str = "passed core level clocks run_s faults positions files";
 
-const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
+const STATUS: &str =
+    "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
     meaning remedy held_by stopped
     axes axes[].axis axes[].position axes[].place axes[].machine axes[].discarded axes[].homing
     axes[].culprit";
 
-const SERVED: &str = "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
+const SERVED: &str =
+    "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
 
 const DRIVEN: &str = "passed port build ended stopped_by cause culprits meaning remedy planned_s run_s
     axes axes[].axis axes[].before axes[].position axes[].steps_planned axes[].unit axes[].steps_per_unit";
@@ -64,7 +66,8 @@ const GUARD: &str = "guard guard.debounce_us guard.debounce_us.least guard.debou
     guard.enable_ms.least guard.enable_ms.most guard.estop guard.limit_level guard.limit_stop guard.limits
     guard.round_us guard.stop_accel_steps_per_s2 guard.watchdog_ms guard.watchdog_ms.least guard.watchdog_ms.most";
 
-const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
+const TIES: &str =
+    "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
 /// Only for boards whose ports share pins with the configuration, or wait for a gate.
 const SHARED: &str =
@@ -89,7 +92,9 @@ fn names(value: &Value, path: &str, found: &mut Vec<String>) {
                 found.push(name);
             }
         }
-        Value::Array(entries) => entries.iter().for_each(|entry| names(entry, &format!("{path}[]"), found)),
+        Value::Array(entries) => {
+            entries.iter().for_each(|entry| names(entry, &format!("{path}[]"), found));
+        }
         _ => {}
     }
 }
@@ -110,7 +115,8 @@ fn is_document(text: &str, arguments: &str, status: i32, expected: &[&str]) -> V
     names(&document, "", &mut found);
     found.sort();
     found.dedup();
-    let mut expected: Vec<&str> = expected.iter().flat_map(|names| names.split_whitespace()).collect();
+    let mut expected: Vec<&str> =
+        expected.iter().flat_map(|names| names.split_whitespace()).collect();
     expected.extend(["schema", "schema.name", "schema.version"]);
     expected.sort_unstable();
     assert_eq!(found, expected, "{arguments}");
@@ -121,12 +127,18 @@ fn is_document(text: &str, arguments: &str, status: i32, expected: &[&str]) -> V
 fn every_report_keeps_its_names() {
     let folder = Folder::with_move(GOOD);
     document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
-    let run = document(&folder, "simulate move.toml --vcd a.vcd --csv a.csv", 0, &[RUN, LIMITS, CHECK]);
+    let run =
+        document(&folder, "simulate move.toml --vcd a.vcd --csv a.csv", 0, &[RUN, LIMITS, CHECK]);
     assert_eq!(run["files"], serde_json::json!(["a.vcd", "a.csv"]));
     assert_eq!(run["positions"], serde_json::json!([4]));
     document(&folder, "check a.vcd move.toml", 0, &["passed capture", CHECK]);
     document(&folder, "verilog --out out", 0, &["passed top tick_ns tick_note files", GUARD]);
-    document(&folder, "verilog --core parallel --out out", 0, &["passed top tick_ns tick_note files"]);
+    document(
+        &folder,
+        "verilog --core parallel --out out",
+        0,
+        &["passed top tick_ns tick_note files"],
+    );
 
     let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, CHECK]);
     for file in run["files"].as_array().expect("a list of files") {
@@ -156,8 +168,11 @@ fn status_and_drive_documents_keep_their_field_names() {
     assert_eq!((&run["ended"], &run["axes"][0]["steps_planned"]), (&"done".into(), &10.into()));
     port.end();
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-    command.args(["virtual-board", "--machine", "machine.toml", "--json"]).current_dir(folder.path(""));
-    let mut board = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    command
+        .args(["virtual-board", "--machine", "machine.toml", "--json"])
+        .current_dir(folder.path(""));
+    let mut board =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     board.stdin.take().unwrap().write_all(b"nonsense\nend\n").unwrap();
     let output = board.wait_with_output().unwrap();
     assert!(output.status.success());
@@ -172,7 +187,10 @@ fn a_failed_check_is_a_document_too() {
     let checked = document(&folder, "check a.vcd longer.toml", 1, &["passed capture", CHECK]);
     let axis = &checked["check"]["axes"][0];
     assert_eq!((&axis["pulses_expected"], &axis["pulses_found"]), (&21.into(), &16.into()));
-    assert!(axis["failures"][0].as_str().is_some_and(|sentence| sentence.contains("axis x")), "{axis}");
+    assert!(
+        axis["failures"][0].as_str().is_some_and(|sentence| sentence.contains("axis x")),
+        "{axis}"
+    );
 }
 
 #[test]
@@ -181,6 +199,9 @@ fn numbers_of_64_bits_are_strings() {
     let plan = document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
     let segment = &plan["moves"][0]["axes"][0]["segments"][0];
     for name in ["v", "a", "j"] {
-        assert!(segment[name].as_str().is_some_and(|text| text.parse::<i64>().is_ok()), "{segment}");
+        assert!(
+            segment[name].as_str().is_some_and(|text| text.parse::<i64>().is_ok()),
+            "{segment}"
+        );
     }
 }

@@ -41,9 +41,9 @@ fn written_machine_files_plan_and_pass_for_many_options() {
             &["phases = 4", "tick_ns = 4000", "in 16 phases it would be 16000"],
         ),
         (
-            "--clock-hz 100000000 --limits pair --axis s,steps_per_unit=1,speed_limit=20000,accel_limit=50000,step_ns=500,gap_ns=600,setup_ns=100,hold_ns=100".to_owned(),
+            "--clock-hz 100000000 --limits pair --axis s,steps_per_unit=1,speed_limit=20000,accel_limit=50000,step_high_ns=500,step_low_ns=600,dir_setup_ns=100,dir_hold_ns=100".to_owned(),
             &["s"],
-            &["tick_ns = 320", "gap_ns = 600"],
+            &["tick_ns = 320", "step_low_ns = 600"],
         ),
         (format!("--clock-hz 48000000 --limits none --axis x,{BELT} --axis y,{BELT} --axis z,{BELT} --axis a,{BELT}"), &["x", "y", "z", "a"], &["tick_ns = 2000"]),
     ];
@@ -57,8 +57,13 @@ fn written_machine_files_plan_and_pass_for_many_options() {
             assert!(text.contains(line), "{line} is not in:\n{text}");
         }
         moves(&folder, axes);
-        if let Some(board) = options.strip_prefix("--board ").and_then(|rest| rest.split(' ').next()) {
-            assert_eq!(folder.run(&format!("verilog --board {board} --machine m.toml --out out")).status, 0);
+        if let Some(board) =
+            options.strip_prefix("--board ").and_then(|rest| rest.split(' ').next())
+        {
+            assert_eq!(
+                folder.run(&format!("verilog --board {board} --machine m.toml --out out")).status,
+                0
+            );
         }
     }
 }
@@ -83,7 +88,7 @@ fn missing_options_without_a_terminal_are_named_and_nothing_is_written() {
         "--limits pair, each, one or none",
         "of axis x: lead, steps_per_rev, microsteps; or steps_per_unit",
         "of axis x: accel_limit",
-        "of axis x: driver; or step_ns, gap_ns, setup_ns, hold_ns",
+        "of axis x: driver; or step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns",
     ] {
         ran.refuses(says);
     }
@@ -94,7 +99,10 @@ fn missing_options_without_a_terminal_are_named_and_nothing_is_written() {
         (format!("x,{BELT},colour=red"), "an axis has no key \"colour\"; its keys are unit, "),
         (format!("x,{BELT},unit=cm"), "unit is given twice"),
         (format!("x,{}", BELT.replace("tmc2209", "tmc9999")), "no driver is called 'tmc9999'"),
-        (format!("x,{}", BELT.replace("200,micro", "fast,micro")), "steps_per_rev = fast: a number is expected"),
+        (
+            format!("x,{}", BELT.replace("200,micro", "fast,micro")),
+            "steps_per_rev = fast: a number is expected",
+        ),
         (format!("x,{BELT},7"), "\"7\" is not KEY=VALUE"),
         // Errors that only the reader of machine files detects point at the line that would have
         // been written.
@@ -104,7 +112,8 @@ fn missing_options_without_a_terminal_are_named_and_nothing_is_written() {
     ] {
         new(&folder, &format!("{whole} {axis}")).refuses(says);
     }
-    new(&folder, &format!("--board atlantis --limits none --axis x,{BELT}")).refuses("no board is called 'atlantis'");
+    new(&folder, &format!("--board atlantis --limits none --axis x,{BELT}"))
+        .refuses("no board is called 'atlantis'");
     let many: String = (0..9).map(|i| format!("--axis x{i},{BELT} ")).collect();
     new(&folder, &format!("--clock-hz 50000000 --limits none {}", many.trim_end()))
         .refuses("an engine drives at most 8");
@@ -115,7 +124,10 @@ fn json_document_states_what_was_written() {
     let folder = Folder::new();
     let ran = new(&folder, &format!("--board icebreaker --limits each --axis x,{BELT} --json"));
     let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
-    assert_eq!((&json["passed"], &json["file"], &json["tick_ns"]), (&true.into(), &"m.toml".into(), &2560.into()));
+    assert_eq!(
+        (&json["passed"], &json["file"], &json["tick_ns"]),
+        (&true.into(), &"m.toml".into(), &2560.into())
+    );
     let board = folder.run("verilog --board icebreaker --machine m.toml --out out --json");
     let board: serde_json::Value = serde_json::from_str(&board.stdout).unwrap();
     assert_eq!(json["build_id"], board["build_id"]);
@@ -156,9 +168,13 @@ fn questions_on_a_terminal_are_repeated_after_invalid_answers() {
     screen.waits_for("wrote m.toml: axes x, z, 37.5 MHz, ticks of 2560 ns in 16 phases");
     assert!(screen.ends().success());
     let text = std::fs::read_to_string(folder.path("m.toml")).unwrap();
-    for line in
-        ["speed_limit_per_min = 6000", "microsteps = 8 ", "limits = \"one\"", "unit = \"in\"", "driver = \"a4988\""]
-    {
+    for line in [
+        "speed_limit_per_min = 6000",
+        "microsteps = 8 ",
+        "limits = \"one\"",
+        "unit = \"in\"",
+        "driver = \"a4988\"",
+    ] {
         assert!(text.contains(line), "{line} is not in:\n{text}");
     }
     moves(&folder, &["x", "z"]);

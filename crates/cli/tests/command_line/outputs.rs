@@ -23,7 +23,11 @@ fn folder() -> Folder {
 
 /// Every file with its text.
 fn texts(folder: &Folder) -> Vec<(String, Option<String>)> {
-    folder.files().into_iter().map(|name| (name.clone(), fs::read_to_string(folder.path(&name)).ok())).collect()
+    folder
+        .files()
+        .into_iter()
+        .map(|name| (name.clone(), fs::read_to_string(folder.path(&name)).ok()))
+        .collect()
 }
 
 #[test]
@@ -49,8 +53,14 @@ fn an_output_that_is_an_input_is_refused() {
             refused(&format!("simulate shop/move.toml {other} new/other {option} {name}"), &says);
         }
     }
-    refused("simulate shop/move.toml --vcd a --save link.toml", "cannot write link.toml: it is the input");
-    refused("virtual-board --machine shop/machine.toml --vcd hard.toml", "cannot write hard.toml: it is the input");
+    refused(
+        "simulate shop/move.toml --vcd a --save link.toml",
+        "cannot write link.toml: it is the input",
+    );
+    refused(
+        "virtual-board --machine shop/machine.toml --vcd hard.toml",
+        "cannot write hard.toml: it is the input",
+    );
 }
 
 /// The command chooses the names of these outputs itself.
@@ -58,7 +68,9 @@ fn an_output_that_is_an_input_is_refused() {
 fn verilog_does_not_replace_its_machine_file() {
     let folder = folder();
     fs::create_dir(folder.path("out")).unwrap();
-    for (link, options) in [("carrystep_six_axis.v", "--core parallel"), ("carrystep_engine.v", "--core engine")] {
+    for (link, options) in
+        [("carrystep_six_axis.v", "--core parallel"), ("carrystep_engine.v", "--core engine")]
+    {
         fs::hard_link(folder.path("shop/machine.toml"), folder.path("out").join(link)).unwrap();
         let before = texts(&folder);
         let ran = folder.run(&format!("verilog {options} --machine shop/machine.toml --out out"));
@@ -75,10 +87,14 @@ fn two_outputs_that_are_one_file_are_refused() {
     fs::hard_link(folder.path("old"), folder.path("hard")).unwrap();
     symlink("new/a", folder.path("dangling")).unwrap();
     let before = texts(&folder);
-    for (one, other) in [("a", "./a"), ("old", "hard"), ("new/a", "dangling"), ("new/a", "shop/../new/a")] {
+    for (one, other) in
+        [("a", "./a"), ("old", "hard"), ("new/a", "dangling"), ("new/a", "shop/../new/a")]
+    {
         let ran = folder.run(&format!("simulate shop/move.toml --vcd {one} --csv {other}"));
         ran.refuses(&format!("cannot write {other}: it is also the output {one}"));
-        let ran = folder.run(&format!("profile ranade --steps 1000 --time 1 --accel 1e5 --csv {one} --plot {other}"));
+        let ran = folder.run(&format!(
+            "profile ranade --steps 1000 --time 1 --accel 1e5 --csv {one} --plot {other}"
+        ));
         ran.refuses(&format!("cannot write {other}: it is also the output {one}"));
         assert_eq!(texts(&folder), before);
     }
@@ -91,7 +107,8 @@ fn a_link_is_followed_and_stays() {
     symlink("results/old.csv", folder.path("to-old.csv")).unwrap();
     symlink("to-old.csv", folder.path("to-link.csv")).unwrap();
     symlink("results/new.csv", folder.path("dangling.csv")).unwrap();
-    for (link, target) in [("to-link.csv", "results/old.csv"), ("dangling.csv", "results/new.csv")] {
+    for (link, target) in [("to-link.csv", "results/old.csv"), ("dangling.csv", "results/new.csv")]
+    {
         let ran = folder.run(&format!("simulate shop/move.toml --csv {link}"));
         assert_eq!(ran.status, 0, "{}", ran.stderr);
         assert!(ran.stdout.contains(&format!("wrote {link}\n")), "{}", ran.stdout);
@@ -103,15 +120,16 @@ fn a_link_is_followed_and_stays() {
     symlink("loop-b", folder.path("loop-a")).unwrap();
     symlink("loop-a", folder.path("loop-b")).unwrap();
     let before = folder.files();
-    folder.run("simulate shop/move.toml --csv loop-a").refuses("cannot write loop-a: too many symbolic links");
+    folder
+        .run("simulate shop/move.toml --csv loop-a")
+        .refuses("cannot write loop-a: too many symbolic links");
     assert_eq!(folder.files(), before);
 }
 
 #[test]
 fn results_of_an_earlier_run_are_replaced_whole() {
     let folder = folder();
-    let run =
-        "simulate shop/move.toml --vcd out/a.vcd --fst out/a.fst --save out/a.gtkw --csv out/a.csv --plot out/a.svg";
+    let run = "simulate shop/move.toml --vcd out/a.vcd --fst out/a.fst --save out/a.gtkw --csv out/a.csv --plot out/a.svg";
     assert_eq!(folder.run(run).status, 0);
     let (files, first) = (folder.files(), fs::read(folder.path("out/a.csv")).unwrap());
     let inode = |name: &str| fs::metadata(folder.path(name)).unwrap().ino();
@@ -139,7 +157,10 @@ fn results_have_the_permissions_of_any_new_file() {
     assert_eq!(folder.run("simulate shop/move.toml --csv a.csv").status, 0);
     assert_eq!(mode("a.csv"), mode("plain"));
     assert_eq!(folder.run("verilog --board papilio-one --out board").status, 0);
-    assert_eq!((mode("board/build.sh") & 0o100, mode("board/carrystep_engine.v")), (0o100, mode("plain")));
+    assert_eq!(
+        (mode("board/build.sh") & 0o100, mode("board/carrystep_engine.v")),
+        (0o100, mode("plain"))
+    );
 }
 
 #[test]
@@ -154,7 +175,9 @@ fn devices_and_pipes_are_written_and_not_replaced() {
     assert_eq!(folder.run("simulate shop/move.toml --csv fifo").status, 0);
     assert!(reader.join().unwrap().starts_with("axis,pulse,time_s,"));
 
-    folder.run("simulate shop/move.toml --csv /dev/stdout --vcd /proc/self/fd/1").refuses("it is also the output");
+    folder
+        .run("simulate shop/move.toml --csv /dev/stdout --vcd /proc/self/fd/1")
+        .refuses("it is also the output");
     folder.run("simulate shop/move.toml --csv shop/").refuses("cannot write shop/: is a directory");
 }
 
@@ -165,7 +188,10 @@ fn redirected_standard_output_holds_csv_and_report() {
     let run = |csv: &str| {
         let all = fs::File::create(folder.path("all")).unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-        command.args(["simulate", "shop/move.toml", "--csv", csv]).current_dir(folder.path("")).stdout(all);
+        command
+            .args(["simulate", "shop/move.toml", "--csv", csv])
+            .current_dir(folder.path(""))
+            .stdout(all);
         let output = command.stderr(Stdio::piped()).output().unwrap();
         (
             output.status.code(),

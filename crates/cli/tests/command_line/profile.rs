@@ -3,7 +3,8 @@
 use crate::curves::{close, golden, json, names, stdout};
 use serde_json::{Value, json};
 
-const SORN: &str = "--step-angle 1.8 --microsteps 2 --travel-per-rev 5 --speed-mm-min 1000 --accel-mm-s2 80";
+const SORN: &str =
+    "--step-angle 1.8 --microsteps 2 --travel-per-rev 5 --speed-mm-min 1000 --accel-mm-s2 80";
 
 #[test]
 fn profile_reproduces_the_example_of_the_logistic_source() {
@@ -67,7 +68,9 @@ fn profile_reproduces_the_example_of_the_trapezoid_source() {
 #[test]
 fn equal_speeds_in_different_units_give_equal_ramps() {
     let motor = "--step-angle 1.8 --microsteps 2 --travel-per-rev 5 --accel 6400";
-    let ramp = |speed: &str| json(&format!("profile sine {motor} {speed}"))["profiles"][0]["figures"].clone();
+    let ramp = |speed: &str| {
+        json(&format!("profile sine {motor} {speed}"))["profiles"][0]["figures"].clone()
+    };
     let steps = ramp("--speed 1280");
     for speed in ["--rpm 192", "--speed-mm-s 16", "--speed-mm-min 960", "--speed-deg-s 1152"] {
         close(&ramp(speed)["seconds"], &steps["seconds"]);
@@ -79,7 +82,9 @@ fn equal_speeds_in_different_units_give_equal_ramps() {
 fn acceleration_of_a_triangle_jumps_twice_as_far_as_that_of_a_trapezoid() {
     let jump = |asked: &str| {
         let all = json(&format!("profile trapezoid ranade --steps 100 --accel 1000 {asked}"));
-        [0, 1].map(|i| all["profiles"][i]["figures"]["acceleration_jump_steps_per_s2"].as_f64().unwrap())
+        [0, 1].map(|i| {
+            all["profiles"][i]["figures"]["acceleration_jump_steps_per_s2"].as_f64().unwrap()
+        })
     };
     let (triangle, trapezoid) = (jump(""), jump("--speed 100"));
     assert!(triangle.iter().all(|jump| (jump / 2000.0 - 1.0).abs() < 1e-12), "{triangle:?}");
@@ -118,7 +123,10 @@ fn half_phase_lists_the_middles_of_the_steps() {
 #[test]
 fn json_has_stable_names() {
     let all = json("profile scurve --steps 40 --accel 5000 --jerk 1e5 --timer-hz 1e6");
-    assert_eq!(names(&all), ["drive", "files", "passed", "phase", "profiles", "schema", "timer_hz"]);
+    assert_eq!(
+        names(&all),
+        ["drive", "files", "passed", "phase", "profiles", "schema", "timer_hz"]
+    );
     assert_eq!(all["drive"], json!({"step_angle_deg": 1.8, "microsteps": 1}));
     let profile = &all["profiles"][0];
     assert_eq!(names(profile), ["figures", "kind", "ramp", "steps"]);
@@ -139,7 +147,10 @@ fn json_has_stable_names() {
     assert_eq!(names(&profile["figures"]), figures);
     let steps = profile["steps"].as_array().unwrap();
     assert_eq!(steps.len(), 41);
-    assert_eq!(names(&steps[0]), ["delay_counts", "delay_s", "speed_steps_per_s", "step", "time_s"]);
+    assert_eq!(
+        names(&steps[0]),
+        ["delay_counts", "delay_s", "speed_steps_per_s", "step", "time_s"]
+    );
     assert_eq!(steps[40]["delay_s"], Value::Null);
 }
 
@@ -154,7 +165,10 @@ fn csv_has_the_same_numbers_as_the_json() {
     for profile in json["profiles"].as_array().unwrap() {
         for row in profile["steps"].as_array().unwrap() {
             let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
-            assert_eq!((cells[0], cells[1]), (profile["kind"].as_str().unwrap(), row["step"].to_string().as_str()));
+            assert_eq!(
+                (cells[0], cells[1]),
+                (profile["kind"].as_str().unwrap(), row["step"].to_string().as_str())
+            );
             for (cell, name) in cells[2..].iter().zip(["time_s", "speed_steps_per_s", "delay_s"]) {
                 let (cell, number) = (cell.parse::<f64>().ok(), row[name].as_f64());
                 let close = cell.zip(number).is_some_and(|(a, b)| (a - b).abs() <= 1e-15 * b.abs());
@@ -180,9 +194,13 @@ fn pictures_are_well_formed() {
         assert!(told.ends_with(&format!("wrote {}\n", plot.display())), "{told}");
         let text = std::fs::read_to_string(&plot).unwrap();
         let picture = roxmltree::Document::parse(&text).unwrap();
-        let words: Vec<&str> = picture.descendants().filter_map(|node| node.text().map(str::trim)).collect();
+        let words: Vec<&str> =
+            picture.descendants().filter_map(|node| node.text().map(str::trim)).collect();
         for kind in asked.split_whitespace().take_while(|word| !word.starts_with('-')) {
-            assert!(words.iter().any(|word| word.starts_with(&format!("{kind}, "))), "{kind} in {words:?}");
+            assert!(
+                words.iter().any(|word| word.starts_with(&format!("{kind}, "))),
+                "{kind} in {words:?}"
+            );
         }
         let unit = if asked.contains("mm") { "mm" } else { "steps" };
         assert!(words.contains(&format!("speed, {unit}/s").as_str()), "{words:?}");
@@ -193,12 +211,16 @@ fn pictures_are_well_formed() {
 fn the_page_has_the_picture_that_its_command_draws() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let page = std::fs::read_to_string(format!("{root}/docs/profiles.md")).unwrap();
-    let line = page.lines().find(|line| line.contains("--plot docs/pictures/profiles.svg")).unwrap();
+    let line =
+        page.lines().find(|line| line.contains("--plot docs/pictures/profiles.svg")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let drawn = folder.path().join("profiles.svg");
     let asked = line.trim().strip_prefix("carrystep ").unwrap();
     stdout(&asked.replace("docs/pictures/profiles.svg", &drawn.display().to_string()));
     let shown = std::fs::read_to_string(format!("{root}/docs/pictures/profiles.svg")).unwrap();
     assert!(shown.len() < 300_000);
-    assert!(shown == std::fs::read_to_string(drawn).unwrap(), "draw it anew: cargo run --release -- {asked}");
+    assert!(
+        shown == std::fs::read_to_string(drawn).unwrap(),
+        "draw it anew: cargo run --release -- {asked}"
+    );
 }

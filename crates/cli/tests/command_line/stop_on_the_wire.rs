@@ -27,14 +27,18 @@ impl Spy {
         // The name remains valid after this end is closed; the host opens it again.
         drop(other);
         host.set_timeout(Duration::from_millis(1)).unwrap();
-        let mut line = serialport::new(&board.port, 3_000_000).timeout(Duration::from_millis(1)).open().unwrap();
+        let mut line = serialport::new(&board.port, 3_000_000)
+            .timeout(Duration::from_millis(1))
+            .open()
+            .unwrap();
         let (tell, stops) = mpsc::channel();
         let ends = Arc::new(AtomicBool::new(false));
         let over = Arc::clone(&ends);
         let thread = std::thread::spawn(move || {
             let (mut bytes, mut frame) = ([0; 512], Vec::new());
             while !over.load(Ordering::Relaxed) {
-                let waits = |port: &dyn serialport::SerialPort| port.bytes_to_read().unwrap_or(0) > 0;
+                let waits =
+                    |port: &dyn serialport::SerialPort| port.bytes_to_read().unwrap_or(0) > 0;
                 let (from_host, from_board) = (waits(&host), waits(&*line));
                 if from_host {
                     let count = host.read(&mut bytes).unwrap_or(0);

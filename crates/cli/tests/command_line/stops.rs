@@ -10,7 +10,10 @@ use std::time::{Duration, Instant};
 /// Starts a command that drives the board at this port.
 pub fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-    command.args(arguments.split(' ')).args(["--port", port, "--json"]).current_dir(folder.path(""));
+    command
+        .args(arguments.split(' '))
+        .args(["--port", port, "--json"])
+        .current_dir(folder.path(""));
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -57,11 +60,24 @@ fn stop_reaches_the_command_that_holds_the_port() {
         let ran = stop(&folder, &board.port, options);
         passed(&ran);
         let name = command.split(' ').next().unwrap();
-        assert!(ran.stdout.contains(&format!("`carrystep {name}` (process {pid}) was stopped\n")), "{}", ran.stdout);
+        assert!(
+            ran.stdout.contains(&format!("`carrystep {name}` (process {pid}) was stopped\n")),
+            "{}",
+            ran.stdout
+        );
         assert!(ran.stdout.contains("\nat rest; drivers "), "{}", ran.stdout);
-        assert_eq!(ran.stdout.contains("drivers without power"), options == " --off", "{}", ran.stdout);
+        assert_eq!(
+            ran.stdout.contains("drivers without power"),
+            options == " --off",
+            "{}",
+            ran.stdout
+        );
         let told = document(child);
-        assert_eq!((&told["ended"], &told["stopped_by"]), (&"stopped".into(), &"stop".into()), "{told}");
+        assert_eq!(
+            (&told["ended"], &told["stopped_by"]),
+            (&"stopped".into(), &"stop".into()),
+            "{told}"
+        );
         let position = status(&folder, &board.port)["axes"][0]["position"].clone();
         assert_eq!(position, told["axes"][0]["position"]);
         passed(&folder.run(&format!(
@@ -78,7 +94,11 @@ fn stop_reaches_a_run_that_waits_for_the_drivers_power() {
     folder.write("machine.toml", MACHINE.replace("debounce_us", "enable_ms = 3000\ndebounce_us"));
     let board = Board::new(&folder, "");
     let child = drives(&folder, "run long.toml", &board.port);
-    while folder.run(&format!("status --port {} --machine machine.toml", board.port)).stdout.contains("at rest") {
+    while folder
+        .run(&format!("status --port {} --machine machine.toml", board.port))
+        .stdout
+        .contains("at rest")
+    {
         // If it is the one that answers, it has connected.
         if status(&folder, &board.port)["held_by"]["pid"] == child.id() {
             break;
@@ -87,9 +107,17 @@ fn stop_reaches_a_run_that_waits_for_the_drivers_power() {
     let begun = Instant::now();
     let ran = stop(&folder, &board.port, "");
     passed(&ran);
-    assert!(ran.stdout.contains("was stopped") && begun.elapsed() < Duration::from_millis(2500), "{}", ran.stdout);
+    assert!(
+        ran.stdout.contains("was stopped") && begun.elapsed() < Duration::from_millis(2500),
+        "{}",
+        ran.stdout
+    );
     let told = document(child);
-    assert_eq!((&told["stopped_by"], &told["axes"][0]["position"]), (&"stop".into(), &0.into()), "{told}");
+    assert_eq!(
+        (&told["stopped_by"], &told["axes"][0]["position"]),
+        (&"stop".into(), &0.into()),
+        "{told}"
+    );
 }
 
 #[test]
@@ -98,7 +126,11 @@ fn status_asks_the_command_that_drives() {
     let board = Board::new(&folder, "");
     let mut child = drives(&folder, "run long.toml", &board.port);
     let first = moving(&folder, &mut child, &board.port);
-    assert_eq!((&first["held_by"]["command"], &first["idle"]), (&"run".into(), &false.into()), "{first}");
+    assert_eq!(
+        (&first["held_by"]["command"], &first["idle"]),
+        (&"run".into(), &false.into()),
+        "{first}"
+    );
     let position = |told: &Value| told["axes"][0]["position"].as_i64().unwrap();
     assert_eq!(first["axes"][0]["place"].as_f64().unwrap(), position(&first) as f64 / 5.0);
     while position(&status(&folder, &board.port)) <= position(&first) {}
@@ -141,14 +173,22 @@ fn hanging_run_is_named_with_what_stops_the_axes() {
         assert!(ran.stderr.contains(&says), "wanted: {says}\nfound: {}", ran.stderr);
     }
     if cfg!(target_os = "linux") {
-        assert!(ran.stderr.contains(&format!("`kill -CONT {pid}` wakes it: then it stops the axes")), "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains(&format!("`kill -CONT {pid}` wakes it: then it stops the axes")),
+            "{}",
+            ran.stderr
+        );
     }
     // The request has remained in the socket.
     signal(&child, "-CONT");
     let output = child.wait_with_output().unwrap();
     let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
     // If the computer is so slow that the watchdog comes first, the watchdog is reported instead.
-    assert!(told["stopped_by"] == "stop" || told["cause"] == "watchdog", "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        told["stopped_by"] == "stop" || told["cause"] == "watchdog",
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 #[test]
@@ -160,7 +200,8 @@ fn a_port_that_is_held_is_refused_by_every_name() {
     let mut child = drives(&folder, "run long.toml", &board.port);
     moving(&folder, &mut child, &board.port);
     for name in [board.port.as_str(), "port", "again"] {
-        let says = format!("serial port {name} is in use by `carrystep run` (process {})", child.id());
+        let says =
+            format!("serial port {name} is in use by `carrystep run` (process {})", child.id());
         folder.run(&format!("run long.toml --port {name}")).refuses(&says);
         folder.run(&format!("jog x 1 --machine machine.toml --port {name}")).refuses(&says);
     }
@@ -201,7 +242,9 @@ fn clear_with_the_e_stop_pressed_fails_at_once() {
     assert!(begun.elapsed() < Duration::from_millis(2500), "{:?}", begun.elapsed());
     assert_eq!(ran.status, 1);
     assert!(
-        ran.stderr.starts_with("error: the e-stop is still pressed, so nothing can be cleared: release it"),
+        ran.stderr.starts_with(
+            "error: the e-stop is still pressed, so nothing can be cleared: release it"
+        ),
         "{}",
         ran.stderr
     );
@@ -215,25 +258,42 @@ fn status_reports_the_cause_of_a_stop_and_the_remedy() {
     let folder = folder();
     let mut board = Board::new(&folder, "--fast --max y=100");
     let port = board.port.clone();
-    let told = |folder: &Folder| folder.run(&format!("status --port {port} --machine machine.toml")).stdout;
+    let told = |folder: &Folder| {
+        folder.run(&format!("status --port {port} --machine machine.toml")).stdout
+    };
     board.press("estop 1");
     while status(&folder, &port)["cause"] != "e-stop" {}
     assert!(told(&folder).contains("\nSTOPPED: e-stop; "), "{}", told(&folder));
-    assert!(told(&folder).contains("\nto do: release it, then `carrystep stop --clear`"), "{}", told(&folder));
+    assert!(
+        told(&folder).contains("\nto do: release it, then `carrystep stop --clear`"),
+        "{}",
+        told(&folder)
+    );
     board.press("estop 0");
     std::thread::sleep(Duration::from_millis(100));
     passed(&stop(&folder, &port, " --clear"));
     let ran = folder.run(&format!("jog y 5 --machine machine.toml --port {port}"));
     assert_eq!(ran.status, 1);
-    assert!(ran.stdout.contains("STOPPED by the machine: limit, axis y moving forward; "), "{}", ran.stdout);
     assert!(
-        ran.stdout.ends_with("\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"),
+        ran.stdout.contains("STOPPED by the machine: limit, axis y moving forward; "),
+        "{}",
+        ran.stdout
+    );
+    assert!(
+        ran.stdout.ends_with(
+            "\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"
+        ),
         "{}",
         ran.stdout
     );
     let said = told(&folder);
     assert!(said.contains("\nSTOPPED: limit, from y; "), "{said}");
-    assert!(said.contains("\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"), "{said}");
+    assert!(
+        said.contains(
+            "\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"
+        ),
+        "{said}"
+    );
 }
 
 #[test]

@@ -12,7 +12,8 @@ const SOURCE: &str = "table logistic --entries 1000 --clock-hz 16000000 --presca
 fn logistic_table_equals_the_look_up_method_of_the_source() {
     let golden = &golden("timer_table.json")["table_Fle_6"];
     let table = json(&format!("{SOURCE} --mode free-running"));
-    let compare: Vec<u64> = table["compare"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
+    let compare: Vec<u64> =
+        table["compare"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
     assert_eq!(json!(compare[..10]), golden["OCR_0..9"]);
     for i in [100, 250, 500, 750, 999] {
         assert_eq!(golden[format!("OCR_{i}")], compare[i]);
@@ -29,8 +30,7 @@ fn logistic_table_equals_the_look_up_method_of_the_source() {
 #[test]
 fn avr446_table_equals_the_integers_of_the_application_note() {
     let source = &golden("trapezoid_austin.json")["avr446_integer"];
-    let asked =
-        "table avr446 --arithmetic integer --ramp-steps 500 --clock-hz 1000000 --top-speed 1000 --mode free-running";
+    let asked = "table avr446 --arithmetic integer --ramp-steps 500 --clock-hz 1000000 --top-speed 1000 --mode free-running";
     let table = json(asked);
     let first: Vec<Value> = table["compare"].as_array().unwrap().iter().take(12).cloned().collect();
     assert_eq!(json!(first), source["first_12"]);
@@ -40,7 +40,8 @@ fn avr446_table_equals_the_integers_of_the_application_note() {
 #[test]
 fn json_has_stable_names() {
     let table = json(&format!("{SOURCE} --pulses-by-group 1,2,3,4"));
-    let expected = ["compare", "cruise", "figures", "files", "groups", "passed", "request", "schema"];
+    let expected =
+        ["compare", "cruise", "figures", "files", "groups", "passed", "request", "schema"];
     assert_eq!(names(&table), expected);
     assert_eq!(table["groups"][3], json!({"end": 1000, "pulses": 4}));
     assert_eq!(table["request"]["kind"], "logistic");
@@ -50,11 +51,21 @@ fn json_has_stable_names() {
 
 /// Compiles header and player together in strict C99.
 fn compiles(folder: &Path, name: &str, flags: &[&str]) {
-    let main = format!("#include \"{name}.h\"\nint main(void) {{ return (int)({name}_compare[0] == 0); }}\n");
+    let main = format!(
+        "#include \"{name}.h\"\nint main(void) {{ return (int)({name}_compare[0] == 0); }}\n"
+    );
     std::fs::write(folder.join("main.c"), main).unwrap();
     let sources = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let sources = sources.filter(|path| path.extension().is_some_and(|extension| extension == "c"));
-    let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unused-const-variable", "-o"];
+    let strict = [
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "-Wno-unused-const-variable",
+        "-o",
+    ];
     let mut gcc = Command::new("gcc");
     gcc.args(strict).arg(folder.join("main")).args(flags).args(sources).arg("-lm");
     let output = gcc.output().unwrap();
@@ -62,8 +73,10 @@ fn compiles(folder: &Path, name: &str, flags: &[&str]) {
 }
 
 fn files(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     names
 }
@@ -72,7 +85,8 @@ fn files(folder: &Path) -> Vec<String> {
 fn written_table_and_player_compile() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
-    let write = |arguments: &str, name: &str| stdout(&format!("{arguments} --out {}", out(name).display()));
+    let write =
+        |arguments: &str, name: &str| stdout(&format!("{arguments} --out {}", out(name).display()));
 
     let told = write(SOURCE, "plain");
     assert_eq!(files(&out("plain")), ["carrystep_player.c", "carrystep_player.h", "ramp.h"]);
@@ -82,9 +96,16 @@ fn written_table_and_player_compile() {
     // Without a folder the same header goes to standard output.
     assert_eq!(stdout(SOURCE), std::fs::read_to_string(out("plain").join("ramp.h")).unwrap());
 
-    let sine = "table sine --ramp-steps 200 --clock-hz 1000000 --top-speed 5000 --inverse 64 --name soft";
+    let sine =
+        "table sine --ramp-steps 200 --clock-hz 1000000 --top-speed 5000 --inverse 64 --name soft";
     write(sine, "sine");
-    let all = ["carrystep_player.c", "carrystep_player.h", "carrystep_sine.c", "carrystep_sine.h", "soft.h"];
+    let all = [
+        "carrystep_player.c",
+        "carrystep_player.h",
+        "carrystep_sine.c",
+        "carrystep_sine.h",
+        "soft.h",
+    ];
     assert_eq!(files(&out("sine")), all);
     compiles(&out("sine"), "soft", &[]);
 

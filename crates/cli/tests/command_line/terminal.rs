@@ -29,7 +29,13 @@ impl Screen {
         let name = theirs.name().unwrap();
         ours.set_timeout(Duration::from_millis(20)).unwrap();
         let open = || File::options().read(true).write(true).open(&name).unwrap();
-        let child = command.stdin(open()).stdout(open()).stderr(open()).env("TERM", "xterm").spawn().unwrap();
+        let child = command
+            .stdin(open())
+            .stdout(open())
+            .stderr(open())
+            .env("TERM", "xterm")
+            .spawn()
+            .unwrap();
         Self { ours, _theirs: theirs, child, seen: String::new(), looked_at: 0 }
     }
 
@@ -50,7 +56,11 @@ impl Screen {
                 self.looked_at += at + text.len();
                 return;
             }
-            assert!(self.look() || begun.elapsed() < PATIENCE, "waited for {text:?}, seen:\n{}", self.seen);
+            assert!(
+                self.look() || begun.elapsed() < PATIENCE,
+                "waited for {text:?}, seen:\n{}",
+                self.seen
+            );
             if begun.elapsed() > PATIENCE {
                 panic!("waited for {text:?}, seen:\n{}", self.seen);
             }
@@ -85,7 +95,11 @@ impl Drop for Screen {
 
 fn command(folder: &Folder, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-    command.args(arguments.split(' ')).current_dir(folder.path("")).env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+    command
+        .args(arguments.split(' '))
+        .current_dir(folder.path(""))
+        .env_remove("NO_COLOR")
+        .env_remove("CLICOLOR_FORCE");
     command
 }
 
@@ -99,7 +113,8 @@ fn verdicts_have_colours_on_a_terminal_that_wants_them() {
         screen.ends();
         std::mem::take(&mut screen.seen)
     };
-    let (red, green) = ("\u{1b}[1m\u{1b}[31mFAILED\u{1b}[0m", "\u{1b}[1m\u{1b}[32mALL HOLDS\u{1b}[0m");
+    let (red, green) =
+        ("\u{1b}[1m\u{1b}[31mFAILED\u{1b}[0m", "\u{1b}[1m\u{1b}[32mALL HOLDS\u{1b}[0m");
     let failed = shown(&mut command(&folder, "check a.vcd longer.toml"));
     assert!(failed.contains(red), "{failed}");
     let held = shown(&mut command(&folder, "simulate move.toml"));
@@ -117,7 +132,11 @@ fn verdicts_have_colours_on_a_terminal_that_wants_them() {
 fn error_message_begins_with_the_word_error() {
     let folder = Folder::with_move(GOOD.replace("phases = 16", "phases = 3"));
     let ran = folder.run("plan move.toml");
-    assert!(ran.stderr.starts_with("error: 3 phases: a tick has 1, 4 or 16 phases\n"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.starts_with("error: 3 phases: a tick has 1, 4 or 16 phases\n"),
+        "{}",
+        ran.stderr
+    );
     let mut screen = Screen::start(command(&folder, "plan move.toml").env("NO_COLOR", "1"));
     screen.ends();
     assert!(screen.seen.starts_with("error: 3 phases"), "{}", screen.seen);
@@ -134,7 +153,9 @@ fn progress_is_shown_even_if_no_edge_comes() {
         1,
     );
     let folder = Folder::with_move(crawl);
-    for arguments in ["simulate move.toml --core parallel --level model", "simulate move.toml --level rust-hdl"] {
+    for arguments in
+        ["simulate move.toml --core parallel --level model", "simulate move.toml --level rust-hdl"]
+    {
         let mut screen = Screen::start(&mut command(&folder, arguments));
         screen.waits_for(if arguments.contains("model") { "model " } else { "rust-hdl " });
         screen.waits_for("  0 % ");

@@ -47,7 +47,8 @@ to = { x = -12.2 }
 "#;
 
 /// A move that takes longer than any test waits.
-const LONG: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { x = 1_000_000 }\n";
+const LONG: &str =
+    "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { x = 1_000_000 }\n";
 
 /// A running `carrystep virtual-board`.
 pub struct Board {
@@ -59,7 +60,9 @@ pub struct Board {
 impl Board {
     pub fn new(folder: &Folder, options: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-        command.args(["virtual-board", "--machine", "machine.toml"]).args(options.split_whitespace());
+        command
+            .args(["virtual-board", "--machine", "machine.toml"])
+            .args(options.split_whitespace());
         command.current_dir(folder.path("")).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut said = BufReader::new(child.stdout.take().unwrap());
@@ -153,7 +156,9 @@ fn moves_reach_the_pins_of_a_board_as_they_were_planned() {
 fn jogs_start_from_the_present_position_and_follow_moves() {
     let folder = folder();
     let board = Board::new(&folder, "--fast");
-    let jog = |arguments: &str| folder.run(&format!("jog {arguments} --machine machine.toml --port {}", board.port));
+    let jog = |arguments: &str| {
+        folder.run(&format!("jog {arguments} --machine machine.toml --port {}", board.port))
+    };
     passed(&jog("x 3.1"));
     passed(&jog("y -0.5 --time 0.2"));
     passed(&jog("x -1"));
@@ -166,7 +171,9 @@ fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
     let folder = folder();
     let board = Board::new(&folder, "--fast --vcd a.vcd");
     let child = begin(&folder, &board, "long.toml");
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
+    );
     let told = document(child);
     assert_eq!((&told["ended"], &told["passed"]), (&"stopped".into(), &false.into()));
     let position = told["axes"][0]["position"].as_i64().unwrap();
@@ -242,7 +249,8 @@ fn e_stop_is_reported_and_latched_until_released_and_cleared() {
     board.press("estop 1");
     let told = document(child);
     assert_eq!((&told["ended"], &told["cause"]), (&"fault".into(), &"e-stop".into()));
-    let stop = |options: &str| folder.run(&format!("stop --port {} --baud 3000000 {options}", board.port));
+    let stop =
+        |options: &str| folder.run(&format!("stop --port {} --baud 3000000 {options}", board.port));
     let ran = stop("--clear");
     assert_eq!(ran.status, 1, "{}", ran.stdout);
     assert!(ran.stderr.contains("the e-stop is still pressed"), "{}", ran.stderr);
@@ -261,10 +269,16 @@ fn impossible_virtual_boards_are_refused() {
         folder.run(&format!("virtual-board --machine bad.toml{options}"))
     };
     let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^3_100_000");
-    board(&odd, "").refuses_at("bad.toml", place, "the next ones that it makes are 3000000 and 3200000");
+    board(&odd, "").refuses_at(
+        "bad.toml",
+        place,
+        "the next ones that it makes are 3000000 and 3200000",
+    );
     board(
-        &MACHINE
-            .replace("clock_hz = 48_000_000\ntick_ns = 2000", "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]"),
+        &MACHINE.replace(
+            "clock_hz = 48_000_000\ntick_ns = 2000",
+            "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]",
+        ),
         "",
     )
     .refuses("unknown field `other`");

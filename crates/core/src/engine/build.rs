@@ -2,7 +2,9 @@
 //! guard is the part of the engine that watches limits, e-stop, watchdog and faults, and stops the
 //! axes.
 
-use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins, check_schedule};
+use super::{
+    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, check_pins, check_schedule,
+};
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
 use alloc::vec;
@@ -30,7 +32,7 @@ pub struct Guard {
     /// times below. A power of two from 2 to [`MAX_ROUND`].
     pub round: u32,
     /// Number of consecutive samples with the same level after which a limit's level is accepted, 1
-    /// to [`MAX_LOOKS`].
+    /// to [`MAX_DEBOUNCE_SAMPLES`].
     pub debounce: u32,
     /// Time without a valid request after which the watchdog stops all axes, in rounds, up to
     /// [`MAX_ROUNDS`]; 0 turns the watchdog off.
@@ -39,7 +41,7 @@ pub struct Guard {
     /// delay.
     pub enable: u32,
     /// Wiring of the limit switches.
-    pub limits: Limits,
+    pub limits: LimitWiring,
     /// Whether a limit freezes the axes at once; otherwise they ramp down.
     pub limit_freezes: bool,
     /// Whether the e-stop counts as pressed while its pin is low (otherwise: while it is high).
@@ -53,7 +55,7 @@ pub struct Guard {
 /// Wiring of the limit switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Limits {
+pub enum LimitWiring {
     /// There are no limit switches.
     None,
     /// Two for each axis. Each stops motion toward its own end only.
@@ -74,7 +76,7 @@ impl Guard {
             debounce: 1,
             watchdog: 0,
             enable: 0,
-            limits: Limits::None,
+            limits: LimitWiring::None,
             limit_freezes: false,
             estop_low: false,
             limits_low: false,
@@ -116,7 +118,7 @@ impl EngineBuild {
                 return Err(EngineError::Rounds { name, rounds });
             }
         }
-        if !(1..=MAX_LOOKS).contains(&guard.debounce) {
+        if !(1..=MAX_DEBOUNCE_SAMPLES).contains(&guard.debounce) {
             return Err(EngineError::Debounce(guard.debounce));
         }
         if guard.stop.len() != axes {
@@ -150,15 +152,25 @@ mod tests {
         let nine = |build: &mut EngineBuild| build.pins = vec![PinTiming::SHORTEST; 9];
         assert_eq!(refusal(nine), "9 axes: an engine has 1 to 8");
         assert!(refusal(|build| build.pins.clear()).starts_with("0 axes"));
-        let said = refusal(|build| build.pins[3].gap = 0);
-        assert_eq!(said, "axis 3: gap is 0 clocks: from 1 to 65536 can be counted");
-        assert!(refusal(|build| build.pins[5].hold = 65_537).starts_with("axis 5: hold is 65537 clocks"));
+        let said = refusal(|build| build.pins[3].step_low = 0);
+        assert_eq!(said, "axis 3: step_low is 0 clocks: from 1 to 65536 can be counted");
+        assert!(
+            refusal(|build| build.pins[5].dir_hold = 65_537)
+                .starts_with("axis 5: dir_hold is 65537 clocks")
+        );
         assert!(refusal(|build| build.guard.round = 3).starts_with("a round of 3 ticks"));
-        assert!(refusal(|build| build.guard.watchdog = 5000).starts_with("watchdog of 5000 rounds"));
+        assert!(
+            refusal(|build| build.guard.watchdog = 5000).starts_with("watchdog of 5000 rounds")
+        );
         assert!(refusal(|build| build.guard.enable = 5000).starts_with("enable of 5000 rounds"));
-        assert!(refusal(|build| build.guard.debounce = 0).starts_with("a debounce of 0 looks"));
-        assert!(refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3"));
-        assert!(refusal(|build| build.guard.stop.push(1)).starts_with("7 stop accelerations for 6 axes"));
+        assert!(refusal(|build| build.guard.debounce = 0).starts_with("a debounce of 0 samples"));
+        assert!(
+            refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
+        );
+        assert!(
+            refusal(|build| build.guard.stop.push(1))
+                .starts_with("7 stop accelerations for 6 axes")
+        );
     }
 
     #[test]
@@ -169,6 +181,9 @@ mod tests {
             build.timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         };
         let said = refusal(seven);
-        assert!(said.starts_with("8 axes need 13 clocks each and one to close the tick, 105 in all"), "{said}");
+        assert!(
+            said.starts_with("8 axes need 13 clocks each and one to close the tick, 105 in all"),
+            "{said}"
+        );
     }
 }

@@ -77,9 +77,10 @@ impl Cause {
                 "a segment drove an axis beyond half a step in a tick; all axes stopped without ramps",
                 "`carrystep stop --clear`, home, and send planned moves only: the planner keeps this limit",
             ),
-            Self::Limit => {
-                ("a limit switch was reached", "`carrystep stop --clear`, then jog that axis away from the switch")
-            }
+            Self::Limit => (
+                "a limit switch was reached",
+                "`carrystep stop --clear`, then jog that axis away from the switch",
+            ),
             Self::Underrun => (
                 "a queue ran dry in the middle of a move, and the axes ramped down: the host sent too slowly",
                 "`carrystep stop --clear`, plan anew from the positions, and relieve the computer or raise the baud rate",

@@ -1,7 +1,9 @@
 //! Errors of the engine's build parameters. Each names the parameter, its value, and values that
 //! are possible.
 
-use super::{MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, TURN};
+use super::{
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS,
+};
 use crate::build::MAX_CLOCKS;
 use alloc::borrow::ToOwned;
 use alloc::format;
@@ -14,15 +16,15 @@ pub enum EngineError {
     /// The number of axes is 0 or more than [`MAX_AXES`].
     #[error("{0} axes: an engine has 1 to {MAX_AXES}")]
     Axes(usize),
-    /// A tick has too few clocks for the turns of all axes.
+    /// A tick has too few clocks for the time slots of all axes.
     #[error(
-        "{axes} axes need {TURN} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
+        "{axes} axes need {TIME_SLOT_CLOCKS} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
          at {clock_hz} Hz has {clocks}: {}, {} or fewer axes would do", tick_said(.least_tick_ns), clock_said(.least_hz)
     )]
     Schedule {
         /// Number of axes.
         axes: usize,
-        /// Clocks that their turns need.
+        /// Clocks that their time slots need.
         needed: u32,
         /// Clocks that the tick has.
         clocks: u32,
@@ -55,7 +57,7 @@ pub enum EngineError {
     PinTiming {
         /// Number of the axis.
         axis: usize,
-        /// Name of the time: width, gap, setup or hold.
+        /// Name of the time: step_high, step_low, dir_setup or dir_hold.
         name: &'static str,
         /// The value, in clocks.
         clocks: u32,
@@ -64,7 +66,9 @@ pub enum EngineError {
     #[error("a round of {0} ticks: a power of two from 2 to {MAX_ROUND} is needed")]
     Round(u32),
     /// A time of the guard is greater than its counter.
-    #[error("{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do")]
+    #[error(
+        "{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do"
+    )]
     Rounds {
         /// Name of the time: watchdog or enable.
         name: &'static str,
@@ -72,11 +76,15 @@ pub enum EngineError {
         rounds: u32,
     },
     /// The number of samples for the debounce is out of its range.
-    #[error("a debounce of {0} looks: from 1 to {MAX_LOOKS} can be counted; a longer round would do")]
+    #[error(
+        "a debounce of {0} samples: from 1 to {MAX_DEBOUNCE_SAMPLES} can be counted; a longer round would do"
+    )]
     Debounce(u32),
     /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
     /// one tick.
-    #[error("the stop acceleration of axis {axis} is {units} x 2^-64 steps per tick^2: from 1 to 2^62 is needed")]
+    #[error(
+        "the stop acceleration of axis {axis} is {units} x 2^-64 steps per tick^2: from 1 to 2^62 is needed"
+    )]
     StopAcceleration {
         /// Number of the axis.
         axis: usize,

@@ -1,7 +1,7 @@
 //! Times of a guard in seconds. The times of a machine file are rounded up to whole rounds of
 //! ticks; these are the times that the gateware then keeps.
 
-use super::{EngineBuild, Limits};
+use super::{EngineBuild, LimitWiring};
 use alloc::vec::Vec;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub struct GuardFigures {
     /// Level of the e-stop pin at which the e-stop counts as pressed.
     pub estop: &'static str,
     /// Wiring of the limits.
-    pub limits: Limits,
+    pub limits: LimitWiring,
     /// Level of a limit pin at which the limit counts as reached.
     pub limit_level: &'static str,
     /// How a limit stops the axes: `ramp` or `freeze`.
@@ -52,18 +52,23 @@ impl EngineBuild {
         let between = |rounds: u32, ns_of_unit: f64| {
             let rounds = u64::from(rounds);
             let (least, most) = (round * rounds.saturating_sub(1), round * rounds + 1);
-            (rounds > 0).then(|| Between { least: ns(least) / ns_of_unit, most: ns(most) / ns_of_unit })
+            (rounds > 0)
+                .then(|| Between { least: ns(least) / ns_of_unit, most: ns(most) / ns_of_unit })
         };
         GuardFigures {
             round_us: ns(round) / 1e3,
             watchdog_ms: between(guard.watchdog, 1e6),
             enable_ms: between(guard.enable, 1e6),
-            debounce_us: between(guard.debounce, 1e3).filter(|_| guard.limits != Limits::None),
+            debounce_us: between(guard.debounce, 1e3).filter(|_| guard.limits != LimitWiring::None),
             estop: level(guard.estop_low),
             limits: guard.limits,
             limit_level: level(guard.limits_low),
             limit_stop: if guard.limit_freezes { "freeze" } else { "ramp" },
-            stop_accel_steps_per_s2: guard.stop.iter().map(|&units| self.timebase.steps_per_s2(units)).collect(),
+            stop_accel_steps_per_s2: guard
+                .stop
+                .iter()
+                .map(|&units| self.timebase.steps_per_s2(units))
+                .collect(),
         }
     }
 }

@@ -1,7 +1,10 @@
-//! Assembles a program with labels and named constants into the contents of the link machine's
+//! Assembles a program with labels and named constants into the contents of the link processor's
 //! memories.
 
-use super::machine::{ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR};
+use super::processor::{
+    ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, TAX, UNLESS, ValueSource, WAIT,
+    XOR,
+};
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -66,18 +69,18 @@ impl Assembler {
     }
 
     /// A <= the value of this source. `operand` is the byte of a word, or an item of the engine.
-    pub(super) fn load_from(&mut self, source: Source, operand: u8) {
+    pub(super) fn load_from(&mut self, source: ValueSource, operand: u8) {
         self.program.push(SETS | (source as Code) << 8 | Code::from(operand));
     }
 
     /// A <= the byte at X, then X <= X + 1.
     pub(super) fn load_next(&mut self) {
-        self.program.push(SETS | (Source::DataAtX as Code) << 8 | ACTS | INX);
+        self.program.push(SETS | (ValueSource::DataAtX as Code) << 8 | ACTS | INX);
     }
 
     /// A <= X.
     pub(super) fn load_x(&mut self) {
-        self.load_from(Source::X, 0);
+        self.load_from(ValueSource::X, 0);
     }
 
     /// A <= A xor the byte at this address.
@@ -87,7 +90,7 @@ impl Assembler {
 
     /// A <= A xor the byte at X.
     pub(super) fn xor_at_x(&mut self) {
-        self.program.push(SETS | XOR | (Source::DataAtX as Code) << 8);
+        self.program.push(SETS | XOR | (ValueSource::DataAtX as Code) << 8);
     }
 
     /// A <= A xor this number.

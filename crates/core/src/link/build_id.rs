@@ -1,7 +1,7 @@
 //! The build id: a hash by which a driver recognises the gateware that it was made for.
 
-use super::registers::{PROTOCOL_VERSION, REGISTERS};
-use super::{ANSWER, registers};
+use super::registers::{MappedRegister, PROTOCOL_VERSION, REGISTERS};
+use super::{ANSWER, Field, registers};
 use crate::EngineBuild;
 use alloc::borrow::ToOwned;
 use alloc::format;
@@ -38,10 +38,15 @@ impl fmt::Display for BuildId {
     }
 }
 
-/// The register map and the fields of an answer as text.
+/// The register map and the fields of an answer as text: names and places, without descriptions.
 fn protocol() -> String {
-    let registers = REGISTERS.iter().map(|row| format!("{row:?}\n"));
-    let answer = ANSWER.iter().map(|row| format!("{row:?}\n"));
+    let registers =
+        REGISTERS.iter().map(|MappedRegister { name, address, access, per_axis, .. }| {
+            format!("{name} {address} {access:?} {per_axis}\n")
+        });
+    let answer = ANSWER
+        .iter()
+        .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));
     let version = format!("protocol {PROTOCOL_VERSION}, {} words\n", registers::PER_AXIS);
     [version].into_iter().chain(registers).chain(answer).collect()
 }
@@ -69,7 +74,7 @@ mod tests {
         };
         let ids = [
             id(|_| ()),
-            id(|build| build.pins[5].hold = 2),
+            id(|build| build.pins[5].dir_hold = 2),
             id(|build| build.guard.watchdog = 9),
             id(|build| build.guard.stop[0] = 2),
             id(|build| build.phase = StartPhase::Zero),

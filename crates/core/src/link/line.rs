@@ -7,14 +7,14 @@ use core::fmt;
 
 /// The line of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum LineKind {
     /// A UART with its divider.
     Uart(Uart),
     /// An SPI with the gateware as peripheral. The host sets its rate, up to a fifth of the clock.
     Spi,
 }
 
-impl Line {
+impl LineKind {
     /// The id of a build with this line.
     pub fn build_id(self, build: &EngineBuild) -> BuildId {
         BuildId::new(build, &self.to_string())
@@ -24,18 +24,18 @@ impl Line {
 impl Uart {
     /// The id of a build with this UART.
     pub fn build_id(self, build: &EngineBuild) -> BuildId {
-        Line::from(self).build_id(build)
+        LineKind::from(self).build_id(build)
     }
 }
 
-impl From<Uart> for Line {
+impl From<Uart> for LineKind {
     fn from(uart: Uart) -> Self {
         Self::Uart(uart)
     }
 }
 
 /// The text of the line that enters the build id.
-impl fmt::Display for Line {
+impl fmt::Display for LineKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Uart(uart) => uart.fmt(f),

@@ -1,4 +1,4 @@
-//! The program of the link machine: it implements the gateware's end of docs/protocol.md.
+//! The program of the link processor: it implements the gateware's end of docs/protocol.md.
 //!
 //! ```text
 //! begin -> next <---------------.
@@ -12,15 +12,17 @@
 //! ```
 
 use super::assembler::{Assembler, Image};
-use super::machine::Condition::{Fault, Nothing, Special, Startable, X6, X7, Zero};
-use super::machine::{
-    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, FOR_ROOM, HOMING, INX, KICK, PUTS, REQUEST,
-    REQUEST_END, ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
+use super::processor::Condition::{Fault, Nothing, Special, Startable, X6, X7, Zero};
+use super::processor::{
+    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, FOR_ROOM, HOMING, INX,
+    KICK, PUTS, REQUEST, REQUEST_END, ROOM, STARTS, STATE, TAX, ValueSource, WAIT, WORDS,
 };
-use super::registers::{AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START};
+use super::registers::{
+    AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START,
+};
 use super::{
-    ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST, REQUEST_HEAD,
-    SEGMENT_FRAME_WORDS, WRITE,
+    ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
+    REQUEST_HEAD, SEGMENT_FRAME_WORDS, WRITE,
 };
 
 const SEQUENCE: u8 = REQUEST;
@@ -63,7 +65,7 @@ fn receive(a: &mut Assembler) {
     a.acts(TAX | CRC_BEGIN);
     a.label("next");
     a.jump_if(Nothing, "next");
-    a.load_from(Source::Received, 0);
+    a.load_from(ValueSource::Received, 0);
     a.jump_if(Special, "special");
     a.label("plain");
     // An over-long frame leaves X at `REQUEST_END`. No valid request has that length, so `check`
@@ -85,7 +87,7 @@ fn receive(a: &mut Assembler) {
 
     a.label("escaped");
     a.jump_if(Nothing, "escaped");
-    a.load_from(Source::Received, 0);
+    a.load_from(ValueSource::Received, 0);
     a.store(BYTE);
     for (special, label) in [(ESC_END, "an END"), (ESC_ESC, "an ESC")] {
         a.xor_number(special);
@@ -124,7 +126,7 @@ fn check(a: &mut Assembler) {
     a.jump_unless(Zero, "begin");
     a.index_table(CRC_RESIDUE.to_le_bytes());
     a.label("residue");
-    a.load_from(Source::Crc, 0);
+    a.load_from(ValueSource::Crc, 0);
     a.xor_at_x();
     a.jump_unless(Zero, "begin");
     a.acts(CRC_STEP | INX);
@@ -162,8 +164,8 @@ fn order(a: &mut Assembler) {
     a.jump("answer");
 }
 
-/// Waits until every item of every axis has been read again, which takes longer than a turn of any
-/// axis. A and X are unchanged.
+/// Waits until every item of every axis has been read again, which takes longer than a time slot of
+/// any axis. A and X are unchanged.
 fn wait_for_all(a: &mut Assembler) {
     // The first wait may end at once, because it starts within a scan.
     a.acts(WAIT);
@@ -176,7 +178,9 @@ fn execute(a: &mut Assembler) {
     a.load(ADDRESS);
     a.acts(TAX);
     a.jump_if(X6, "segment");
-    for (register, label) in [(CONTROL_REGISTER, "control"), (START, "start"), (CLEAR, "clear"), (HOME, "home")] {
+    for (register, label) in
+        [(CONTROL_REGISTER, "control"), (START, "start"), (CLEAR, "clear"), (HOME, "home")]
+    {
         a.load(ADDRESS);
         a.xor_number(WRITE | register);
         a.jump_if(Zero, label);
@@ -215,7 +219,7 @@ fn execute(a: &mut Assembler) {
     // be another axis'. An axis that does not exist never reports.
     a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
-    a.load_from(Source::Engine, ROOM);
+    a.load_from(ValueSource::Engine, ROOM);
     a.jump_if(Zero, "broken");
     // A segment of 0 ticks has all ones as its first word, which is ticks minus one.
     a.load_number(WORDS);
@@ -239,7 +243,7 @@ fn execute(a: &mut Assembler) {
         a.acts(CRC_STEP);
     }
     // X stays within the word until the engine has accepted it.
-    a.load_from(Source::DataAtX, 0);
+    a.load_from(ValueSource::DataAtX, 0);
     a.acts(CRC_STEP);
     a.load(ADDRESS);
     a.acts(PUTS | WAIT | INX);
@@ -267,23 +271,23 @@ fn answer(a: &mut Assembler) {
     a.label("of its axis");
     a.acts(TAX);
     a.label("place");
-    a.load_from(Source::Engine, STATE);
+    a.load_from(ValueSource::Engine, STATE);
     a.store(ANSWER + 3);
     // The state byte is sampled before this wait, and every fact is read again during it. The
     // position of an axis that the state reports at rest is therefore its final one. The axis of A
     // has also reported its room.
     a.load_x();
     wait_for_all(a);
-    a.load_from(Source::Engine, ROOM);
+    a.load_from(ValueSource::Engine, ROOM);
     a.xor(REFUSED);
     a.store(ANSWER + 4);
-    a.load_from(Source::Engine, CULPRITS);
+    a.load_from(ValueSource::Engine, CULPRITS);
     a.store(ANSWER + 5);
-    a.load_from(Source::Engine, HOMING);
+    a.load_from(ValueSource::Engine, HOMING);
     a.store(ANSWER + 6);
     a.acts(CRC_BEGIN | CRC_FEED);
     for byte in 0..4 {
-        a.load_from(Source::Crc, 0);
+        a.load_from(ValueSource::Crc, 0);
         a.store(ANSWER + ANSWER_DATA as u8 + byte);
         a.acts(CRC_STEP);
     }
@@ -300,7 +304,7 @@ fn answer(a: &mut Assembler) {
     a.xor_number(CHECKED);
     a.jump_unless(Zero, "sum");
     a.label("its CRC");
-    a.load_from(Source::Crc, 0);
+    a.load_from(ValueSource::Crc, 0);
     a.xor_number(0xff);
     a.store_next();
     a.acts(CRC_STEP);
@@ -337,11 +341,16 @@ fn send(a: &mut Assembler) {
     a.jump("begin");
 }
 
-const _: () = assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
 const _: () =
-    assert!(WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40, "bit 6 of X says that a segment's words are over");
-const _: () =
-    assert!(REQUEST as usize + LONGEST_REQUEST < ANSWER as usize, "no request that is whole reaches the answer");
+    assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
+const _: () = assert!(
+    WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40,
+    "bit 6 of X says that a segment's words are over"
+);
+const _: () = assert!(
+    REQUEST as usize + LONGEST_REQUEST < ANSWER as usize,
+    "no request that is whole reaches the answer"
+);
 
 #[cfg(test)]
 mod tests {

@@ -8,27 +8,30 @@
 //! ```
 
 use crate::engine::{MAX_AXES, QUEUE};
+use strum::Display;
 
-/// Access to a register.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Access {
+/// Access to a register. It is displayed as in the documentation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum RegisterAccess {
     /// Read only.
     Read,
     /// Written with one word.
     Write,
     /// Written with the eight words of a segment in one frame.
+    #[strum(to_string = "write, 8 words")]
     WriteSegment,
 }
 
 /// One row of the register map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Register {
+pub struct MappedRegister {
     /// Name of the register; the name of its constant in Rust and C.
     pub name: &'static str,
     /// Address. For a register of an axis, the address for axis 0; each further axis adds eight.
     pub address: u8,
     /// Access.
-    pub access: Access,
+    pub access: RegisterAccess,
     /// Whether each axis has one.
     pub per_axis: bool,
     /// Content, with its unit.
@@ -41,10 +44,10 @@ macro_rules! registers {
         $(#[doc = $what] pub const $name: u8 = $address;)*
 
         /// The register map, in the order of addresses.
-        pub const REGISTERS: &[Register] = &[$(Register {
+        pub const REGISTERS: &[MappedRegister] = &[$(MappedRegister {
             name: stringify!($name),
             address: $address,
-            access: Access::$access,
+            access: RegisterAccess::$access,
             per_axis: $address >= AXES_AT,
             what: $what,
         }),*];
@@ -52,36 +55,44 @@ macro_rules! registers {
 }
 
 registers! {
-    IDENTITY     = 0x00 Read "\"CSTP\", low byte first: this is carrystep";
-    PROTOCOL     = 0x01 Read "version of this protocol";
-    BUILD_LOW    = 0x02 Read "build id, low half: a hash of this map and of all build parameters";
-    BUILD_HIGH   = 0x03 Read "build id, high half";
-    AXIS_COUNT   = 0x04 Read "axes of this build";
-    CLOCK_HZ     = 0x05 Read "clock, Hz";
-    TICK_NS      = 0x06 Read "tick, ns";
-    PHASES       = 0x07 Read "phases of a tick";
-    WATCHDOG_TICKS = 0x08 Read "ticks of silence after which the axes are stopped; 0: never";
-    CONTROL      = 0x20 Write "bit 0: power the drivers; bit 1: stop all axes by their ramps";
-    START        = 0x21 Write "axes that start together, a bit each, on the first tick at which all rest and have a segment";
-    CLEAR        = 0x22 Write "resume after a stop, whatever is written: queues empty, P at its start; the position stays";
-    HOME         = 0x23 Write "axes, a bit each, whose next limit latches their position and stops only them";
-    P_LOW        = 0x40 Read "fraction of a step, low half, 2^-64 step";
-    P_HIGH       = 0x41 Read "fraction of a step, high half";
-    POSITION     = 0x42 Read "steps forward less steps back, two's complement";
-    DISCARDED    = 0x43 Read "steps that freezes have discarded";
-    LATCHED      = 0x44 Read "position when the limit was reached in homing";
-    SEGMENT      = 0x40 WriteSegment "ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move";
+    IDENTITY     = 0x00 Read "The bytes of \"CSTP\", low byte first, which identify carrystep";
+    PROTOCOL     = 0x01 Read "Version of the protocol";
+    BUILD_LOW    = 0x02 Read
+        "Build id, low half: a hash of register map and build parameters, for hosts to compare";
+    BUILD_HIGH   = 0x03 Read "Build id, high half";
+    AXIS_COUNT   = 0x04 Read "Number of axes";
+    CLOCK_HZ     = 0x05 Read "Frequency of the clock in Hz";
+    TICK_NS      = 0x06 Read "Length of a tick in ns";
+    PHASES       = 0x07 Read "Number of phases in a tick";
+    WATCHDOG_TICKS = 0x08 Read
+        "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
+    CONTROL      = 0x20 Write "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
+    START        = 0x21 Write
+        "Axes, one bit each, to start together once all rest; an empty queue: fault (protocol)";
+    CLEAR        = 0x22 Write
+        "Any value ends a complete stop: queues empty, P at its start value, position kept";
+    HOME         = 0x23 Write
+        "Axes, one bit each: the next limit latches the position and ramps down this axis only";
+    P_LOW        = 0x40 Read "P, the fraction of a step in units of 2^-64 step, low half";
+    P_HIGH       = 0x41 Read "P, high half";
+    POSITION     = 0x42 Read "Position: steps forward minus steps backward, two's complement";
+    DISCARDED    = 0x43 Read "Number of steps that freezes have discarded since configuration";
+    LATCHED      = 0x44 Read "Position in steps at which the limit was reached in homing";
+    SEGMENT      = 0x40 WriteSegment
+        "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \
+         its move, else 0";
 }
 
 super::constants! {
-    IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "What IDENTITY holds.";
-    PROTOCOL_VERSION: u32 = 1, "The version of the protocol that this map belongs to.";
-    CONTROL_ENABLE: u32 = 1 << 0, "In CONTROL: power the drivers.";
-    CONTROL_STOP: u32 = 1 << 1, "In CONTROL: stop all axes.";
-    AXES_AT: u8 = 0x40, "First address of the axes.";
-    PER_AXIS: u8 = 8, "Addresses of each axis.";
-    MOST_AXES: u8 = MAX_AXES as u8, "Most axes of a build.";
-    QUEUE_SEGMENTS: u8 = QUEUE as u8, "Segments that can wait for an axis, beside the one that runs.";
+    IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "Value of the register IDENTITY.";
+    PROTOCOL_VERSION: u32 = 1, "Version of the protocol to which this register map belongs.";
+    CONTROL_ENABLE: u32 = 1 << 0, "Bit of CONTROL: power the drivers.";
+    CONTROL_STOP: u32 = 1 << 1, "Bit of CONTROL: stop all axes.";
+    AXES_AT: u8 = 0x40, "First address of the axes' registers.";
+    PER_AXIS: u8 = 8, "Number of addresses of each axis.";
+    MOST_AXES: u8 = MAX_AXES as u8, "Greatest number of axes of a build.";
+    QUEUE_SEGMENTS: u8 = QUEUE as u8,
+        "Number of segments that can wait for an axis, in addition to the one that runs.";
 }
 
 /// The address of a register of an axis.
@@ -102,8 +113,13 @@ mod tests {
     fn addresses_are_unique_per_access() {
         for (index, one) in REGISTERS.iter().enumerate() {
             for other in &REGISTERS[..index] {
-                let reads = |register: &Register| register.access == Access::Read;
-                assert!(one.address != other.address || reads(one) != reads(other), "{} {}", one.name, other.name);
+                let reads = |register: &MappedRegister| register.access == RegisterAccess::Read;
+                assert!(
+                    one.address != other.address || reads(one) != reads(other),
+                    "{} {}",
+                    one.name,
+                    other.name
+                );
             }
         }
     }

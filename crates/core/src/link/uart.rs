@@ -58,10 +58,17 @@ impl Uart {
         let bit_clocks = ((2 * clock_hz + asked) / (2 * asked)).clamp(least, most);
         // Compares clock / bit_clocks with the baud rate without a division.
         let off = clock_hz.abs_diff(asked * bit_clocks);
-        if baud == 0 || 100 * u128::from(off) > u128::from(BAUD_PERCENT) * u128::from(asked * bit_clocks) {
+        if baud == 0
+            || 100 * u128::from(off) > u128::from(BAUD_PERCENT) * u128::from(asked * bit_clocks)
+        {
             let slower = clock_hz.div_ceil(asked).clamp(least, most);
             let faster = (clock_hz / asked).clamp(least, most);
-            return Err(BaudError { baud, clock_hz, below: clock_hz / slower, above: clock_hz / faster });
+            return Err(BaudError {
+                baud,
+                clock_hz,
+                below: clock_hz / slower,
+                above: clock_hz / faster,
+            });
         }
         Ok(Self { baud, bit_clocks: bit_clocks as u32 })
     }
@@ -99,9 +106,13 @@ mod tests {
         assert_eq!(clocks(48_000_000, 3_060_000), Ok(16));
         let said = clocks(48_000_000, 3_100_000).unwrap_err().to_string();
         assert!(said.ends_with("the next ones that it makes are 3000000 and 3200000"), "{said}");
-        for (clock_hz, baud) in
-            [(48_000_000, 0), (48_000_000, u32::MAX), (48_000_000, 1), (1, 9600), (12_000_000, 3_000_000)]
-        {
+        for (clock_hz, baud) in [
+            (48_000_000, 0),
+            (48_000_000, u32::MAX),
+            (48_000_000, 1),
+            (1, 9600),
+            (12_000_000, 3_000_000),
+        ] {
             clocks(clock_hz, baud).unwrap_err();
         }
     }

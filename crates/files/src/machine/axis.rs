@@ -5,11 +5,11 @@ use super::{Axis, stop};
 use crate::decimal;
 use crate::did_you_mean;
 use crate::driver::drivers;
-use crate::error::{InputError, Source, quoted};
+use crate::error::{InputError, SourceText, quoted};
 use crate::number::positive;
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, Zero};
-use carrystep_core::build::{MAX_CLOCKS, PinTiming, Timebase};
+use carrystep_core::build::{MAX_CLOCKS, PinTimes, PinTiming, Timebase};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -31,10 +31,15 @@ pub(super) struct RawAxis {
     jerk_limit: Option<Spanned<f64>>,
     stop_accel: Option<Spanned<f64>>,
     driver: Option<Spanned<String>>,
-    step_ns: Option<Spanned<u64>>,
-    gap_ns: Option<Spanned<u64>>,
-    setup_ns: Option<Spanned<u64>>,
-    hold_ns: Option<Spanned<u64>>,
+    // The aliases are the names of the first edition, which files of users contain.
+    #[serde(alias = "step_ns")]
+    step_high_ns: Option<Spanned<u64>>,
+    #[serde(alias = "gap_ns")]
+    step_low_ns: Option<Spanned<u64>>,
+    #[serde(alias = "setup_ns")]
+    dir_setup_ns: Option<Spanned<u64>>,
+    #[serde(alias = "hold_ns")]
+    dir_hold_ns: Option<Spanned<u64>>,
     travel: Option<Spanned<Vec<Spanned<f64>>>>,
     home: Option<Spanned<RawHome>>,
 }
@@ -46,10 +51,18 @@ impl RawAxis {
     }
 
     /// Checks the axis. `table` is the place of its table in the file.
-    pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
+    pub(super) fn check(
+        self,
+        source: &SourceText,
+        table: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic())
+            || !name.chars().all(fit)
+            || name.len() > 32
+        {
             return Err(InputError::at(source, self.name.span(), format!("{:?} cannot name an axis", quoted(&name))).help(
                 "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
             ));
@@ -98,52 +111,70 @@ impl RawAxis {
 
     /// STEP width, gap, set-up and hold, from the driver's preset and the values that override it;
     /// in ns and in clocks.
-    fn pins(&self, source: &Source, timebase: &Timebase) -> Result<([u64; 4], PinTiming), InputError> {
+    fn pins(
+        &self,
+        source: &SourceText,
+        timebase: &Timebase,
+    ) -> Result<(PinTimes, PinTiming), InputError> {
         let preset = match &self.driver {
             None => None,
             Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
                 let known: Vec<&str> = drivers().keys().map(String::as_str).collect();
                 let meant = did_you_mean(name.as_ref(), known.iter().copied());
-                InputError::at(source, name.span(), format!("no driver is called '{}'{meant}", quoted(name.as_ref())))
-                    .help(format!("known: {}; or give step_ns, gap_ns, setup_ns and hold_ns", known.join(", ")))
+                InputError::at(
+                    source,
+                    name.span(),
+                    format!("no driver is called '{}'{meant}", quoted(name.as_ref())),
+                )
+                .help(format!(
+                    "known: {}; or give step_high_ns, step_low_ns, dir_setup_ns and dir_hold_ns",
+                    known.join(", ")
+                ))
             })?),
         };
-        let mut ns = [0; 4];
-        let mut clocks = [0; 4];
-        let rows = [
-            ("step_ns", &self.step_ns, preset.map(|d| d.step_ns)),
-            ("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns)),
-            ("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns)),
-            ("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns)),
-        ];
-        for (slot, (key, given, default)) in rows.into_iter().enumerate() {
-            let Some(value) = given.as_ref().map(|v| *v.as_ref()).or(default) else {
+        // A time in ns and in clocks.
+        let time = |key, given: &Option<Spanned<u64>>, default: Option<u64>| {
+            let Some(ns) = given.as_ref().map(|value| *value.as_ref()).or(default) else {
                 return Err(InputError::at(
                     source,
                     self.name.span(),
                     format!("axis '{}' has no driver and no {key}", self.name.as_ref()),
                 )
-                .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
+                .help("name a driver, or give step_high_ns, step_low_ns, dir_setup_ns and dir_hold_ns"));
             };
-            ns[slot] = value;
             let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
-            let exact = timebase.clocks_for_ns(value);
-            clocks[slot] = u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
-                InputError::at(
-                    source,
-                    span,
-                    format!("{key} = {value} ns is {exact} clocks: the timers count to {}", MAX_CLOCKS - 1),
-                )
+            let exact = timebase.clocks_for_ns(ns);
+            let clocks = u32::try_from(exact).ok().filter(|&clocks| clocks < MAX_CLOCKS);
+            let clocks = clocks.ok_or_else(|| {
+                let most = MAX_CLOCKS - 1;
+                let message =
+                    format!("{key} = {ns} ns is {exact} clocks: the timers count to {most}");
+                InputError::at(source, span, message)
             })?;
-        }
-        Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
+            Ok((ns, clocks))
+        };
+        let (step_high_ns, step_high) =
+            time("step_high_ns", &self.step_high_ns, preset.map(|d| d.step_high_ns))?;
+        let (step_low_ns, step_low) =
+            time("step_low_ns", &self.step_low_ns, preset.map(|d| d.step_low_ns))?;
+        let (dir_setup_ns, dir_setup) =
+            time("dir_setup_ns", &self.dir_setup_ns, preset.map(|d| d.dir_setup_ns))?;
+        let (dir_hold_ns, dir_hold) =
+            time("dir_hold_ns", &self.dir_hold_ns, preset.map(|d| d.dir_hold_ns))?;
+        let times = PinTimes {
+            step_high: step_high_ns,
+            step_low: step_low_ns,
+            dir_setup: dir_setup_ns,
+            dir_hold: dir_hold_ns,
+        };
+        Ok((times, PinTiming { step_high, step_low, dir_setup, dir_hold }))
     }
 }
 
 /// Rejects a limit below a thousandth of a step (per second or its powers). A plan would last
 /// months, and the value would be too coarse in units of 2^-64 step per tick.
 fn not_too_slow(
-    source: &Source,
+    source: &SourceText,
     span: Range<usize>,
     key: &str,
     limit: &BigDecimal,
@@ -162,25 +193,37 @@ fn not_too_slow(
 impl Axis {
     /// Checks the speed limit: below half a step per tick, and with a step period that the driver's
     /// width and gap allow.
-    fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+    fn check_speed(
+        &self,
+        source: &SourceText,
+        span: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<(), InputError> {
         let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
         let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
         if doubled >= 1_000_000_000 {
             let half = self.unit.at_most(0.5e9 / timebase.tick_ns() as f64, 1);
-            return Err(InputError::at(source, span, format!("speed_limit is {limit}: half a step per tick or more"))
-                .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
+            return Err(InputError::at(
+                source,
+                span,
+                format!("speed_limit is {limit}: half a step per tick or more"),
+            )
+            .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
-        let PinTiming { width, gap, .. } = self.pins;
-        let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
+        let PinTiming { step_high, step_low, .. } = self.pins;
+        let clocks =
+            u64::from(step_high) + u64::from(step_low) + u64::from(timebase.clocks_per_phase());
         if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
             let most = self.unit.at_most(timebase.clock_hz() as f64 / clocks as f64, 1);
             return Err(InputError::at(
                 source,
                 span,
-                format!("speed_limit is {limit}: over what the driver's width and gap allow"),
+                format!(
+                    "speed_limit is {limit}: over what the driver's step_high and step_low allow"
+                ),
             )
             .help(format!(
-                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most}",
+                "a pulse takes {step_high} + {step_low} clocks and one phase of {}: at most {most}",
                 timebase.clocks_per_phase()
             )));
         }
@@ -188,7 +231,12 @@ impl Axis {
     }
 
     /// Checks the acceleration limit: below half a step per tick^2, so that A fits its register.
-    fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+    fn check_acceleration(
+        &self,
+        source: &SourceText,
+        span: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
             let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);

@@ -4,11 +4,11 @@
 //! Every time is rounded up. The round is also the interval at which limits are sampled, so the
 //! shortest round is chosen in which all times can be counted.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::not_negative;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{Guard, Limits, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS};
+use carrystep_core::engine::{Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -22,7 +22,7 @@ pub(super) struct RawGuard {
     #[serde(default)]
     estop: Active,
     #[serde(default)]
-    limits: Limits,
+    limits: LimitWiring,
     #[serde(default)]
     limit_level: Active,
     #[serde(default)]
@@ -58,21 +58,45 @@ struct Key {
     can_be_off: bool,
 }
 
-const WATCHDOG: Key = Key { name: "watchdog_ms", unit_ns: 1_000_000, default: 100, most: MAX_ROUNDS, can_be_off: true };
-const ENABLE: Key = Key { name: "enable_ms", unit_ns: 1_000_000, default: 1, most: MAX_ROUNDS, can_be_off: true };
-const DEBOUNCE: Key = Key { name: "debounce_us", unit_ns: 1000, default: 500, most: MAX_LOOKS, can_be_off: false };
+const WATCHDOG: Key = Key {
+    name: "watchdog_ms",
+    unit_ns: 1_000_000,
+    default: 100,
+    most: MAX_ROUNDS,
+    can_be_off: true,
+};
+const ENABLE: Key =
+    Key { name: "enable_ms", unit_ns: 1_000_000, default: 1, most: MAX_ROUNDS, can_be_off: true };
+const DEBOUNCE: Key = Key {
+    name: "debounce_us",
+    unit_ns: 1000,
+    default: 500,
+    most: MAX_DEBOUNCE_SAMPLES,
+    can_be_off: false,
+};
 
 impl RawGuard {
     /// Checks the table. `stop` holds the stop acceleration of each axis.
-    pub(super) fn check(self, source: &Source, timebase: &Timebase, stop: Vec<u64>) -> Result<Guard, InputError> {
-        let time = |key: Key, given: &Option<Spanned<f64>>| Time::new(source, timebase, key, given.as_ref());
+    pub(super) fn check(
+        self,
+        source: &SourceText,
+        timebase: &Timebase,
+        stop: Vec<u64>,
+    ) -> Result<Guard, InputError> {
+        let time = |key: Key, given: &Option<Spanned<f64>>| {
+            Time::new(source, timebase, key, given.as_ref())
+        };
         let watchdog = time(WATCHDOG, &self.watchdog_ms)?;
         let enable = time(ENABLE, &self.enable_ms)?;
         let debounce = time(DEBOUNCE, &self.debounce_us)?;
         // The longest round fits every time, because `Time::new` has checked that.
-        let fits = |round: &u32| [&watchdog, &enable, &debounce].iter().all(|time| time.fits(*round));
-        let round =
-            (1..).map(|power| 1 << power).take_while(|&round| round < MAX_ROUND).find(fits).unwrap_or(MAX_ROUND);
+        let fits =
+            |round: &u32| [&watchdog, &enable, &debounce].iter().all(|time| time.fits(*round));
+        let round = (1..)
+            .map(|power| 1 << power)
+            .take_while(|&round| round < MAX_ROUND)
+            .find(fits)
+            .unwrap_or(MAX_ROUND);
         Ok(Guard {
             round,
             debounce: debounce.rounds(round),
@@ -95,9 +119,15 @@ struct Time {
 }
 
 impl Time {
-    fn new(source: &Source, timebase: &Timebase, key: Key, given: Option<&Spanned<f64>>) -> Result<Self, InputError> {
+    fn new(
+        source: &SourceText,
+        timebase: &Timebase,
+        key: Key,
+        given: Option<&Spanned<f64>>,
+    ) -> Result<Self, InputError> {
         let unit = BigDecimal::from(key.unit_ns);
-        let most = BigDecimal::from(u64::from(key.most - 1) * u64::from(MAX_ROUND) * timebase.tick_ns());
+        let most =
+            BigDecimal::from(u64::from(key.most - 1) * u64::from(MAX_ROUND) * timebase.tick_ns());
         let Some(given) = given else {
             let ns = (unit * BigDecimal::from(key.default)).min(most);
             return Ok(Self { key, ns, tick_ns: timebase.tick_ns() });
@@ -106,7 +136,11 @@ impl Time {
         let ns = &value * &unit;
         if ns > most {
             let most = (most / unit).normalized();
-            let says = format!("{} = {value}: with ticks of {} ns at most {most}", key.name, timebase.tick_ns());
+            let says = format!(
+                "{} = {value}: with ticks of {} ns at most {most}",
+                key.name,
+                timebase.tick_ns()
+            );
             let off = if key.can_be_off { ", or 0 for none" } else { "" };
             return Err(InputError::at(source, given.span(), format!("{says} can be counted"))
                 .help(format!("take a shorter time or a longer tick{off}")));

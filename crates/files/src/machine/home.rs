@@ -6,11 +6,11 @@
 
 use super::{Axis, stop};
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, ToPrimitive};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{Guard, Limits};
+use carrystep_core::engine::{Guard, LimitWiring};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
@@ -66,7 +66,10 @@ pub struct Home {
 
 /// The `home = { ... }` table as it is written.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table, as in home = { toward = \"min\", seek_speed = 20 }")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table, as in home = { toward = \"min\", seek_speed = 20 }"
+)]
 pub(super) struct RawHome {
     toward: End,
     seek_speed: Spanned<f64>,
@@ -85,7 +88,7 @@ pub(super) struct RawPlace {
 
 /// Sets travel and homing of each axis, and returns the homing order as numbers of axes.
 pub(super) fn check(
-    source: &Source,
+    source: &SourceText,
     timebase: &Timebase,
     guard: &Guard,
     axes: &mut [Axis],
@@ -95,9 +98,11 @@ pub(super) fn check(
     for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
         axis.travel = travel.map(|travel| travel::of(source, axis, &travel)).transpose()?;
         let Some(home) = home else { continue };
-        if guard.limits == Limits::None {
-            let message =
-                format!("axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"", axis.name);
+        if guard.limits == LimitWiring::None {
+            let message = format!(
+                "axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"",
+                axis.name
+            );
             return Err(InputError::at(source, home.span(), message)
                 .help("limits = \"pair\", \"each\" or \"one\" says how the switches are wired"));
         }
@@ -113,7 +118,7 @@ pub(super) fn check(
 
 /// A home table while it is checked, with everything that the checks depend on.
 struct Checked<'a> {
-    source: &'a Source,
+    source: &'a SourceText,
     timebase: &'a Timebase,
     guard: &'a Guard,
     axis: &'a Axis,
@@ -124,10 +129,12 @@ impl Checked<'_> {
     fn home(&self, raw: &RawHome) -> Result<Home, InputError> {
         let accel = stop::at_the_limit(&self.axis.accel_limit, self.timebase);
         let start = per_tick(&self.axis.start_speed, self.timebase);
-        let seek = self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit, "speed_limit")?;
-        let limit = positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
+        let seek =
+            self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit, "speed_limit")?;
+        let limit =
+            positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
         let slow = self.speed(&raw.slow_speed, "slow_speed", &limit, "seek_speed")?;
-        self.looks_often_enough(raw, slow)?;
+        self.is_sampled_often_enough(raw, slow)?;
         let move_off = match &raw.move_off {
             Some(value) => self.distance(value, "move_off")?,
             None => self.usual_move_off()?,
@@ -150,16 +157,29 @@ impl Checked<'_> {
         };
         if max_travel <= move_off {
             let span = raw.max_travel.as_ref().map_or_else(|| self.span.clone(), Spanned::span);
-            let [far, off] = [max_travel, move_off].map(|steps| self.axis.unit.both(f64::from(steps), 0));
+            let [far, off] =
+                [max_travel, move_off].map(|steps| self.axis.unit.both(f64::from(steps), 0));
             let message = format!("max_travel is {far}: not over move_off, which is {off}");
             return Err(InputError::at(self.source, span, message)
                 .help("the search first goes back over what the axis has moved off"));
         }
-        for (value, speed, steps) in [(&raw.seek_speed, seek, max_travel), (&raw.slow_speed, slow, move_off * 2)] {
+        for (value, speed, steps) in
+            [(&raw.seek_speed, seek, max_travel), (&raw.slow_speed, slow, move_off * 2)]
+        {
             self.ends(value, u128::from(steps) << 64, speed, accel)?;
         }
         let position = self.position(raw, pull_off)?;
-        Ok(Home { toward: raw.toward, start, accel, seek, slow, move_off, max_travel, pull_off, position })
+        Ok(Home {
+            toward: raw.toward,
+            start,
+            accel,
+            seek,
+            slow,
+            move_off,
+            max_travel,
+            pull_off,
+            position,
+        })
     }
 
     /// Makes an error at a number of the table.
@@ -173,11 +193,19 @@ impl Checked<'_> {
 
     /// Converts a speed of the file to 2^-64 step per tick. It must not exceed `most`, in steps/s,
     /// which the message calls `of`.
-    fn speed(&self, value: &Spanned<f64>, key: &str, most: &BigDecimal, of: &str) -> Result<u64, InputError> {
+    fn speed(
+        &self,
+        value: &Spanned<f64>,
+        key: &str,
+        most: &BigDecimal,
+        of: &str,
+    ) -> Result<u64, InputError> {
         let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
         if steps > *most {
             let most = self.axis.unit.at_most(decimal::to_f64(most), 1);
-            return Err(self.at(value, format!("{key} is over {of}")).help(format!("at most {most}")));
+            return Err(self
+                .at(value, format!("{key} is over {of}"))
+                .help(format!("at most {most}")));
         }
         let speed = per_tick(&steps, self.timebase);
         if speed == 0 {
@@ -205,22 +233,27 @@ impl Checked<'_> {
             self.span.clone(),
             format!("the home table of axis '{}' has no {key}", self.axis.name),
         )
-        .help(format!("give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"))
+        .help(format!(
+            "give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"
+        ))
     }
 
     /// Default of `move_off`, steps: the distance by which a limit stop from full speed overruns
     /// the switch, plus a hundredth of the travel.
     fn usual_move_off(&self) -> Result<u32, InputError> {
         let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
-        let full = overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
+        let full =
+            overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
         let steps = full.saturating_add((high - low).unsigned_abs().div_ceil(100));
         match u32::try_from(steps) {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),
             _ => {
                 let far = self.axis.unit.both(steps as f64, 0);
-                let message =
-                    format!("move_off would be {far}, from speed_limit and stop_accel: over half of the travel");
-                Err(InputError::at(self.source, self.span.clone(), message).help("give move_off in the home table"))
+                let message = format!(
+                    "move_off would be {far}, from speed_limit and stop_accel: over half of the travel"
+                );
+                Err(InputError::at(self.source, self.span.clone(), message)
+                    .help("give move_off in the home table"))
             }
         }
     }
@@ -238,46 +271,57 @@ impl Checked<'_> {
             self.axis.unit.both(f64::from(move_off), 0),
             self.axis.unit.both((least - 1) as f64, 0)
         );
-        let help = format!("{}, and the travel of the switch; or a slower seek_speed", self.at_least(least));
+        let help = format!(
+            "{}, and the travel of the switch; or a slower seek_speed",
+            self.at_least(least)
+        );
         Err(InputError::at(self.source, span, message).help(help))
     }
 
     /// Checks the speed of the approach. A limit is sampled once per round, and the axis must move
     /// at most one step between two samples; otherwise two homing runs could differ by more than
     /// one step.
-    fn looks_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
+    fn is_sampled_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
         let ticks = u128::from(self.guard.round) + 2;
         if u128::from(slow) * ticks <= 1 << 64 {
             return Ok(());
         }
         let seconds = ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
         let most = self.axis.unit.at_most(1.0 / seconds, 1);
-        let message =
-            "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
+        let message = "slow_speed is over a step between two samples of the switch: two homes could differ by more than a step";
         Err(self.at(&raw.slow_speed, message).help(format!(
             "at most {most}; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
-             a limit is looked at"
+             a limit is sampled"
         )))
     }
 
     /// Checks that a search at this speed ends within the ticks that a segment can count.
-    fn ends(&self, value: &Spanned<f64>, units: u128, speed: u64, accel: u64) -> Result<(), InputError> {
+    fn ends(
+        &self,
+        value: &Spanned<f64>,
+        units: u128,
+        speed: u64,
+        accel: u64,
+    ) -> Result<(), InputError> {
         let ticks = units / u128::from(speed) + u128::from(speed / accel);
         if ticks <= MOST_TICKS {
             return Ok(());
         }
         let seconds = |ticks: u128| ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
         let message = format!("at this speed the search takes up to {:.0} s", seconds(ticks));
-        Err(self.at(value, message).help(format!("at most {:.0} s can be counted", seconds(MOST_TICKS))))
+        Err(self
+            .at(value, message)
+            .help(format!("at most {:.0} s can be counted", seconds(MOST_TICKS))))
     }
 
     /// Machine coordinate of the switch, steps. The switch and the place where the axis rests must
     /// lie within the travel.
     fn position(&self, raw: &RawHome, pull_off: u32) -> Result<i64, InputError> {
         let steps = exact(self.source, &raw.position, "position")? * &self.axis.steps_per_unit;
-        let position = decimal::round_half_away(&steps)
-            .filter(|steps| steps.abs() <= MOST_STEPS)
-            .ok_or_else(|| self.at(&raw.position, format!("position is over {MOST_STEPS} steps from zero")))?;
+        let position =
+            decimal::round_half_away(&steps).filter(|steps| steps.abs() <= MOST_STEPS).ok_or_else(
+                || self.at(&raw.position, format!("position is over {MOST_STEPS} steps from zero")),
+            )?;
         let Some([low, high]) = self.axis.travel else { return Ok(position) };
         if !(low..=high).contains(&position) {
             return Err(self.at(&raw.position, "position is outside of travel"));

@@ -1,6 +1,6 @@
 //! `[machine.link]`: the line between the gateware and its host.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use carrystep_core::build::Timebase;
 use carrystep_core::link::{DEFAULT_BAUD, Uart};
 use serde::Deserialize;
@@ -16,7 +16,7 @@ pub(super) struct RawLink {
 
 impl RawLink {
     /// Whether the line is an SPI. An SPI has no baud rate; giving one is an error.
-    pub(super) fn spi(&self, source: &Source) -> Result<bool, InputError> {
+    pub(super) fn spi(&self, source: &SourceText) -> Result<bool, InputError> {
         match (&self.spi, &self.baud) {
             (Some(spi), Some(_)) if *spi.as_ref() => Err(InputError::at(
                 source,
@@ -28,7 +28,7 @@ impl RawLink {
     }
 
     /// The baud rate, bits per second. If the file gives it, the clock must be able to make it.
-    pub(super) fn baud(&self, source: &Source, timebase: &Timebase) -> Result<u32, InputError> {
+    pub(super) fn baud(&self, source: &SourceText, timebase: &Timebase) -> Result<u32, InputError> {
         let Some(baud) = &self.baud else { return Ok(DEFAULT_BAUD) };
         Uart::new(timebase.clock_hz(), *baud.as_ref())
             .map(Uart::baud)

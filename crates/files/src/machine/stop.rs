@@ -2,7 +2,7 @@
 //! subtracts from V in each tick.
 
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::positive;
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
@@ -15,7 +15,7 @@ const MOST: u64 = 1 << 62;
 
 /// Converts a stop acceleration of the file, in units/s^2.
 pub(super) fn units(
-    source: &Source,
+    source: &SourceText,
     value: &Spanned<f64>,
     steps_per_unit: &BigDecimal,
     unit: &Unit,
@@ -28,13 +28,17 @@ pub(super) fn units(
         return Ok(fine);
     }
     let given = unit.both(decimal::to_f64(&exact), 2);
-    Err(InputError::at(source, value.span(), format!("stop_accel is {given}: not from 2^-64 to 1/4 step per tick^2"))
-        .help(format!(
-            "with ticks of {} ns from {} to {} can be counted",
-            timebase.tick_ns(),
-            unit.both(timebase.steps_per_s2(least), 2),
-            unit.at_most(timebase.steps_per_s2(most), 2)
-        )))
+    Err(InputError::at(
+        source,
+        value.span(),
+        format!("stop_accel is {given}: not from 2^-64 to 1/4 step per tick^2"),
+    )
+    .help(format!(
+        "with ticks of {} ns from {} to {} can be counted",
+        timebase.tick_ns(),
+        unit.both(timebase.steps_per_s2(least), 2),
+        unit.at_most(timebase.steps_per_s2(most), 2)
+    )))
 }
 
 /// The stop acceleration of a file that gives none: the axis' acceleration limit in steps/s^2, at

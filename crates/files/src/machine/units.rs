@@ -3,7 +3,7 @@
 
 use super::axis::RawAxis;
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::{not_negative, positive};
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, RoundingMode, Signed};
@@ -16,8 +16,7 @@ const PLACES: i64 = 60;
 /// Greatest number of characters in the name of a unit.
 const LONGEST_NAME: usize = 12;
 
-const MECHANICS: &str =
-    "give steps_per_unit, or lead (units that one turn of the motor moves), steps_per_rev and microsteps";
+const MECHANICS: &str = "give steps_per_unit, or lead (units that one turn of the motor moves), steps_per_rev and microsteps";
 
 /// A speed of the file, in steps/s, and its place.
 pub(super) struct Speed {
@@ -34,7 +33,11 @@ impl RawAxis {
     ///
     /// A quotient that is not a finite decimal is rounded up at its 60th decimal. A target of
     /// exactly half a step therefore stays at or above the half and rounds as the fraction would.
-    pub(super) fn steps_per_unit(&self, source: &Source, table: Range<usize>) -> Result<BigDecimal, InputError> {
+    pub(super) fn steps_per_unit(
+        &self,
+        source: &SourceText,
+        table: Range<usize>,
+    ) -> Result<BigDecimal, InputError> {
         let turns = [
             ("lead", self.lead.as_ref().map(Spanned::span)),
             ("steps_per_rev", self.steps_per_rev.as_ref().map(Spanned::span)),
@@ -67,7 +70,11 @@ impl RawAxis {
     }
 
     /// The unit in which the axis is displayed.
-    pub(super) fn unit(&self, source: &Source, steps_per_unit: &BigDecimal) -> Result<Unit, InputError> {
+    pub(super) fn unit(
+        &self,
+        source: &SourceText,
+        steps_per_unit: &BigDecimal,
+    ) -> Result<Unit, InputError> {
         let name = self.unit.as_ref().map(|name| name.as_ref().as_str());
         let fits = |c: char| c.is_alphanumeric() || "°'\"%_".contains(c);
         if let (Some(text), Some(span)) = (name, self.unit.as_ref().map(Spanned::span))
@@ -82,30 +89,35 @@ impl RawAxis {
 
     pub(super) fn speed_limit(
         &self,
-        source: &Source,
+        source: &SourceText,
         table: Range<usize>,
         scale: &BigDecimal,
     ) -> Result<Speed, InputError> {
         let keys = ("speed_limit", "speed_limit_per_min");
-        let found = speed(source, keys, (&self.speed_limit, &self.speed_limit_per_min), positive, scale)?;
+        let found =
+            speed(source, keys, (&self.speed_limit, &self.speed_limit_per_min), positive, scale)?;
         found.ok_or_else(|| {
             InputError::at(source, table, "missing field `speed_limit`")
                 .help("give speed_limit in units/s, or speed_limit_per_min in units/min")
         })
     }
 
-    pub(super) fn start_speed(&self, source: &Source, scale: &BigDecimal) -> Result<Option<Speed>, InputError> {
+    pub(super) fn start_speed(
+        &self,
+        source: &SourceText,
+        scale: &BigDecimal,
+    ) -> Result<Option<Speed>, InputError> {
         let keys = ("start_speed", "start_speed_per_min");
         speed(source, keys, (&self.start_speed, &self.start_speed_per_min), not_negative, scale)
     }
 }
 
-type Reader = fn(&Source, &Spanned<f64>, &str) -> Result<BigDecimal, InputError>;
+type Reader = fn(&SourceText, &Spanned<f64>, &str) -> Result<BigDecimal, InputError>;
 type Number = Option<Spanned<f64>>;
 
 /// A speed per second or per minute, converted to steps/s.
 fn speed(
-    source: &Source,
+    source: &SourceText,
     keys: (&'static str, &'static str),
     (per_s, per_min): (&Number, &Number),
     read: Reader,
@@ -119,7 +131,9 @@ fn speed(
         }
         (None, Some(value)) => {
             let per_minute = read(source, value, keys.1)? * steps_per_unit;
-            let steps = (per_minute / BigDecimal::from(60)).with_scale_round(PLACES, RoundingMode::Down).normalized();
+            let steps = (per_minute / BigDecimal::from(60))
+                .with_scale_round(PLACES, RoundingMode::Down)
+                .normalized();
             Ok(Some(Speed { steps, span: value.span(), key: keys.1 }))
         }
         (Some(_), Some(value)) => {
@@ -131,7 +145,7 @@ fn speed(
 }
 
 /// A whole number greater than zero.
-fn whole(source: &Source, value: &Spanned<u32>, key: &str) -> Result<BigDecimal, InputError> {
+fn whole(source: &SourceText, value: &Spanned<u32>, key: &str) -> Result<BigDecimal, InputError> {
     let exact = BigDecimal::from(*value.as_ref());
     if exact.is_positive() {
         return Ok(exact);

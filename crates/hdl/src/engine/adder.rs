@@ -25,6 +25,14 @@
 //! is time: one tick of one axis takes 13 clocks, where [`crate::parallel::axis`] takes one clock
 //! and three adders of 64 bits.
 
+use super::layout::{
+    BEAT_BISECT_1, BEAT_BISECT_2, BEAT_BISECT_3, BEAT_LOAD_A_HIGH, BEAT_LOAD_A_LOW,
+    BEAT_LOAD_J_HIGH, BEAT_LOAD_J_LOW, BEAT_LOAD_P_HIGH, BEAT_LOAD_P_LOW, BEAT_LOAD_POSITION,
+    BEAT_LOAD_TICKS, BEAT_LOAD_V_HIGH, BEAT_LOAD_V_LOW, BEAT_PHASE, BEAT_PUT, BEAT_SUM_P_HIGH,
+    BEAT_SUM_P_LOW, BEAT_SUM_PUT, BEAT_SUM_TICKS, BEAT_WRITE_A_LOW, BEAT_WRITE_P_LOW,
+    BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW, WIDE_SUM, WIDE_TOP, WORD_LOWEST,
+    WORD_SIGN,
+};
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -35,7 +43,7 @@ use rust_hdl::prelude::*;
 pub struct Adder {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The word that the memory returns.
     pub word: Input<Word<32>>,
@@ -52,6 +60,8 @@ pub struct Adder {
     pub down: Input<Bit>,
     /// The sums that replace P are zero.
     pub wipe: Input<Bit>,
+    /// A reset: the sum that replaces the discarded steps is zero.
+    pub forgets: Input<Bit>,
     /// The sum of the beat before.
     pub sum: Signal<Out, Word<32>>,
     /// From beat 8: the running segment ends with this tick.
@@ -141,32 +151,33 @@ impl Logic for Adder {
         );
 
         // Operand A is loaded from memory, in beat 7 from the host.
-        if self.beat.val().get_bit(1)
-            | self.beat.val().get_bit(4)
-            | self.beat.val().get_bit(5)
-            | self.beat.val().get_bit(6)
-            | self.beat.val().get_bit(8)
-            | self.beat.val().get_bit(10)
+        if self.beat.val().get_bit(BEAT_LOAD_A_LOW)
+            | self.beat.val().get_bit(BEAT_LOAD_P_LOW)
+            | self.beat.val().get_bit(BEAT_LOAD_TICKS)
+            | self.beat.val().get_bit(BEAT_LOAD_POSITION)
+            | self.beat.val().get_bit(BEAT_LOAD_A_HIGH)
+            | self.beat.val().get_bit(BEAT_LOAD_P_HIGH)
         {
             self.a.d.next = self.word.val();
         }
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_PUT) {
             self.a.d.next = self.put.val();
         }
 
         // Operand B is loaded from memory, set to -1 or 0 for counting, or halved for the
         // bisection.
-        self.counting.next = self.beat.val().get_bit(5) | self.beat.val().get_bit(6);
-        self.ones_in.next =
-            (self.beat.val().get_bit(5) & self.counts.val()) | (self.beat.val().get_bit(6) & !self.up.val());
-        self.load.next = self.beat.val().get_bit(2)
-            | self.beat.val().get_bit(3)
-            | self.beat.val().get_bit(7)
-            | self.beat.val().get_bit(9);
-        self.halve.next = self.beat.val().get_bit(11)
-            | self.beat.val().get_bit(12)
-            | self.beat.val().get_bit(13)
-            | self.beat.val().get_bit(14);
+        self.counting.next =
+            self.beat.val().get_bit(BEAT_LOAD_TICKS) | self.beat.val().get_bit(BEAT_LOAD_POSITION);
+        self.ones_in.next = (self.beat.val().get_bit(BEAT_LOAD_TICKS) & self.counts.val())
+            | (self.beat.val().get_bit(BEAT_LOAD_POSITION) & !self.up.val());
+        self.load.next = self.beat.val().get_bit(BEAT_LOAD_J_LOW)
+            | self.beat.val().get_bit(BEAT_LOAD_V_LOW)
+            | self.beat.val().get_bit(BEAT_LOAD_J_HIGH)
+            | self.beat.val().get_bit(BEAT_LOAD_V_HIGH);
+        self.halve.next = self.beat.val().get_bit(BEAT_SUM_P_HIGH)
+            | self.beat.val().get_bit(BEAT_BISECT_1)
+            | self.beat.val().get_bit(BEAT_BISECT_2)
+            | self.beat.val().get_bit(BEAT_BISECT_3);
         self.half.next = (self.b.q.val() >> self.by_one.val()) | (self.b.q.val() & self.sign.val());
         if self.ones_in.val() {
             self.b.d.next = self.ones.val();
@@ -178,7 +189,9 @@ impl Logic for Adder {
             self.b.d.next = self.half.val();
         }
         // 1 if the bisection continues in the next beat.
-        self.halves_on.next = self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
+        self.halves_on.next = self.beat.val().get_bit(BEAT_BISECT_1)
+            | self.beat.val().get_bit(BEAT_BISECT_2)
+            | self.beat.val().get_bit(BEAT_BISECT_3);
         self.bisects.d.next = self.halves_on.val();
 
         // Operand X is A, or in the bisection R or the complement of R.
@@ -192,11 +205,13 @@ impl Logic for Adder {
         }
 
         // The sum. A carry enters as 1 + 1 in an additional bit below the lowest.
-        self.carry_due.next = (self.beat.val().get_bit(5) & self.lost.val())
-            | (self.beat.val().get_bit(6) & !self.down.val())
-            | ((self.beat.val().get_bit(8) | self.beat.val().get_bit(9) | self.beat.val().get_bit(10))
+        self.carry_due.next = (self.beat.val().get_bit(BEAT_LOAD_TICKS) & self.lost.val())
+            | (self.beat.val().get_bit(BEAT_LOAD_POSITION) & !self.down.val())
+            | ((self.beat.val().get_bit(BEAT_LOAD_A_HIGH)
+                | self.beat.val().get_bit(BEAT_LOAD_V_HIGH)
+                | self.beat.val().get_bit(BEAT_LOAD_P_HIGH))
                 & self.carry_2.q.val());
-        self.odd.next = self.halves_on.val() & self.b.q.val().get_bit(0);
+        self.odd.next = self.halves_on.val() & self.b.q.val().get_bit(WORD_LOWEST);
         self.odd_beyond.next = self.odd.val() & self.bisects.q.val() & self.crosses_now.val();
         self.carry_if_not.d.next = self.carry_due.val() | self.odd_beyond.val();
         self.carry_if_top.d.next = self.carry_due.val() | (self.odd.val() & !self.odd_beyond.val());
@@ -209,28 +224,31 @@ impl Logic for Adder {
             self.low.next = self.carry.val();
         }
         self.extended.next = bit_cast::<33, 32>(self.b.q.val());
-        if self.b.q.val().get_bit(31) {
+        if self.b.q.val().get_bit(WORD_SIGN) {
             self.extended.next = bit_cast::<33, 32>(self.b.q.val()) | self.above.val();
         }
-        self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val()) | self.carry.val())
+        self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val())
+            | self.carry.val())
             + ((bit_cast::<34, 33>(self.extended.val()) << self.by_one.val()) | self.low.val());
-        self.wiping.next = self.wipe.val() & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11));
-        self.r.d.next = self.wide.val().get_bits::<32>(1);
-        if self.beat.val().get_bit(8) {
+        self.wiping.next = (self.wipe.val()
+            & (self.beat.val().get_bit(BEAT_SUM_P_LOW) | self.beat.val().get_bit(BEAT_SUM_P_HIGH)))
+            | (self.forgets.val() & self.beat.val().get_bit(BEAT_SUM_TICKS));
+        self.r.d.next = self.wide.val().get_bits::<32>(WIDE_SUM);
+        if self.beat.val().get_bit(BEAT_SUM_PUT) {
             self.r.d.next = self.x.val();
         }
         if self.wiping.val() {
             self.r.d.next = self.nothing.val();
         }
-        self.top.d.next = self.wide.val().get_bit(33);
+        self.top.d.next = self.wide.val().get_bit(WIDE_TOP);
         // The carry of a low half is known one beat later: it is the top bit of the sum without the
         // sign extension of B. The high halves use these carries one per beat.
-        self.sign_of_b.d.next = self.b.q.val().get_bit(31);
-        if self.beat.val().get_bit(4)
-            | self.beat.val().get_bit(5)
-            | self.beat.val().get_bit(6)
-            | self.beat.val().get_bit(8)
-            | self.beat.val().get_bit(9)
+        self.sign_of_b.d.next = self.b.q.val().get_bit(WORD_SIGN);
+        if self.beat.val().get_bit(BEAT_WRITE_A_LOW)
+            | self.beat.val().get_bit(BEAT_WRITE_V_LOW)
+            | self.beat.val().get_bit(BEAT_WRITE_P_LOW)
+            | self.beat.val().get_bit(BEAT_LOAD_A_HIGH)
+            | self.beat.val().get_bit(BEAT_LOAD_V_HIGH)
         {
             self.carry_0.d.next = self.top.q.val() ^ self.sign_of_b.q.val();
             self.carry_1.d.next = self.carry_0.q.val();
@@ -238,32 +256,36 @@ impl Logic for Adder {
         }
 
         // The flags: the end of the segment, and the range and sign of V.
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_WRITE_TICKS) {
             self.over.d.next = self.top.q.val();
         }
-        self.sign_of_a.d.next = self.a.q.val().get_bit(31);
-        if self.beat.val().get_bit(11) {
-            self.unfit.d.next = self.r.q.val().get_bit(31) ^ self.top.q.val() ^ self.sign_of_a.q.val();
-            self.other.d.next = self.r.q.val().get_bit(31) ^ self.b.q.val().get_bit(31);
+        self.sign_of_a.d.next = self.a.q.val().get_bit(WORD_SIGN);
+        if self.beat.val().get_bit(BEAT_WRITE_V_HIGH) {
+            self.unfit.d.next =
+                self.r.q.val().get_bit(WORD_SIGN) ^ self.top.q.val() ^ self.sign_of_a.q.val();
+            self.other.d.next =
+                self.r.q.val().get_bit(WORD_SIGN) ^ self.b.q.val().get_bit(WORD_SIGN);
         }
         self.empty.next = !(self.b.q.val() & !self.sign.val()).any();
-        if self.beat.val().get_bit(5) {
-            self.low_zero.d.next = self.empty.val() & !self.b.q.val().get_bit(31);
+        if self.beat.val().get_bit(BEAT_SUM_P_LOW) {
+            self.low_zero.d.next = self.empty.val() & !self.b.q.val().get_bit(WORD_SIGN);
         }
-        if self.beat.val().get_bit(11) {
-            self.minus.d.next = self.b.q.val().get_bit(31);
-            self.zero.d.next = self.low_zero.q.val() & self.empty.val() & !self.b.q.val().get_bit(31);
-            self.bound.d.next = self.low_zero.q.val() & self.empty.val() & self.b.q.val().get_bit(31);
+        if self.beat.val().get_bit(BEAT_SUM_P_HIGH) {
+            self.minus.d.next = self.b.q.val().get_bit(WORD_SIGN);
+            self.zero.d.next =
+                self.low_zero.q.val() & self.empty.val() & !self.b.q.val().get_bit(WORD_SIGN);
+            self.bound.d.next =
+                self.low_zero.q.val() & self.empty.val() & self.b.q.val().get_bit(WORD_SIGN);
         }
 
         // The phase: a part of V that does not carry sets its bit.
-        if self.beat.val().get_bit(12) {
+        if self.beat.val().get_bit(BEAT_BISECT_1) {
             self.crossed.d.next = false;
         }
         if self.bisects.q.val() {
             self.crossed.d.next = self.crosses_now.val();
         }
-        if self.bisects.q.val() | self.beat.val().get_bit(16) {
+        if self.bisects.q.val() | self.beat.val().get_bit(BEAT_PHASE) {
             self.bits.d.next = self.bits.q.val() << self.by_one.val();
             if !self.crosses_now.val() {
                 self.bits.d.next = (self.bits.q.val() << self.by_one.val()) | self.q_bit.val();

@@ -1,11 +1,18 @@
-// The engine beside the parallel axes: the same two segments an axis, the same STEP and DIR in every clock.
+// Compares the engine with the parallel axes: given the same two segments per axis, both drive the
+// same STEP and DIR in every clock.
 //
-//   from outside   AXES; CLOCKS in a tick, PHASES in a tick; TICKS_1 and TICKS_2 of the segments;
-//                  FREE, the bits of V, A and J that may be anything, the others are 0; both exported cores, whole
-//   assumed        nothing
+//   parameters   AXES: number of axes
+//                CLOCKS, PHASES: clocks and phases in a tick
+//                TICKS_1, TICKS_2: ticks of the two segments
+//                FREE: a mask of the bits of V, A and J that may have any value; the others are 0
+//                Both cores are exported as a whole.
+//   assumptions  none
 //
-// Both hosts put all segments, then start all axes on one tick. The second segment is the last. Ports that are
-// not named here stand at 0. A fault of the axes ends the comparison: the engine has to stop too, in its own way.
+// Both hosts offer the same segments, and each starts all axes on one tick. The second segment is
+// marked as the last of its move. Ports that are not connected here are 0.
+//
+// A fault of the parallel axes ends the comparison, because the engine stops in a different way.
+// The engine must then also stop, within a tick.
 
 module promises (
     input wire clock
@@ -13,16 +20,16 @@ module promises (
     localparam [31:0] TICKS_1 = `TICKS_1, TICKS_2 = `TICKS_2, CLOCKS = `CLOCKS, PHASE_CLOCKS = CLOCKS / `PHASES;
     localparam [3:0] SEGMENTS = 2 * `AXES;
 
-    // ---- Any V, A and J: of segment 1 of each axis, then of segment 2.
+    // ---- Any V, A and J: first those of segment 1 of each axis, then those of segment 2.
 
     (* anyconst *) reg [SEGMENTS*192-1:0] any;
     wire [SEGMENTS*192-1:0] numbers = any & {3 * SEGMENTS{64'd0 | `FREE}};
 
     integer i;
 
-    // ---- The engine's host: a word of each axis in a tick.
+    // ---- The engine's host, which puts one word of each axis in each tick.
 
-    reg [5:0] put = 0;               // segment, word
+    reg [5:0] put = 0;               // bit 3: the segment; bits 2 to 0: the word of the segment
     reg [2:0] put_axis = 0;
     wire all_put = put[4];
     reg start = 0, begun = 0;
@@ -45,7 +52,8 @@ module promises (
         if (start && start_ready) begun <= 1;
     end
 
-    // ---- The axes' host: a segment an axis waits, the next is put when it runs.
+    // ---- The host of the parallel axes. An axis can hold one waiting segment; so the host offers
+    // its second segment while the first one runs.
 
     reg [3:0] given = 0;
     reg asks = 0;
@@ -62,7 +70,7 @@ module promises (
         asks <= start && start_ready && !begun || asks && !axes_start_ready;
     end
 
-    // ---- Both.
+    // ---- Both cores.
 
     wire [`AXES-1:0] step, dir;
     wire [5:0] axes_step, axes_dir;
@@ -79,7 +87,7 @@ module promises (
         .clear(1'b0), .step(axes_step), .dir(axes_dir), .idle(axes_idle), .fault(axes_fault), .started(axes_started)
     );
 
-    // ---- They are the same.
+    // ---- The assertions: both cores behave in the same way.
 
     wire same = !axes_fault;
     always_comb begin
@@ -90,7 +98,8 @@ module promises (
         equal_stops: assert (faulty <= CLOCKS || fault);
     end
 
-    // ---- None of it is empty: where the clocks are in the tick, and the ticks in the move.
+    // ---- Covers: some run reaches each of these situations. `at` is the clock within the tick,
+    // and `tick` is the tick within the move.
 
     reg [31:0] at = 0, tick = 0, faulty = 0;
     reg [`AXES-1:0] was_step = 0, was_dir = 0, forward = 0, backward = 0;
@@ -105,14 +114,15 @@ module promises (
         forward <= forward | rises & ~dir;
         backward <= backward | rises & dir;
     end
-    // Two ticks after it was worked out, in the clock after its phase begins.
+    // STEP rises two ticks after the tick in which the step is computed, one clock after its phase
+    // has begun.
     wire [31:0] of_tick = tick - 2;
     wire in_order = rises != 0 && at % PHASE_CLOCKS == 1;
 
     always_comb begin
         cover_each_forward_and_back: cover (forward == {`AXES{1'b1}} && backward == forward);
         cover_last_phase: cover (in_order && at / PHASE_CLOCKS == `PHASES - 1);
-        cover_turn_inside: cover (same && dir != was_dir && of_tick == TICKS_1 + 2);
+        cover_dir_change_inside: cover (same && dir != was_dir && of_tick == TICKS_1 + 2);
         cover_step_behind_the_boundary: cover (rises != 0 && of_tick == TICKS_1 + 1);
         cover_step_of_last_tick: cover (in_order && of_tick == TICKS_1 + TICKS_2);
         cover_all_over: cover (same && tick > TICKS_1 + TICKS_2 + 2 && axes_idle && forward != 0);

@@ -1,9 +1,12 @@
-// The engine: what its parts may count on, and promises 5, 6, 8, 12, 13 and 14 on its own ports. Without bound.
+// Proves promises 5, 6, 8, 12, 13 and 14 on the ports of the engine, and what the proofs of its
+// modules assume, without a bound on time.
 //
-//   from outside   AXES; CLOCKS in a tick, PHASES in a tick; `DUT, the exported engine, whole
-//   assumed        nothing
+//   parameters   AXES: number of axes
+//                CLOCKS, PHASES: clocks and phases in a tick
+//                `DUT: the name of the exported engine, which is proved as a whole
+//   assumptions  none
 //
-// What is said of an axis is said of one, `who`, which may be any.
+// Statements about an axis are about one axis, `who`; the solver may choose any.
 
 module promises (
     input wire clock,
@@ -14,6 +17,7 @@ module promises (
     input wire start_valid,
     input wire [`AXES-1:0] start_mask,
     input wire clear,
+    input wire reset,
     input wire stop,
     input wire broken,
     input wire home_valid,
@@ -26,10 +30,10 @@ module promises (
     input wire [2:0] get_axis,
     input wire [1:0] get_item
 );
-    localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TURN = 13, TURNS = TURN * `AXES;
+    localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * `AXES;
     (* anyconst *) reg [2:0] who;
 
-    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, armed, ready, started;
+    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
     wire [31:0] get_data;
     wire [`AXES-1:0] step, dir, culprits, homing;
     wire [2:0] latch_axis, room, cause;
@@ -39,38 +43,45 @@ module promises (
         assume (who < `AXES);
     end
 
-    // What the memory of the segments gives does not matter here: any word in any clock.
+    // The words that the memory of the segments delivers do not matter here: the solver may choose
+    // any word in any clock.
     // (* free = "dut.store.segments_read_data" *)
 
-    // ---- What the parts are told. Bit i is axis i's.
+    // ---- Signals inside the engine. In those with one bit per axis, bit i belongs to axis i.
 
     (* inside = "dut.pulser_*.frozen" *) wire [`AXES-1:0] pulser_frozen;
     (* inside = "dut.pulser_*.request" *) wire [`AXES-1:0] requests;
     (* inside = "dut.pulser_*.request_back" *) wire [`AXES-1:0] requests_back;
     (* inside = "dut.pulser_*.has_sign" *) wire [`AXES-1:0] signs;
     (* inside = "dut.pulser_*.sign_back" *) wire [`AXES-1:0] signs_back;
-    (* inside = "dut.pulser_*.owed" *) wire [`AXES-1:0] owed;
-    (* inside = "dut.wheel_events" *) wire [`AXES-1:0] events;
-    (* inside = "dut.wheel_backward" *) wire [`AXES-1:0] backward;
-    (* inside = "dut.wheel_phase_start" *) wire phase_start;
+    (* inside = "dut.pulser_*.held_back" *) wire [`AXES-1:0] held_back;
+    (* inside = "dut.event_wheel_events" *) wire [`AXES-1:0] events;
+    (* inside = "dut.event_wheel_backward" *) wire [`AXES-1:0] backward;
+    (* inside = "dut.event_wheel_phase_start" *) wire phase_start;
     (* inside = "dut.strobe" *) wire strobe;
-    (* inside = "dut.turn_beat" *) wire [16:0] beat;
-    (* inside = "dut.turn_axis" *) wire [2:0] axis;
-    (* inside = "dut.turn_lane" *) wire [`AXES-1:0] lane;
+    (* inside = "dut.time_slot_beat" *) wire [16:0] beat;
+    (* inside = "dut.time_slot_axis" *) wire [2:0] axis;
+    (* inside = "dut.time_slot_axis_one_hot" *) wire [`AXES-1:0] axis_one_hot;
     (* inside = "dut.stops_frozen" *) wire frozen;
     (* inside = "dut.queue.ramp" *) wire ramp;
     (* inside = "dut.stops_ramp" *) wire all_ramp;
-    (* inside = "dut.homes_slows" *) wire slows;
+    (* inside = "dut.homing_control_slows" *) wire slows;
     (* inside = "dut.queue.empties" *) wire empties;
     (* inside = "dut.queue_goes_on" *) wire queue_goes_on;
-    (* inside = "dut.homes_waits" *) wire waits;
+    (* inside = "dut.homing_control_waits" *) wire waits;
     (* inside = "dut.limits_hit" *) wire hit;
     (* inside = "dut.stops.limit" *) wire limit;
     (* inside = "dut.stops_clearing" *) wire clearing;
     (* inside = "dut.stops.breaks" *) wire breaks;
-    (* inside = "dut.watch_warm" *) wire warm;
-    (* inside = "dut.watch_tick_0" *) wire tick_0;
-    (* inside = "dut.watch_tick_1" *) wire tick_1;
+    (* inside = "dut.queue_misplaced" *) wire misplaced;
+    (* inside = "dut.resets_ending" *) wire ending;
+    (* inside = "dut.resets.first" *) wire stage_1;
+    (* inside = "dut.resets_stage_2" *) wire stage_2;
+    (* inside = "dut.resets_completes" *) wire completes;
+    (* inside = "dut.resets_restarts_round" *) wire restarts_round;
+    (* inside = "dut.supervisor_warm" *) wire warm;
+    (* inside = "dut.supervisor_tick_0" *) wire tick_0;
+    (* inside = "dut.supervisor_tick_1" *) wire tick_1;
     (* inside = "dut.mask" *) wire [`AXES-1:0] mask;
     (* inside = "dut.take" *) wire take;
     (* inside = "dut.queue.starts" *) wire starts;
@@ -78,12 +89,12 @@ module promises (
     (* inside = "dut.queue_empty" *) wire empty;
     (* inside = "dut.queue_running" *) wire running;
 
-    // ---- What the last clock was.
+    // ---- Values of the clock before.
 
-    reg asked = 0;                   // `who` by the start that was taken last
+    reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
-    reg was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
+    reg was_wrong = 0, was_right = 0, was_ending = 0, was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
     reg [`AXES-1:0] was_step = 0;
     reg [12:0] was_beat = 0;
     wire start = start_valid & start_ready;
@@ -94,8 +105,11 @@ module promises (
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_tick_0, was_tick_1} <= {tick_0, tick_1};
         if (start) asked <= (start_mask >> who) & 1;
-        was_breaking <= (put_valid & put_axis >= `AXES | broken) & !fault;
+        was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
         was_cleared <= strobe & clearing;
+        was_ending <= ending;
+        was_wrong <= take && mine && put_word != word[18:16];
+        was_right <= take && mine && put_word == word[18:16];
     end
     wire mine = axis == who & beat[12:0] != 0;
 
@@ -105,14 +119,15 @@ module promises (
         promise_5_no_new_edge: assert (!was_frozen || (step & ~was_step) == 0);
         promise_5_every_axis_frozen: assert (pulser_frozen == {`AXES{frozen}});
 
-        promise_6_taken_in_its_turn: assert (!take || put_valid && put_ready && axis == put_axis && beat[7] && !full);
+        promise_6_taken_in_its_time_slot: assert (!take || put_valid && put_ready && axis == put_axis && beat[7] && !full);
+        promise_6_words_in_order: assert ((!was_wrong || misplaced) && (!was_right || !misplaced));
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
-        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || put_valid && put_axis >= `AXES);
+        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || put_valid && put_axis >= `AXES);
         promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault);
         promise_6_something_to_start: assert (!(mine && starts) || !word[6] && word[5:3] != word[2:0]);
 
-        promise_8_idle: assert (!idle || !armed && owed == 0 && step == 0);
+        promise_8_idle: assert (!idle || !armed && held_back == 0 && step == 0);
         promise_8_idle_is_empty: assert (!idle || !word[6] && word[5:3] == word[2:0]);
 
         promise_12_own_requests: assert (requests == (phase_start ? events : 0) && requests_back == backward);
@@ -124,11 +139,14 @@ module promises (
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
 
+        promise_13_reset_freezes: assert (!was_ending || frozen || was_cleared);
+        promise_13_reset_of_an_engine_at_rest: assert (!resetting || halted && held_back == 0 && step == 0 && !armed);
+
         promise_14_start_only_warm: assert (!start || enable && enabled && warm && strobe);
         promise_14_nothing_moves_unasked: assert (!armed || was_armed || was_start);
     end
 
-    // ---- What the parts assume of the engine, in their words.
+    // ---- What the proofs of the modules assume about the engine.
 
     always_comb begin
         assumed_by_stops: assert ((!strobe || !beat[12]) && (!halted || !running));
@@ -136,12 +154,15 @@ module promises (
             || {starts, halted, ramp, clearing} == {was_starts, was_halted, was_ramp, was_clearing});
         assumed_by_queue_clear: assert (!clearing || halted);
         assumed_by_queue_starts: assert (!(mine && starts) || !halted);
+        assumed_by_stops_completes: assert (!completes || strobe && ending && stage_2);
+        assumed_by_watch: assert ((ending || !resetting && !restarts_round) && (strobe || !restarts_round));
         assumed_by_limits: assert ((!tick_0 || !tick_1)
             && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
-        assumed_by_turn: assert (!strobe || at == CLOCKS - 1);
+        assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);
     end
 
-    // ---- Why they hold: the beat, the control word of `who`, and what the turns of this tick have found.
+    // ---- The invariants that make the promises inductive. They are about the beats, about the
+    // control word of `who`, and about the results of this tick's time slots.
 
     reg turning = 0;
     reg [7:0] at = 0;
@@ -150,16 +171,17 @@ module promises (
         at <= next;
         if (at == CLOCKS - 1) turning <= 1;
     end
-    wire in_turn = turning & at < TURNS;
-    wire had_turn = turning & at >= TURN * ({5'd0, who} + 1);
+    wire in_time_slot = turning & at < ALL_TIME_SLOTS;
+    wire had_time_slot = turning & at >= TIME_SLOT_CLOCKS * ({5'd0, who} + 1);
 
-    wire [15:0] word;
-    look #("\\dut.queue.control.words", 3, 16) at_control (1'b0, 1'b1, who, word);
-    (* inside = "dut.queue.word" *) wire [15:0] word_read;
-    (* inside = "dut.queue.committed" *) wire committed;
-    (* inside = "dut.wheel.tick.sub" *) wire [15:0] sub;
-    (* inside = "dut.wheel.tick.phases" *) wire [3:0] phases;
-    (* inside = "dut.turn.beats" *) wire [16:0] beats;
+    wire [18:0] word;
+    memory_probe #("\\dut.queue.control.words", 3, 19) at_control (1'b0, 1'b1, who, word);
+    (* inside = "dut.queue.word" *) wire [18:0] word_read;
+    (* inside = "dut.queue.took" *) wire took;
+    wire committed = took && word_read[18:16] == 7;
+    (* inside = "dut.event_wheel.tick.sub" *) wire [15:0] sub;
+    (* inside = "dut.event_wheel.tick.phases" *) wire [3:0] phases;
+    (* inside = "dut.time_slot.beats" *) wire [16:0] beats;
     (* inside = "dut.going" *) wire going;
     (* inside = "dut.unfed" *) wire unfed;
     (* inside = "dut.held" *) wire held;
@@ -167,51 +189,57 @@ module promises (
     (* inside = "dut.rest_1" *) wire rest_1;
     (* inside = "dut.rest_2" *) wire rest_2;
     (* inside = "dut.stops.settled" *) wire settled;
+    (* inside = "dut.stops.wiping" *) wire wiping;
     (* inside = "dut.stops.ran" *) wire ran;
     (* inside = "dut.stops.found" *) wire found;
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
-    (* inside = "dut.homes.slowing" *) wire [`AXES-1:0] slowing;
-    (* inside = "dut.watch.round" *) wire [9:0] round;
+    (* inside = "dut.homing_control.slowing" *) wire [`AXES-1:0] slowing;
+    (* inside = "dut.supervisor.round" *) wire [9:0] round;
     wire quiet = !word[6] & word[5:3] == word[2:0];
-    // The mask goes round with the turns.
+    // The engine rotates the mask with the time slots: bit `round_by` of it belongs to `who` now.
     wire [3:0] round_by = who >= axis ? who - axis : who + `AXES - axis;
     wire masked = (mask >> round_by) & 1;
-    reg taken = 0;                   // a word, in this tick
+    reg taken = 0;                   // a word has been taken in this tick
     always @(posedge clock) taken <= take | taken & !strobe;
 
 `ifdef INVARIANTS
     always_comb begin
         invariant_1: assert (at < CLOCKS && sub < PHASE_CLOCKS && phases < PHASES && phases * PHASE_CLOCKS + sub == next);
         invariant_2: assert (strobe == (at == CLOCKS - 1) && (phase_start == (at % PHASE_CLOCKS == 0) || first_clock));
-        invariant_3: assert (beats[12:0] == (in_turn ? 13'd1 << (at % TURN) : 0)
-            && axis == (in_turn ? at / TURN : 0) && lane == 32'd1 << axis);
-        invariant_4: assert (was_beat[11:0] == 0 || at % TURN != 0);
-        invariant_5: assert (axis != who || !in_turn || word_read == word);
-        invariant_6: assert (!in_turn || at % TURN == 0 || !(committed && at % TURN < 8));
-        invariant_7: assert (!(committed && in_turn && at % TURN != 0) || taken);
+        invariant_3: assert (beats[12:0] == (in_time_slot ? 13'd1 << (at % TIME_SLOT_CLOCKS) : 0)
+            && axis == (in_time_slot ? at / TIME_SLOT_CLOCKS : 0) && axis_one_hot == 32'd1 << axis);
+        invariant_4: assert (was_beat[11:0] == 0 || at % TIME_SLOT_CLOCKS != 0);
+        invariant_5: assert (axis != who || !in_time_slot || word_read == word);
+        invariant_6: assert (!in_time_slot || at % TIME_SLOT_CLOCKS == 0 || !(committed && at % TIME_SLOT_CLOCKS < 8));
+        invariant_7: assert (!(committed && in_time_slot && at % TIME_SLOT_CLOCKS != 0) || taken);
         invariant_8: assert (!taken || !rest_1 && !rest_2);
         invariant_9: assert (!rest_2 || rest_1 && quiet);
-        invariant_10: assert (!(had_turn && !active && !taken) || quiet);
-        invariant_11: assert (!(armed && had_turn && asked && !unfed && !held) || !word[6] && word[5:3] != word[2:0]);
-        invariant_12: assert (!(going && asked && !had_turn) || !word[6] && word[5:3] != word[2:0]);
+        invariant_10: assert (!(had_time_slot && !active && !taken) || quiet);
+        invariant_11: assert (!(armed && had_time_slot && asked && !unfed && !held) || !word[6] && word[5:3] != word[2:0]);
+        invariant_12: assert (!(going && asked && !had_time_slot) || !word[6] && word[5:3] != word[2:0]);
         invariant_20: assert (masked == asked || !armed && !going);
         invariant_13: assert (!going || !halted && !armed);
         invariant_14: assert ((!(halted || all_ramp || frozen) || fault) && (!found_freezing || found));
         invariant_15: assert (!clearing || settled && halted);
         invariant_16: assert ((!settled || halted) && (!halted || all_ramp || frozen));
         invariant_17: assert (!halted || !ran);
-        invariant_19: assert (!(mine && committed && at % TURN >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
-        invariant_21: assert (slows == |(slowing & lane) || (`AXES == 1 && was_beat[12]));
-        invariant_22: assert (!was_beat[12] || at % TURN == 0 && at != 0 && at <= TURNS);
+        invariant_19: assert (!(mine && committed && at % TIME_SLOT_CLOCKS >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
+        invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]));
+        invariant_22: assert (!was_beat[12] || at % TIME_SLOT_CLOCKS == 0 && at != 0 && at <= ALL_TIME_SLOTS);
+        invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && frozen && !wiping && !armed
+            && !(stage_1 && stage_2));
+        invariant_24: assert (!(stage_2 && had_time_slot) || quiet);
+        invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_started: cover (started);
         cover_14_enabled: cover (enabled && idle);
+        cover_13_reset: cover (stage_2 && completes);
         cover_12_protocol: cover (fault && was_fault && cause == 2);
     end
 endmodule

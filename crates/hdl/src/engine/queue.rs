@@ -14,16 +14,22 @@
 //! last beat. Its fields, from the lowest bit:
 //!
 //! ```text
-//! bits     0-2    3-5      6         7       8-10              11-13              14     15
-//! field    live   newest   running   unfit   position mod 8    discarded mod 8    back   known
+//! bits     0-2    3-5      6         7       8-10             11-13             14     15      16-18
+//! field    live   newest   running   unfit   position mod 8   discarded mod 8   back   known   due
 //! ```
 //!
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
-//! first tick stores the sign of V in `back` and sets `known`.
+//! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
+//! the host must put next: the words of a segment come in order, and word 7 commits it.
 //!
-//! Cost: a memory of 8 words of 16 bits for the control words and one of 64 bits for the marks of
+//! Cost: a memory of 8 words of 19 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
+use super::layout::{
+    BEAT_COMPARE, BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_DISCARDED, CONTROL_DUE,
+    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_NEWEST, CONTROL_POSITION, CONTROL_RUNNING, CONTROL_UNFIT,
+    MISSING_SIGN,
+};
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -35,7 +41,7 @@ use rust_hdl::prelude::*;
 pub struct Queue {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The axis of the time slot.
     pub axis: Input<Word<3>>,
@@ -53,8 +59,8 @@ pub struct Queue {
     pub empties: Input<Bit>,
     /// The engine accepts the host's word in this clock.
     pub take: Input<Bit>,
-    /// The accepted word commits a segment.
-    pub commit: Input<Bit>,
+    /// The number of that word.
+    pub put_word: Input<Word<3>>,
     /// The committed segment is the last of its move.
     pub last: Input<Bit>,
     /// The running segment ends with this tick.
@@ -75,6 +81,8 @@ pub struct Queue {
     pub live: Signal<Out, Word<3>>,
     /// The slot that the host writes.
     pub fresh: Signal<Out, Word<3>>,
+    /// Fault: the word accepted in the clock before was not the one that was due.
+    pub misplaced: Signal<Out, Bit>,
     /// No slot is free for the host.
     pub full: Signal<Out, Bit>,
     /// The number of segments for which the queue has space, 0 to 7.
@@ -105,9 +113,9 @@ pub struct Queue {
     pub down: Signal<Out, Bit>,
     /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     pub lost: Signal<Out, Bit>,
-    control: Memory<3, 16>,
+    control: Memory<3, 19>,
     lasts: Memory<6, 1>,
-    word: Signal<Local, Word<16>>,
+    word: Signal<Local, Word<19>>,
     old_live: Signal<Local, Word<3>>,
     live_now: Signal<Local, Word<3>>,
     newest: Signal<Local, Word<3>>,
@@ -120,7 +128,10 @@ pub struct Queue {
     over: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
     stays: Signal<Local, Bit>,
-    committed: Register<Bit>,
+    due: Signal<Local, Word<3>>,
+    fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
+    took: Register<Bit>,         // the word that is due was accepted in this time slot
+    wrong: Register<Bit>,        // `misplaced`
     missing: Signal<Local, Word<3>>,
     unseen: Signal<Local, Word<3>>,
     forward: Register<Bit>,  // `up`
@@ -128,51 +139,56 @@ pub struct Queue {
     gone: Register<Bit>,     // `lost`
     next_live: Signal<Local, Word<3>>,
     next_newest: Signal<Local, Word<3>>,
-    next_running: Signal<Local, Word<16>>,
-    next_unfit: Signal<Local, Word<16>>,
-    next_known: Signal<Local, Word<16>>,
-    next_back: Signal<Local, Word<16>>,
+    next_running: Signal<Local, Word<19>>,
+    next_unfit: Signal<Local, Word<19>>,
+    next_known: Signal<Local, Word<19>>,
+    next_back: Signal<Local, Word<19>>,
+    next_due: Signal<Local, Word<3>>,
     next_seen: Signal<Local, Word<3>>,
     next_lost: Signal<Local, Word<3>>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
-    no: Literal<16, 0>,
-    running_bit: Literal<16, 64>,
-    unfit_bit: Literal<16, 128>,
-    back_bit: Literal<16, 0x4000>,
-    known_bit: Literal<16, 0x8000>,
-    all: Literal<16, 0xffff>,
+    no: Literal<19, 0>,
+    running_bit: Literal<19, { 1 << CONTROL_RUNNING }>,
+    unfit_bit: Literal<19, { 1 << CONTROL_UNFIT }>,
+    back_bit: Literal<19, { 1 << CONTROL_BACK }>,
+    known_bit: Literal<19, { 1 << CONTROL_KNOWN }>,
+    all: Literal<19, 0x7_ffff>,
+    commit: Literal<3, 7>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
     at_3: Literal<4, 3>,
     at_8: Literal<4, 8>,
     at_11: Literal<4, 11>,
+    at_16: Literal<5, 16>,
 }
 
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, committed, forward, backward, gone);
+        dff_setup!(self, clock, took, wrong, forward, backward, gone);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot.
         self.word.next = self.control.read_data.val();
-        self.old_live.next = self.word.val().get_bits::<3>(0);
-        self.newest.next = self.word.val().get_bits::<3>(3);
+        self.old_live.next = self.word.val().get_bits::<3>(CONTROL_LIVE);
+        self.newest.next = self.word.val().get_bits::<3>(CONTROL_NEWEST);
         self.live_now.next = self.old_live.val();
         if self.starts.val() {
             self.live_now.next = self.old_live.val() + self.one.val();
         }
         self.fresh_now.next = self.newest.val() + self.one.val();
-        self.runs.next = (self.word.val().get_bit(6) | self.starts.val()) & !self.halted.val();
-        self.fits.next = self.runs.val() & !self.word.val().get_bit(7);
+        self.runs.next =
+            (self.word.val().get_bit(CONTROL_RUNNING) | self.starts.val()) & !self.halted.val();
+        self.fits.next = self.runs.val() & !self.word.val().get_bit(CONTROL_UNFIT);
         self.none.next = self.newest.val() == self.live_now.val();
 
         // Decides what follows after this tick.
         self.last_one.next = self.lasts.read_data.val().any();
-        self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
-        self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
+        self.ramps.next = self.ramp.val() & self.word.val().get_bit(CONTROL_KNOWN);
+        self.follows.next =
+            self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
         self.moves.next = self.fits.val() & !self.least.val();
         self.over.next = self.ended.val() & self.last_one.val();
         if self.ramp.val() {
@@ -180,36 +196,47 @@ impl Logic for Queue {
         }
         self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
-        self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
-        self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val() & !self.ramp.val();
+        self.too_fast.next =
+            self.runs.val() & (self.word.val().get_bit(CONTROL_UNFIT) | self.least.val());
+        self.dry.next = self.moves.val()
+            & self.ended.val()
+            & !self.last_one.val()
+            & self.none.val()
+            & !self.ramp.val();
 
         // Pulses and discarded steps are transferred to memory one per tick. The difference of the
         // low bits shows which are not transferred yet.
-        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(8);
-        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(11);
-        if self.beat.val().get_bit(4) {
-            self.forward.d.next = self.missing.val().any() & !self.missing.val().get_bit(2);
-            self.backward.d.next = self.missing.val().get_bit(2);
+        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(CONTROL_POSITION);
+        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(CONTROL_DISCARDED);
+        if self.beat.val().get_bit(BEAT_COMPARE) {
+            self.forward.d.next =
+                self.missing.val().any() & !self.missing.val().get_bit(MISSING_SIGN);
+            self.backward.d.next = self.missing.val().get_bit(MISSING_SIGN);
             self.gone.d.next = self.unseen.val().any() & !self.runs.val();
         }
 
-        // The host's commit.
-        if self.beat.val().get_bit(0) {
-            self.committed.d.next = false;
+        // The host's words and its commit.
+        self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
+        self.fits_in.next = self.put_word.val() == self.due.val();
+        self.wrong.d.next = self.take.val() & !self.fits_in.val();
+        self.misplaced.next = self.wrong.q.val();
+        if self.beat.val().get_bit(BEAT_FIRST) {
+            self.took.d.next = false;
         }
-        if self.take.val() & self.commit.val() {
-            self.committed.d.next = true;
+        if self.take.val() & self.fits_in.val() {
+            self.took.d.next = true;
         }
-        self.lasts.read_address.next =
-            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.live_now.val());
-        self.lasts.write_address.next =
-            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.fresh_now.val());
+        self.lasts.read_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
+            | bit_cast::<6, 3>(self.live_now.val());
+        self.lasts.write_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
+            | bit_cast::<6, 3>(self.fresh_now.val());
         self.lasts.write_data.next = self.unset.val();
         if self.last.val() {
             self.lasts.write_data.next = self.set.val();
         }
         self.lasts.write_bits.next = self.unset.val();
-        if self.take.val() & self.commit.val() {
+        // Each word writes the mark; that of the commit is the last one and stays.
+        if self.take.val() {
             self.lasts.write_bits.next = self.set.val();
         }
 
@@ -224,12 +251,17 @@ impl Logic for Queue {
             self.next_live.next = self.newest.val();
         }
         self.next_newest.next = self.newest.val();
-        if self.committed.q.val() {
+        if self.took.q.val() & (self.due.val() == self.commit.val()) {
             self.next_newest.next = self.fresh_now.val();
+        }
+        self.next_due.next = self.due.val();
+        if self.took.q.val() {
+            self.next_due.next = self.due.val() + self.one.val();
         }
         if self.clear.val() {
             self.next_live.next = self.zero.val();
             self.next_newest.next = self.zero.val();
+            self.next_due.next = self.zero.val();
         }
         self.next_running.next = self.no.val();
         if self.stays.val() {
@@ -244,31 +276,35 @@ impl Logic for Queue {
             self.next_known.next = self.known_bit.val();
         }
         self.next_back.next = self.no.val();
-        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val()) {
+        if (self.ramps.val() & self.word.val().get_bit(CONTROL_BACK))
+            | (!self.ramps.val() & self.back.val())
+        {
             self.next_back.next = self.back_bit.val();
         }
-        self.next_seen.next = self.word.val().get_bits::<3>(8);
+        self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION);
         if self.forward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.one.val();
+            self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION) + self.one.val();
         } else if self.backward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.minus_one.val();
+            self.next_seen.next =
+                self.word.val().get_bits::<3>(CONTROL_POSITION) + self.minus_one.val();
         }
-        self.next_lost.next = self.word.val().get_bits::<3>(11);
+        self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED);
         if self.gone.q.val() {
-            self.next_lost.next = self.word.val().get_bits::<3>(11) + self.one.val();
+            self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
         }
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
-        self.control.write_data.next = bit_cast::<16, 3>(self.next_live.val())
-            | (bit_cast::<16, 3>(self.next_newest.val()) << self.at_3.val())
+        self.control.write_data.next = bit_cast::<19, 3>(self.next_live.val())
+            | (bit_cast::<19, 3>(self.next_newest.val()) << self.at_3.val())
             | self.next_running.val()
             | self.next_unfit.val()
             | self.next_known.val()
             | self.next_back.val()
-            | (bit_cast::<16, 3>(self.next_seen.val()) << self.at_8.val())
-            | (bit_cast::<16, 3>(self.next_lost.val()) << self.at_11.val());
+            | (bit_cast::<19, 3>(self.next_seen.val()) << self.at_8.val())
+            | (bit_cast::<19, 3>(self.next_lost.val()) << self.at_11.val())
+            | (bit_cast::<19, 3>(self.next_due.val()) << self.at_16.val());
         self.control.write_bits.next = self.no.val();
-        if self.beat.val().get_bit(12) {
+        if self.beat.val().get_bit(BEAT_LAST) {
             self.control.write_bits.next = self.all.val();
         }
 
@@ -280,8 +316,8 @@ impl Logic for Queue {
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();
         self.slows.next = self.ramps.val();
-        self.upward.next = self.word.val().get_bit(14);
-        self.steady.next = self.ramp.val() & !self.word.val().get_bit(15);
+        self.upward.next = self.word.val().get_bit(CONTROL_BACK);
+        self.steady.next = self.ramp.val() & !self.word.val().get_bit(CONTROL_KNOWN);
         self.up.next = self.forward.q.val();
         self.down.next = self.backward.q.val();
         self.lost.next = self.gone.q.val();

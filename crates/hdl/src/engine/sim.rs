@@ -54,6 +54,7 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.start_valid.next = inputs.start.is_some();
         self.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
         self.clear.next = inputs.clear;
+        self.reset.next = inputs.reset;
         self.stop.next = inputs.stop;
         self.broken.next = inputs.broken;
         self.home_valid.next = inputs.home.is_some();
@@ -74,6 +75,7 @@ impl<const N: usize> AnyEngine for Engine<N> {
             idle: self.idle.val(),
             fault: self.fault.val().then(|| (cause, self.culprits.val().value() as u8)),
             halted: self.halted.val(),
+            resetting: self.resetting.val(),
             armed: self.armed.val(),
             ready: self.ready.val(),
             homing: self.homing.val().value() as u8,

@@ -14,12 +14,13 @@
 //! `docs/clock-by-clock.md` lists the causes. A freezing cause during a ramp freezes the axes too.
 //!
 //! Interface: causes arrive from the time slots (`too_fast`, `limit`, `dry`), from the pulsers
-//! (`late`), from [`super::watch`] and from the host. Causes of a time slot take effect at the
+//! (`late`), from [`super::supervisor`] and from the host. Causes of a time slot take effect at the
 //! strobe.
 //!
 //! Cost: about a dozen flip-flops, two registers of 3 bits for causes, and one flip-flop per axis.
 
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::LIMIT_FREEZES;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
@@ -34,9 +35,9 @@ pub struct Stops<const N: usize> {
     pub strobe: Input<Bit>,
     /// Asserted in the last beat of a time slot. The inputs about the slot's axis are valid in this
     /// clock.
-    pub turn_ends: Input<Bit>,
+    pub time_slot_ends: Input<Bit>,
     /// The axis of the slot, one-hot.
-    pub lane: Input<Word<N>>,
+    pub axis_one_hot: Input<Word<N>>,
     /// The axis of the slot runs in this tick.
     pub runs: Input<Bit>,
     /// The V of the axis is out of range.
@@ -59,6 +60,12 @@ pub struct Stops<const N: usize> {
     pub clear: Input<Bit>,
     /// A step is held back, or a STEP pin is high.
     pub pins_busy: Input<Bit>,
+    /// A reset is under way: all axes freeze, and `clear` has no effect.
+    pub ending: Input<Bit>,
+    /// The second tick of a reset, which clears the state of all axes.
+    pub stage_2: Input<Bit>,
+    /// Asserted in the last clock of a reset: the stop ends.
+    pub completes: Input<Bit>,
     /// A stop has been called and has not been cleared.
     pub fault: Signal<Out, Bit>,
     /// A time slot of this tick has found a cause.
@@ -69,6 +76,8 @@ pub struct Stops<const N: usize> {
     pub ramp: Signal<Out, Bit>,
     /// No axis moves any more.
     pub halted: Signal<Out, Bit>,
+    /// A stop has been complete for a whole tick, and `clear` is not clearing it.
+    pub settles: Signal<Out, Bit>,
     /// This tick clears the state of all axes.
     pub clearing: Signal<Out, Bit>,
     /// The first cause.
@@ -92,7 +101,7 @@ pub struct Stops<const N: usize> {
     ripe: Signal<Local, Bit>,
     by_host: Signal<Local, Bit>,
     calls: Signal<Local, Bit>,
-    limit_freezes: Parameter<1>,
+    limits_freeze: Parameter<1>,
     e_stop: Literal<3, 0>,
     overrun: Literal<3, 1>,
     protocol: Literal<3, 2>,
@@ -101,12 +110,18 @@ pub struct Stops<const N: usize> {
     limited: Literal<3, 5>,
     underrun: Literal<3, 6>,
     host: Literal<3, 7>,
+    limit_freezes_out_of_range: ParameterRefusal,
 }
 
 impl<const N: usize> Stops<N> {
     /// Makes the stop control of this guard.
     pub fn new(guard: &Guard) -> Self {
-        Self { limit_freezes: Parameter::new(u64::from(guard.limit_freezes)), ..Self::default() }
+        let freezes = LIMIT_FREEZES.of::<32>(guard.limit_freezes);
+        Self {
+            limits_freeze: Parameter::of(&freezes.bits(0)),
+            limit_freezes_out_of_range: ParameterRefusal::of(&freezes.is_outside(0, 1)),
+            ..Self::default()
+        }
     }
 }
 
@@ -117,7 +132,8 @@ impl<const N: usize> Logic for Stops<N> {
         dff_setup!(self, clock, first, axes, found, kind, found_freezing, ran);
 
         // Collects the causes that the time slots find.
-        self.finds_now.next = self.turn_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
+        self.finds_now.next =
+            self.time_slot_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
         if self.finds_now.val() {
             self.found.d.next = true;
         }
@@ -130,24 +146,30 @@ impl<const N: usize> Logic for Stops<N> {
                 self.kind.d.next = self.overspeed.val();
             }
         }
-        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limit_freezes.val().any())) {
+        if self.time_slot_ends.val()
+            & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any()))
+        {
             self.found_freezing.d.next = true;
         }
-        if self.turn_ends.val() & self.runs.val() {
+        if self.time_slot_ends.val() & self.runs.val() {
             self.ran.d.next = true;
         }
 
         // Latches the first cause. Of several causes in one clock, the one assigned last below has
         // priority.
-        self.urgent.next = self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
+        self.urgent.next =
+            self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
         self.ripe.next = self.strobe.val() & self.found.q.val();
-        self.by_host.next = (self.strobe.val() & self.missed.val()) | self.asked.val();
+        self.by_host.next =
+            (self.strobe.val() & self.missed.val()) | self.asked.val() | self.ending.val();
         self.calls.next = self.urgent.val() | self.ripe.val() | self.by_host.val();
         if !self.called.q.val() {
             if self.urgent.val() | (self.by_host.val() & !self.ripe.val()) {
                 self.axes.d.next = self.late.val();
-            } else if self.finds_now.val() & !self.found.q.val() {
-                self.axes.d.next = self.lane.val();
+            } else if !self.found.q.val() {
+                // Whether this slot finds a cause is known too late to decide here: the axis of the
+                // slot that does so is the last one that is latched.
+                self.axes.d.next = self.axis_one_hot.val();
             }
         }
         if self.calls.val() & !self.called.q.val() {
@@ -173,7 +195,8 @@ impl<const N: usize> Logic for Stops<N> {
         if self.calls.val() {
             self.called.d.next = true;
         }
-        if self.urgent.val() | (self.strobe.val() & self.found_freezing.q.val()) {
+        if self.urgent.val() | (self.strobe.val() & self.found_freezing.q.val()) | self.ending.val()
+        {
             self.freeze.d.next = true;
         }
         if self.strobe.val() {
@@ -181,15 +204,17 @@ impl<const N: usize> Logic for Stops<N> {
             self.found_freezing.d.next = false;
             self.ran.d.next = false;
             self.slow.d.next = self.called.q.val() | self.found.q.val();
-            self.still.d.next =
-                self.freeze.q.val() | self.found_freezing.q.val() | (self.slow.q.val() & !self.ran.q.val());
+            self.still.d.next = self.freeze.q.val()
+                | self.found_freezing.q.val()
+                | (self.slow.q.val() & !self.ran.q.val());
             self.settled.d.next = self.still.q.val();
             self.wiping.d.next = self.clear.val()
                 & self.settled.q.val()
                 & !self.wiping.q.val()
                 & !self.pins_busy.val()
-                & !self.pressed.val();
-            if self.wiping.q.val() {
+                & !self.pressed.val()
+                & !self.ending.val();
+            if self.wiping.q.val() | self.completes.val() {
                 self.called.d.next = false;
                 self.freeze.d.next = false;
                 self.slow.d.next = false;
@@ -203,7 +228,8 @@ impl<const N: usize> Logic for Stops<N> {
         self.frozen.next = self.freeze.q.val();
         self.ramp.next = self.slow.q.val();
         self.halted.next = self.still.q.val();
-        self.clearing.next = self.wiping.q.val();
+        self.settles.next = self.settled.q.val() & !self.wiping.q.val();
+        self.clearing.next = self.wiping.q.val() | self.stage_2.val();
         self.cause.next = self.first.q.val();
         self.culprits.next = self.axes.q.val();
     }

@@ -12,17 +12,31 @@
 //!           ': high halves      n: ticks - 1, or at rest the discarded steps
 //! ```
 //!
-//! Each sum is written four beats after its word was read. Beat 9 writes the word that the host has
-//! put. In a ramp the memory returns -s or s in place of A, so that a ramp needs no additional
-//! adder.
+//! A word that is read in beat k is added in beat k + 2, and the sum is written in beat k + 3. For
+//! A + J both words come from this memory, so one of them (A, then J') is read a beat earlier. Beat
+//! 9 writes the word that the host has put. In a ramp the memory returns -s or s in place of A, so
+//! that a ramp needs no additional adder.
 //!
 //! Cost: one memory of 512 words of 32 bits.
 
-use crate::primitives::constant::{Literal, Parameter};
+use super::layout::{
+    BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_GET, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
+    BEAT_READ_P_HIGH, BEAT_READ_P_LOW, BEAT_READ_POSITION, BEAT_READ_TICKS, BEAT_READ_V_HIGH,
+    BEAT_READ_V_LOW, BEAT_WRITE_A_HIGH, BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW,
+    BEAT_WRITE_POSITION, BEAT_WRITE_PUT, BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW,
+    SLOT_DISCARDED, SLOT_DOWN_HIGH, SLOT_DOWN_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION,
+    SLOT_UP_HIGH, SLOT_UP_LOW, WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE,
+    WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
+};
+use crate::parameters::{START_HALF, STOP_ACCEL};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
+use carrystep_core::engine::MAX_AXES;
 use rust_hdl::prelude::*;
 
 /// The memory and the selection of its addresses.
@@ -30,7 +44,7 @@ use rust_hdl::prelude::*;
 pub struct Store {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The axis of the time slot.
     pub axis: Input<Word<3>>,
@@ -72,41 +86,65 @@ pub struct Store {
     write_slot: Signal<Local, Word<3>>,
     write_word: Signal<Local, Word<3>>,
     writes: Signal<Local, Bit>,
-    ticks: Literal<3, 0>,
-    v_low: Literal<3, 1>,
-    v_high: Literal<3, 2>,
-    a_low: Literal<3, 3>,
-    a_high: Literal<3, 4>,
-    j_low: Literal<3, 5>,
-    j_high: Literal<3, 6>,
-    kept: Literal<3, 7>,
-    p_low: Literal<3, 0>,
-    p_high: Literal<3, 1>,
-    position: Literal<3, 2>,
-    discarded: Literal<3, 3>,
-    down_low: Literal<3, 4>,
-    down_high: Literal<3, 5>,
-    up_low: Literal<3, 6>,
-    up_high: Literal<3, 7>,
+    ticks: Literal<3, WORD_TICKS>,
+    v_low: Literal<3, WORD_V_LOW>,
+    v_high: Literal<3, WORD_V_HIGH>,
+    a_low: Literal<3, WORD_A_LOW>,
+    a_high: Literal<3, WORD_A_HIGH>,
+    j_low: Literal<3, WORD_J_LOW>,
+    j_high: Literal<3, WORD_J_HIGH>,
+    kept: Literal<3, WORD_STATE>,
+    p_low: Literal<3, SLOT_P_LOW>,
+    p_high: Literal<3, SLOT_P_HIGH>,
+    position: Literal<3, SLOT_POSITION>,
+    discarded: Literal<3, SLOT_DISCARDED>,
+    down_low: Literal<3, SLOT_DOWN_LOW>,
+    down_high: Literal<3, SLOT_DOWN_HIGH>,
+    up_low: Literal<3, SLOT_UP_LOW>,
+    up_high: Literal<3, SLOT_UP_HIGH>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
     start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
+    start_half_out_of_range: ParameterRefusal,
+    stop_accel_out_of_range: PerAxis<ParameterRefusal, MAX_AXES>,
 }
 
 impl Store {
     /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
     /// axes in 2^-64 step per tick^2.
     pub fn new(start: StartPhase, stops: &[u64]) -> Self {
-        let start_high = start.start_value() >> 32;
+        let half = START_HALF.of::<32>(start == StartPhase::Half);
+        let high = |start: StartPhase| Formula::number(start.start_value() >> 32);
+        let start_high = high(StartPhase::Half).where_or(&half.bits(0), high(StartPhase::Zero));
         let mut kept = Vec::new();
+        let mut store = Self::default();
         for (axis, stop) in stops.iter().enumerate() {
-            let (down, low) = (stop.wrapping_neg(), 0xffff_ffff);
-            let words = [(1, start_high), (4, down & low), (5, down >> 32), (6, stop & low), (7, stop >> 32)];
-            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, Word::from(word))));
+            let stop = STOP_ACCEL.of_axis::<64>(axis, *stop);
+            let (low, high) = (stop.bits::<32>(0), stop.bits::<32>(32));
+            // -s: one more than its complement, whose low half carries where s has zeros only there.
+            let carry =
+                Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
+            let down = [Formula::number(0) - low.clone(), !high.clone() + carry];
+            let [down_low, down_high] = down;
+            let words = [
+                (SLOT_P_HIGH, start_high.clone()),
+                (SLOT_DOWN_LOW, down_low),
+                (SLOT_DOWN_HIGH, down_high),
+                (SLOT_UP_LOW, low),
+                (SLOT_UP_HIGH, high),
+            ];
+            kept.extend(words.map(|(slot, word)| (state_address(axis, slot), word)));
+            store.stop_accel_out_of_range[axis] =
+                ParameterRefusal::of(&stop.is_outside(1, 1 << 62));
         }
-        Self { segments: Memory::of_words(&kept), start_high: Parameter::new(start_high), ..Self::default() }
+        Self {
+            segments: Memory::of_formulas(&kept),
+            start_high: Parameter::of(&start_high),
+            start_half_out_of_range: ParameterRefusal::of(&half.is_outside(0, 1)),
+            ..store
+        }
     }
 }
 
@@ -119,7 +157,7 @@ impl Logic for Store {
         self.read_axis.next = self.axis.val();
         self.read_slot.next = self.live.val();
         self.read_word.next = self.kept.val();
-        if self.beat.val().get_bit(0) {
+        if self.beat.val().get_bit(BEAT_READ_A_LOW) {
             if self.slows.val() {
                 self.read_slot.next = self.down_low.val();
                 if self.upward.val() {
@@ -129,29 +167,29 @@ impl Logic for Store {
                 self.read_word.next = self.a_low.val();
             }
         }
-        if self.beat.val().get_bit(1) {
+        if self.beat.val().get_bit(BEAT_READ_J_LOW) {
             self.read_word.next = self.j_low.val();
         }
-        if self.beat.val().get_bit(2) {
+        if self.beat.val().get_bit(BEAT_READ_V_LOW) {
             self.read_word.next = self.v_low.val();
         }
-        if self.beat.val().get_bit(3) {
+        if self.beat.val().get_bit(BEAT_READ_P_LOW) {
             self.read_slot.next = self.p_low.val();
         }
-        if self.beat.val().get_bit(4) {
+        if self.beat.val().get_bit(BEAT_READ_TICKS) {
             if self.running.val() {
                 self.read_word.next = self.ticks.val();
             } else {
                 self.read_slot.next = self.discarded.val();
             }
         }
-        if self.beat.val().get_bit(5) {
+        if self.beat.val().get_bit(BEAT_READ_POSITION) {
             self.read_slot.next = self.position.val();
         }
-        if self.beat.val().get_bit(6) {
+        if self.beat.val().get_bit(BEAT_READ_J_HIGH) {
             self.read_word.next = self.j_high.val();
         }
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_READ_A_HIGH) {
             if self.slows.val() {
                 self.read_slot.next = self.down_high.val();
                 if self.upward.val() {
@@ -161,17 +199,18 @@ impl Logic for Store {
                 self.read_word.next = self.a_high.val();
             }
         }
-        if self.beat.val().get_bit(8) {
+        if self.beat.val().get_bit(BEAT_READ_V_HIGH) {
             self.read_word.next = self.v_high.val();
         }
-        if self.beat.val().get_bit(9) {
+        if self.beat.val().get_bit(BEAT_READ_P_HIGH) {
             self.read_slot.next = self.p_high.val();
         }
-        if self.beat.val().get_bit(10) {
+        if self.beat.val().get_bit(BEAT_READ_GET) {
             self.read_axis.next = self.get_axis.val();
             self.read_slot.next = bit_cast::<3, 2>(self.get_item.val());
         }
-        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val()) << self.at_6.val())
+        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val())
+            << self.at_6.val())
             | (bit_cast::<9, 3>(self.read_slot.val()) << self.at_3.val())
             | bit_cast::<9, 3>(self.read_word.val());
         self.word.next = self.segments.read_data.val();
@@ -180,19 +219,19 @@ impl Logic for Store {
         self.write_slot.next = self.live.val();
         self.write_word.next = self.kept.val();
         self.writes.next = false;
-        if self.beat.val().get_bit(4) {
+        if self.beat.val().get_bit(BEAT_WRITE_A_LOW) {
             self.write_word.next = self.a_low.val();
             self.writes.next = self.sound.val();
         }
-        if self.beat.val().get_bit(5) {
+        if self.beat.val().get_bit(BEAT_WRITE_V_LOW) {
             self.write_word.next = self.v_low.val();
             self.writes.next = self.sound.val() & !self.steady.val();
         }
-        if self.beat.val().get_bit(6) {
+        if self.beat.val().get_bit(BEAT_WRITE_P_LOW) {
             self.write_slot.next = self.p_low.val();
             self.writes.next = self.sound.val() | self.wipe.val();
         }
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_WRITE_TICKS) {
             self.writes.next = true;
             if self.running.val() {
                 self.write_word.next = self.ticks.val();
@@ -200,24 +239,24 @@ impl Logic for Store {
                 self.write_slot.next = self.discarded.val();
             }
         }
-        if self.beat.val().get_bit(8) {
+        if self.beat.val().get_bit(BEAT_WRITE_POSITION) {
             self.write_slot.next = self.position.val();
             self.writes.next = true;
         }
-        if self.beat.val().get_bit(9) {
+        if self.beat.val().get_bit(BEAT_WRITE_PUT) {
             self.write_slot.next = self.fresh.val();
             self.write_word.next = self.put_word.val();
             self.writes.next = self.put.val();
         }
-        if self.beat.val().get_bit(10) {
+        if self.beat.val().get_bit(BEAT_WRITE_A_HIGH) {
             self.write_word.next = self.a_high.val();
             self.writes.next = self.sound.val();
         }
-        if self.beat.val().get_bit(11) {
+        if self.beat.val().get_bit(BEAT_WRITE_V_HIGH) {
             self.write_word.next = self.v_high.val();
             self.writes.next = self.sound.val() & !self.steady.val();
         }
-        if self.beat.val().get_bit(12) {
+        if self.beat.val().get_bit(BEAT_WRITE_P_HIGH) {
             self.write_slot.next = self.p_high.val();
             self.writes.next = self.moves.val() | self.wipe.val();
         }
@@ -225,7 +264,7 @@ impl Logic for Store {
             | (bit_cast::<9, 3>(self.write_slot.val()) << self.at_3.val())
             | bit_cast::<9, 3>(self.write_word.val());
         self.segments.write_data.next = self.sum.val();
-        if self.wipe.val() & self.beat.val().get_bit(12) {
+        if self.wipe.val() & self.beat.val().get_bit(BEAT_WRITE_P_HIGH) {
             self.segments.write_data.next = self.sum.val() | self.start_high.val();
         }
         self.segments.write_bits.next = self.no.val();

@@ -3,56 +3,81 @@
 //! ```text
 //! start_valid  _/^^^^^^^\______________________
 //! strobe       _______/^\_____/^\_____/^\______
-//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on
+//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on or ramps down
 //! started      _______________________/^\______
 //! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
 //!
-//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of
-//! the mask without a waiting segment is a breach of the protocol.
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on, and none was
+//! in the ramp after its limit when the tick began (`homing_control.slows`). An axis of the mask
+//! without a waiting segment is a breach of the protocol.
 
 use super::Engine;
+use super::layout::{
+    BEAT_GOT, BEAT_LAST, BEAT_LATCH, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST,
+    COUNTS_LOSSES, COUNTS_PULSES, MASK_OF_SLOT,
+};
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
 impl<const N: usize> Logic for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
-        clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, watch);
+        dff_setup!(
+            self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2
+        );
+        clock!(
+            self,
+            clock,
+            time_slot,
+            adder,
+            queue,
+            store,
+            event_wheel,
+            limits,
+            homing_control,
+            stops,
+            resets,
+            supervisor
+        );
 
-        self.strobe.next = self.wheel.strobe.val();
-        self.masked.next = self.mask.q.val().get_bit(0);
+        self.strobe.next = self.event_wheel.strobe.val();
+        self.masked.next = self.mask.q.val().get_bit(MASK_OF_SLOT);
 
         // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.listens.next = self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
-        self.put_ready.next =
-            !self.stops.fault.val() & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
+        self.listens.next = self.time_slot.beat.val().get_bit(BEAT_PUT)
+            & (self.time_slot.axis.val() == self.put_axis.val());
+        self.put_ready.next = !self.stops.fault.val()
+            & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
         self.room.next = self.queue.room.val();
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
-        self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(9);
+        self.taken.d.next = self.taken.q.val() & !self.time_slot.beat.val().get_bit(BEAT_WRITE_PUT);
         if self.take.val() {
             self.taken.d.next = self.put_word.val() != self.commit.val();
         }
-        if self.turn.beat.val().get_bit(7) {
+        if self.time_slot.beat.val().get_bit(BEAT_PUT) {
             self.taken_word.d.next = self.put_word.val();
         }
 
         // A start is armed at a strobe. It takes effect at the first later strobe at which every
-        // axis of its mask is at rest or comes to rest, and has a waiting segment.
-        self.may_start.next = self.enable.val() & self.watch.warm.val();
-        self.start_ready.next =
-            self.strobe.val() & !self.waits.q.val() & !self.stops.fault.val() & self.may_start.val();
+        // axis of its mask is at rest or comes to rest. Until then an axis of the mask without a
+        // waiting segment triggers the stop `protocol`.
+        self.may_start.next = self.enable.val() & self.supervisor.warm.val();
+        self.start_ready.next = self.strobe.val()
+            & !self.waits.q.val()
+            & !self.stops.fault.val()
+            & self.may_start.val();
         self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
         self.decides.next = self.strobe.val() & self.waits.q.val() & self.free.val();
         self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
         if self.strobe.val() {
             self.going.d.next = self.go.val();
         }
-        if self.turn.beat.val().get_bit(12) {
-            self.mask.d.next = (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
+        if self.time_slot.beat.val().get_bit(BEAT_LAST) {
+            self.mask.d.next =
+                (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
         }
         if self.start_ready.val() & self.start_valid.val() {
             self.waits.d.next = true;
@@ -63,11 +88,13 @@ impl<const N: usize> Logic for Engine<N> {
         }
 
         // Collects the results of the time slots.
-        if self.turn.beat.val().get_bit(12) {
+        if self.time_slot.beat.val().get_bit(BEAT_LAST) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next =
-                self.held.q.val() | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
-            self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
+            self.held.d.next = self.held.q.val()
+                | (self.masked.val()
+                    & (self.queue.goes_on.val() | self.homing_control.slows.val()));
+            self.active.d.next =
+                self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
         }
         if self.strobe.val() {
             self.unfed.d.next = false;
@@ -80,6 +107,10 @@ impl<const N: usize> Logic for Engine<N> {
             self.rest_1.d.next = false;
             self.rest_2.d.next = false;
         }
+        if self.resets.completes.val() {
+            self.rest_1.d.next = true;
+            self.rest_2.d.next = true;
+        }
 
         // The pins.
         self.counts.next = self.none.val();
@@ -88,12 +119,14 @@ impl<const N: usize> Logic for Engine<N> {
         for i in 0..N {
             self.pulser[i].clock.next = self.clock.val();
             self.pulser[i].frozen.next = self.stops.frozen.val();
-            self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
-            self.pulser[i].request_back.next = self.wheel.backward.val().get_bit(i);
-            self.pulser[i].has_sign.next = self.wheel.events.val().get_bit(i) & self.strobe.val();
-            self.pulser[i].sign_back.next = self.wheel.backward.val().get_bit(i);
+            self.pulser[i].request.next =
+                self.event_wheel.events.val().get_bit(i) & self.event_wheel.phase_start.val();
+            self.pulser[i].request_back.next = self.event_wheel.backward.val().get_bit(i);
+            self.pulser[i].has_sign.next =
+                self.event_wheel.events.val().get_bit(i) & self.strobe.val();
+            self.pulser[i].sign_back.next = self.event_wheel.backward.val().get_bit(i);
             self.counted[i].next = self.none.val();
-            if self.turn.lane.val().get_bit(i) {
+            if self.time_slot.axis_one_hot.val().get_bit(i) {
                 self.counted[i].next = self.pulser[i].counts.val();
             }
             self.counts.next = self.counts.val() | self.counted[i].val();
@@ -102,34 +135,35 @@ impl<const N: usize> Logic for Engine<N> {
                 self.late_bit[i].next = self.one_axis[i].val();
             }
             self.late.next = self.late.val() | self.late_bit[i].val();
-            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
+            self.pins_busy.next =
+                self.pins_busy.val() | self.pulser[i].held_back.val() | self.pulser[i].step.val();
             self.step[i].next = self.pulser[i].step.val();
             self.dir[i].next = self.pulser[i].dir.val();
         }
         self.rests.next = self.rest_2.q.val() & !self.waits.q.val() & !self.pins_busy.val();
 
         // The inputs of the parts.
-        self.turn.strobe.next = self.strobe.val();
-        self.queue.beat.next = self.turn.beat.val();
-        self.queue.axis.next = self.turn.axis.val();
-        self.queue.axis_next.next = self.turn.axis_next.val();
+        self.time_slot.strobe.next = self.strobe.val();
+        self.queue.beat.next = self.time_slot.beat.val();
+        self.queue.axis.next = self.time_slot.axis.val();
+        self.queue.axis_next.next = self.time_slot.axis_next.val();
         self.queue.starts.next = self.going.q.val() & self.masked.val();
         self.queue.halted.next = self.stops.halted.val();
-        self.queue.ramp.next = self.stops.ramp.val() | self.homes.slows.val();
-        self.queue.empties.next = self.homes.slows.val() & !self.queue.goes_on.val();
+        self.queue.ramp.next = self.stops.ramp.val() | self.homing_control.slows.val();
+        self.queue.empties.next = self.homing_control.slows.val() & !self.queue.goes_on.val();
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
-        self.queue.commit.next = self.put_word.val() == self.commit.val();
-        self.queue.last.next = self.put_data.val().get_bit(0);
+        self.queue.put_word.next = self.put_word.val();
+        self.queue.last.next = self.put_data.val().get_bit(COMMIT_LAST);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
         self.queue.least.next = self.adder.least.val();
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
-        self.queue.pulses.next = self.counts.val().get_bits::<3>(0);
-        self.queue.losses.next = self.counts.val().get_bits::<3>(3);
+        self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
+        self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
 
-        self.adder.beat.next = self.turn.beat.val();
+        self.adder.beat.next = self.time_slot.beat.val();
         self.adder.word.next = self.store.word.val();
         self.adder.put.next = self.put_data.val();
         self.adder.counts.next = self.queue.running.val();
@@ -137,9 +171,10 @@ impl<const N: usize> Logic for Engine<N> {
         self.adder.up.next = self.queue.up.val();
         self.adder.down.next = self.queue.down.val();
         self.adder.wipe.next = self.stops.clearing.val();
+        self.adder.forgets.next = self.resets.stage_2.val();
 
-        self.store.beat.next = self.turn.beat.val();
-        self.store.axis.next = self.turn.axis.val();
+        self.store.beat.next = self.time_slot.beat.val();
+        self.store.axis.next = self.time_slot.axis.val();
         self.store.live.next = self.queue.live.val();
         self.store.fresh.next = self.queue.fresh.val();
         self.store.running.next = self.queue.running.val();
@@ -155,68 +190,87 @@ impl<const N: usize> Logic for Engine<N> {
         self.store.get_item.next = self.get_item.val();
         self.store.sum.next = self.adder.sum.val();
 
-        self.wheel.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.wheel.lane.next = self.turn.lane.val();
-        self.wheel.crosses.next = self.queue.moves.val() & self.adder.crosses.val();
-        self.wheel.has_sign.next = self.queue.moves.val() & !self.adder.still.val();
-        self.wheel.back.next = self.adder.back.val();
-        self.wheel.phase_known.next = self.turn.beat.val().get_bit(16);
-        self.wheel.q.next = self.adder.q.val();
+        self.event_wheel.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.event_wheel.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.event_wheel.crosses.next = self.queue.moves.val() & self.adder.crosses.val();
+        self.event_wheel.has_sign.next = self.queue.moves.val() & !self.adder.still.val();
+        self.event_wheel.back.next = self.adder.back.val();
+        self.event_wheel.phase_known.next = self.time_slot.beat.val().get_bit(BEAT_PHASE);
+        self.event_wheel.q.next = self.adder.q.val();
 
         self.get_data.next = self.store.word.val();
-        self.get_valid.next = self.turn.beat.val().get_bit(11);
-        self.latch.next = self.turn.beat.val().get_bit(6) & self.homes.waits.val();
-        self.latch_axis.next = self.turn.axis.val();
-        self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.limits.axis.next = self.turn.axis.val();
-        self.limits.axis_next.next = self.turn.axis_next.val();
-        self.limits.lane.next = self.turn.lane.val();
-        self.limits.tick_0.next = self.watch.tick_0.val();
-        self.limits.tick_1.next = self.watch.tick_1.val();
+        self.get_valid.next = self.time_slot.beat.val().get_bit(BEAT_GOT);
+        self.latch.next =
+            self.time_slot.beat.val().get_bit(BEAT_LATCH) & self.homing_control.waits.val();
+        self.latch_axis.next = self.time_slot.axis.val();
+        self.limits.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.limits.axis.next = self.time_slot.axis.val();
+        self.limits.axis_next.next = self.time_slot.axis_next.val();
+        self.limits.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.limits.tick_0.next = self.supervisor.tick_0.val();
+        self.limits.tick_1.next = self.supervisor.tick_1.val();
         self.limits.limit_min.next = self.limit_min.val();
         self.limits.limit_max.next = self.limit_max.val();
         self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
         self.limits.back.next = self.adder.back.val();
+        self.limits.resetting.next = self.resets.resetting.val();
 
-        self.homes.set.next = self.home_valid.val();
-        self.homes.mask.next = self.home_mask.val();
-        self.homes.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.homes.lane.next = self.turn.lane.val();
-        self.homes.hit.next = self.limits.hit.val();
-        self.homes.goes_on.next = self.queue.goes_on.val();
+        self.homing_control.set.next = self.home_valid.val();
+        self.homing_control.mask.next = self.home_mask.val();
+        self.homing_control.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.homing_control.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.homing_control.hit.next = self.limits.hit.val();
+        self.homing_control.goes_on.next = self.queue.goes_on.val();
+        self.homing_control.resetting.next = self.resets.resetting.val();
 
         self.stops.strobe.next = self.strobe.val();
-        self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.stops.lane.next = self.turn.lane.val();
+        self.stops.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.stops.axis_one_hot.next = self.time_slot.axis_one_hot.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val() & !self.homes.slows.val();
+        self.stops.limit.next = self.limits.hit.val()
+            & !self.homing_control.waits.val()
+            & !self.homing_control.slows.val();
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
-        self.stops.pressed.next = self.watch.pressed.val();
-        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val()) | self.broken.val())
+        self.stops.pressed.next = self.supervisor.pressed.val();
+        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
+            | self.broken.val()
+            | self.queue.misplaced.val())
             & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val());
-        self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
+        self.stops.missed.next = self.supervisor.missed.val() & !self.rest_2.q.val();
         self.stops.asked.next = self.stop.val();
         self.stops.clear.next = self.clear.val();
         self.stops.pins_busy.next = self.pins_busy.val();
+        self.stops.ending.next = self.resets.ending.val();
+        self.stops.stage_2.next = self.resets.stage_2.val();
+        self.stops.completes.next = self.resets.completes.val();
 
-        self.watch.strobe.next = self.strobe.val();
-        self.watch.estop.next = self.estop.val();
-        self.watch.kick.next = self.kick.val();
-        self.watch.enable.next = self.enable.val();
-        self.watch.idle.next = self.rests.val();
+        self.resets.strobe.next = self.strobe.val();
+        self.resets.reset.next = self.reset.val();
+        self.resets.settled.next = self.stops.settles.val();
+        self.resets.pins_busy.next = self.pins_busy.val();
 
-        self.enabled.next = self.watch.enabled.val();
+        self.supervisor.strobe.next = self.strobe.val();
+        self.supervisor.estop.next = self.estop.val();
+        self.supervisor.kick.next = self.kick.val();
+        self.supervisor.enable.next = self.enable.val();
+        self.supervisor.idle.next = self.rests.val();
+        self.supervisor.ending.next = self.resets.ending.val();
+        self.supervisor.resetting.next = self.resets.resetting.val();
+        self.supervisor.restarts_round.next = self.resets.restarts_round.val();
+
+        self.enabled.next = self.supervisor.enabled.val();
         self.idle.next = self.rests.val();
         self.fault.next = self.stops.fault.val();
         self.halted.next = self.stops.halted.val();
+        self.resetting.next = self.resets.resetting.val();
         self.cause.next = self.stops.cause.val();
         self.culprits.next = self.stops.culprits.val();
         self.armed.next = self.waits.q.val();
         self.ready.next = self.may_start.val();
-        self.homing.next = self.homes.axes.val();
+        self.homing.next = self.homing_control.axes.val();
         self.started.next = self.go.val();
     }
 }

@@ -89,7 +89,10 @@ impl Spi {
 impl Logic for Spi {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, sck_1, sck_2, sck_3, mosi_1, mosi_2, rest_1, rest_2, bits, goes, count, ended);
+        dff_setup!(
+            self, clock, sck_1, sck_2, sck_3, mosi_1, mosi_2, rest_1, rest_2, bits, goes, count,
+            ended
+        );
         self.sck_1.d.next = self.sck.val();
         self.sck_2.d.next = self.sck_1.q.val();
         self.sck_3.d.next = self.sck_2.q.val();

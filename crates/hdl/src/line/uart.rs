@@ -35,7 +35,11 @@ impl UartLine {
     /// Makes the line for the baud rate and the clock of this UART.
     pub fn new(uart: Uart) -> Self {
         let bit_clocks = uart.bit_clocks();
-        Self { uart_in: UartIn::new(bit_clocks), uart_out: UartOut::new(bit_clocks), ..Self::default() }
+        Self {
+            uart_in: UartIn::new(bit_clocks),
+            uart_out: UartOut::new(bit_clocks),
+            ..Self::default()
+        }
     }
 }
 
@@ -60,6 +64,9 @@ mod tests {
 
     #[test]
     fn uart_synthesizes() {
-        assert_synthesizes(UartLine::new(Uart::new(48_000_000, 3_000_000).unwrap()), "carrystep_uart");
+        assert_synthesizes(
+            UartLine::new(Uart::new(48_000_000, 3_000_000).unwrap()),
+            "carrystep_uart",
+        );
     }
 }

@@ -13,9 +13,12 @@
 //!
 //! Cost: a shift register of 9 bits and a timer that is as wide as B requires.
 
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::BIT_CLOCKS;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
+use carrystep_core::link::{MAX_BIT_CLOCKS, MIN_BIT_CLOCKS};
 use rust_hdl::prelude::*;
 
 /// The UART receiver.
@@ -44,20 +47,25 @@ pub struct UartIn {
     mark: Literal<9, 0x100>,
     top: Literal<9, 0x100>,
     by_one: Literal<1, 1>,
+    bit_clocks_out_of_range: ParameterRefusal,
 }
 
 impl UartIn {
     /// Makes a receiver for bits of `bit_clocks` clocks. The build has checked the range of
     /// `bit_clocks`.
     pub fn new(bit_clocks: u32) -> Self {
-        let bit = u64::from(bit_clocks);
-        let to_first = bit + bit / 2 - 1;
+        let bit = BIT_CLOCKS.of::<32>(bit_clocks);
+        // A bit and a half; MAX_BIT_CLOCKS keeps it in 16 bits.
+        let to_first = (bit.bits::<16>(0) + bit.bits::<16>(1)) - Formula::number(1);
         Self {
             sync: Register::new(true),
             now: Register::new(true),
-            to_first: Parameter::new(to_first),
-            to_next: Parameter::new(bit - 1),
-            timer_bits: Parameter::new(used_bits(to_first)),
+            to_first: Parameter::of(&to_first),
+            to_next: Parameter::of(&(bit.bits(0) - Formula::number(1))),
+            timer_bits: Parameter::of(&to_first.used_bits()),
+            bit_clocks_out_of_range: ParameterRefusal::of(
+                &bit.is_outside(MIN_BIT_CLOCKS.into(), MAX_BIT_CLOCKS.into()),
+            ),
             ..Self::default()
         }
     }

@@ -10,7 +10,9 @@
 //!
 //! Cost: a shift register of 9 bits and a timer that is as wide as B requires.
 
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::BIT_CLOCKS;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
@@ -33,7 +35,7 @@ pub struct UartOut {
     timer: Register<Word<16>>,
     due: Signal<Local, Bit>,
     taken: Signal<Local, Bit>,
-    bit_clocks: Parameter<16>,
+    last_clock: Parameter<16>,
     timer_bits: Parameter<16>,
     one: Literal<16, 1>,
     stop: Literal<9, 0x100>,
@@ -44,11 +46,11 @@ impl UartOut {
     /// Makes a transmitter for bits of `bit_clocks` clocks. The build has checked the range of
     /// `bit_clocks`.
     pub fn new(bit_clocks: u32) -> Self {
-        let last = u64::from(bit_clocks) - 1;
+        let last = BIT_CLOCKS.of::<32>(bit_clocks).bits::<16>(0) - Formula::number(1);
         Self {
             pin: Register::new(true),
-            bit_clocks: Parameter::new(last),
-            timer_bits: Parameter::new(used_bits(last)),
+            last_clock: Parameter::of(&last),
+            timer_bits: Parameter::of(&last.used_bits()),
             ..Self::default()
         }
     }
@@ -66,12 +68,12 @@ impl Logic for UartOut {
             self.timer.d.next = (self.timer.q.val() - self.one.val()) & self.timer_bits.val();
         }
         if self.due.val() & self.bits.q.val().any() {
-            self.timer.d.next = self.bit_clocks.val();
+            self.timer.d.next = self.last_clock.val();
             self.bits.d.next = self.bits.q.val() >> self.by_one.val();
             self.pin.d.next = self.bits.q.val().get_bit(0);
         }
         if self.taken.val() {
-            self.timer.d.next = self.bit_clocks.val();
+            self.timer.d.next = self.last_clock.val();
             self.bits.d.next = bit_cast::<9, 8>(self.data.val()) | self.stop.val();
             self.pin.d.next = false;
         }

@@ -50,7 +50,8 @@ impl<const N: usize> AnyLink for Link<N> {
         let engine = &inputs.engine;
         // Without a fault these two ports keep the values of the last stop. The simulation drives 7
         // and 0xff, so that a use of them without a fault shows.
-        let (cause, culprits) = engine.fault.map_or((7, 0xff), |(cause, culprits)| (cause as u64, culprits));
+        let (cause, culprits) =
+            engine.fault.map_or((7, 0xff), |(cause, culprits)| (cause as u64, culprits));
         self.put_ready.next = engine.put_ready;
         self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
         self.room_valid.next = engine.room.is_some();
@@ -66,7 +67,8 @@ impl<const N: usize> AnyLink for Link<N> {
         self.culprits.next = Word::from(u64::from(culprits));
         self.homing.next = Word::from(u64::from(engine.homing));
         settle(self);
-        let [axis, word] = [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
+        let [axis, word] =
+            [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
         let data = self.put_data.val().value() as u32;
         LinkOutputs {
             tx: true,

@@ -13,16 +13,18 @@
 //! except the one that passes a whole step; there the missing carry is the step.
 //!
 //! Interface: the axis accepts one segment while another runs, and requests steps from the shaper.
-//! The [`Sequencer`] decides when a segment is loaded; [`Edge`] finds the phase of a step within
-//! its tick.
+//! The [`Sequencer`] decides when a segment is loaded; [`StepEdge`] finds the phase of a step
+//! within its tick.
 //!
 //! Cost: three adders of 64 bits, registers for P, V, A and J, and the waiting segment of the
 //! sequencer. The engine ([`mod@crate::engine`]) performs the same additions on one adder of 32
 //! bits.
 
 use crate::parallel::sequencer::Sequencer;
-use crate::parts::edge::Edge;
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::START_HALF;
+use crate::parts::edge::StepEdge;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
@@ -30,7 +32,7 @@ use rust_hdl::prelude::*;
 
 /// One axis of the parallel core, from the offered segment to the requested step.
 #[derive(LogicBlock, Default)]
-pub struct Axis {
+pub struct ParallelAxis {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick.
@@ -49,11 +51,11 @@ pub struct Axis {
     pub push: Input<Bit>,
     /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: the initial speed V.
+    /// Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: the initial acceleration A.
+    /// Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: the jerk J.
+    /// Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     pub seg_j: Input<Word<64>>,
     /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
@@ -94,7 +96,7 @@ pub struct Axis {
     jerk: Register<Word<64>>,     // J
     too_fast: Register<Bit>,      // `overspeed` of docs/clock-by-clock.md
     sequencer: Sequencer,
-    step_edge: Edge,
+    step_edge: StepEdge,
     tick: Signal<Local, Bit>,
     sum: Signal<Local, Word<65>>,
     backward: Signal<Local, Bit>,
@@ -105,23 +107,27 @@ pub struct Axis {
     start_value: Parameter<64>,
     zero: Literal<64, 0>,
     least: Literal<64, 0x8000_0000_0000_0000>,
+    start_half_out_of_range: ParameterRefusal,
 }
 
-impl Axis {
+impl ParallelAxis {
     /// Makes an axis for ticks of Q phases. [`carrystep_core::Timebase`] has checked that Q is 1, 4
     /// or 16.
     pub(crate) fn new(phases: u32, start: StartPhase) -> Self {
-        let start = start.start_value();
+        let half = START_HALF.of::<32>(start == StartPhase::Half);
+        let value = |start: StartPhase| Formula::number(start.start_value());
+        let start = value(StartPhase::Half).where_or(&half.bits(0), value(StartPhase::Zero));
         Self {
-            position: Register::new(Word::from(start)),
-            start_value: Parameter::new(start),
-            step_edge: Edge::new(phases),
+            position: Register::of(&start),
+            start_value: Parameter::of(&start),
+            start_half_out_of_range: ParameterRefusal::of(&half.is_outside(0, 1)),
+            step_edge: StepEdge::new(phases),
             ..Self::default()
         }
     }
 }
 
-impl Logic for Axis {
+impl Logic for ParallelAxis {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, position, speed, accel, jerk, too_fast);
@@ -129,7 +135,8 @@ impl Logic for Axis {
 
         // The addition P + V. Its carry, compared with the sign of V, tells whether the tick steps.
         self.tick.next = self.strobe.val() & !self.frozen.val();
-        self.sum.next = bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
+        self.sum.next =
+            bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
         self.backward.next = self.speed.q.val().get_bit(63);
         self.step_edge.crosses.next = self.sum.val().get_bit(64) ^ self.backward.val();
         if self.tick.val() {
@@ -147,7 +154,8 @@ impl Logic for Axis {
             self.next_speed.next = self.faster.val();
         }
         self.off_limits.next = self.tick.val()
-            & ((self.next_speed.val() == self.least.val()) | (self.sequencer.advance.val() & self.overflow.val()));
+            & ((self.next_speed.val() == self.least.val())
+                | (self.sequencer.advance.val() & self.overflow.val()));
 
         // At a tick, V and A advance, or a segment is loaded, or the axis comes to rest.
         if self.tick.val() {
@@ -204,8 +212,9 @@ impl Logic for Axis {
         self.want_fwd.next = self.step_edge.want_fwd.val();
         self.want_back.next = self.step_edge.want_back.val();
         self.in_flight.next = self.step_edge.in_flight.val();
-        self.drained.next =
-            !(self.sequencer.running.val() | self.sequencer.waiting.val() | self.step_edge.in_flight.val());
+        self.drained.next = !(self.sequencer.running.val()
+            | self.sequencer.waiting.val()
+            | self.step_edge.in_flight.val());
         self.overspeed.next = self.too_fast.q.val();
         self.underrun.next = self.sequencer.underrun.val();
         self.crossed.next = self.step_edge.crossed.val();
@@ -253,7 +262,8 @@ mod tests {
     fn axis_adds_the_values_from_before_the_tick() {
         let segment = Segment { ticks: 4, v: 100, a: 10, j: 1, last: false };
         let mut axis = started(StartPhase::Zero, segment);
-        let ticks: Vec<(u64, i64)> = (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
+        let ticks: Vec<(u64, i64)> =
+            (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
         assert_eq!(ticks, [(100, 110), (210, 121), (331, 133)]);
     }
 
@@ -274,6 +284,6 @@ mod tests {
 
     #[test]
     fn axis_synthesizes() {
-        assert_synthesizes(Axis::new(16, StartPhase::Half), "carrystep_axis");
+        assert_synthesizes(ParallelAxis::new(16, StartPhase::Half), "carrystep_axis");
     }
 }

@@ -40,11 +40,11 @@ pub struct Sequencer {
     pub push: Input<Bit>,
     /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: the initial speed V.
+    /// Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: the initial acceleration A.
+    /// Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: the jerk J.
+    /// Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     pub seg_j: Input<Word<64>>,
     /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
@@ -84,10 +84,14 @@ pub struct Sequencer {
 impl Logic for Sequencer {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, wait_full, wait_ticks, wait_v, wait_a, wait_j, wait_last, active, left, last, dry);
+        dff_setup!(
+            self, clock, wait_full, wait_ticks, wait_v, wait_a, wait_j, wait_last, active, left,
+            last, dry
+        );
 
         self.ending.next = self.active.q.val() & (self.left.q.val() == self.one.val());
-        self.startable.next = self.wait_full.q.val() & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
+        self.startable.next = self.wait_full.q.val()
+            & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
         self.load.next = self.strobe.val()
             & self.wait_full.q.val()
             & ((self.ending.val() & !self.last.q.val()) | (self.startable.val() & self.go.val()));

@@ -1,7 +1,7 @@
 //! Simulates the parallel core, or one of its axes alone, clock by clock.
 
 use crate::HdlError;
-use crate::parallel::axis::Axis;
+use crate::parallel::axis::ParallelAxis;
 use crate::parallel::six_axis::SixAxis;
 use crate::primitives::word::Word;
 use crate::sim::{connected, mask, rising_edge, settle};
@@ -99,7 +99,7 @@ pub struct AxisTick {
 /// A simulated axis without tick counter and shaper, for long runs. Each tick lasts only as many
 /// clocks as its bisection needs.
 pub struct AxisSim {
-    axis: Box<Axis>,
+    axis: Box<ParallelAxis>,
     bisection: u32,
 }
 
@@ -112,7 +112,7 @@ impl AxisSim {
         if ![1, 4, 16].contains(&phases) {
             return Err(HdlError::Phases(phases));
         }
-        Ok(Self { axis: connected(Axis::new(phases, start))?, bisection: phases.ilog2() })
+        Ok(Self { axis: connected(ParallelAxis::new(phases, start))?, bisection: phases.ilog2() })
     }
 
     /// Offers a segment for one clock. Returns whether the axis accepted it.

@@ -20,7 +20,7 @@
 //! Cost: six axes and six shapers, which share one tick counter.
 
 use crate::HdlError;
-use crate::parallel::axis::Axis;
+use crate::parallel::axis::ParallelAxis;
 use crate::parts::shaper::Shaper;
 use crate::parts::tick::Tick;
 use crate::primitives::constant::Literal;
@@ -34,23 +34,23 @@ use rust_hdl::prelude::*;
 pub struct SixAxis {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host offers a segment.
+    /// The host offers a segment and holds it until the core accepts it.
     pub seg_valid: Input<Bit>,
     /// The number of the axis that the segment is for, 0 to 5.
     pub seg_axis: Input<Word<3>>,
     /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: the initial speed V.
+    /// Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: the initial acceleration A.
+    /// Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: the jerk J.
+    /// Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     pub seg_j: Input<Word<64>>,
     /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
     /// The core accepts an offered segment in this clock.
     pub seg_ready: Signal<Out, Bit>,
-    /// The host offers a start.
+    /// The host offers a start and holds it until the core accepts it.
     pub start_valid: Input<Bit>,
     /// The axes to start; bit i is axis i.
     pub start_mask: Input<Word<6>>,
@@ -58,31 +58,33 @@ pub struct SixAxis {
     pub start_ready: Signal<Out, Bit>,
     /// Clears a fault. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
-    /// The STEP pins.
+    /// The STEP pins; bit i is axis i. A rising edge is a step.
     pub step: [Signal<Out, Bit>; AXES],
-    /// The DIR pins; 1 is backward.
+    /// The DIR pins; bit i is axis i; 1 is backward.
     pub dir: [Signal<Out, Bit>; AXES],
-    /// The steps forward less the steps backward of each axis, 32 bits two's complement.
+    /// The steps forward less the steps backward of each axis, 32 bits two's complement; axis 0 is
+    /// in the lowest bits.
     pub position: [Signal<Out, Word<32>>; AXES],
-    /// The number of steps of each axis that were requested but not made, modulo 2^32.
+    /// The number of steps of each axis that were requested but not made, modulo 2^32; axis 0 is in
+    /// the lowest bits.
     pub discarded: [Signal<Out, Word<32>>; AXES],
     /// All axes are at rest, no segment waits and no start is armed.
     pub idle: Signal<Out, Bit>,
     /// A fault is latched, and all axes are frozen.
     pub fault: Signal<Out, Bit>,
-    /// Latched fault: a second step arrived while one was held back.
+    /// Latched fault of an axis: a second step arrived while one was held back.
     pub overrun: [Signal<Out, Bit>; AXES],
-    /// Latched fault: the next V would have been outside -2^63 < V < 2^63.
+    /// Latched fault of an axis: the next V would have been outside -2^63 < V < 2^63.
     pub overspeed: [Signal<Out, Bit>; AXES],
-    /// Latched fault: a segment that was not the last of its move ended, and no segment was
-    /// waiting.
+    /// Latched fault of an axis: a segment that was not the last of its move ended, and no segment
+    /// was waiting.
     pub underrun: [Signal<Out, Bit>; AXES],
     /// Latched fault: the host broke the segment protocol.
     pub protocol: Signal<Out, Bit>,
-    /// Axes start at the end of this clock.
+    /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
     tick: Tick,
-    pub(crate) axis: [Axis; AXES],
+    pub(crate) axis: [ParallelAxis; AXES],
     shaper: [Shaper; AXES],
     armed: Register<Bit>,
     mask: Register<Word<6>>,
@@ -118,7 +120,7 @@ impl SixAxis {
         let phases = build.timebase.phases();
         Ok(Self {
             tick: Tick::new(&build.timebase),
-            axis: std::array::from_fn(|_| Axis::new(phases, build.phase)),
+            axis: std::array::from_fn(|_| ParallelAxis::new(phases, build.phase)),
             shaper,
             ..Self::default()
         })
@@ -140,10 +142,11 @@ impl Logic for SixAxis {
                 | self.shaper[i].overrun.val()
                 | self.axis[i].overspeed.val()
                 | self.axis[i].underrun.val();
-            self.in_flight.next = self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
+            self.in_flight.next =
+                self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
             self.at_rest.next = self.at_rest.val()
                 & self.axis[i].drained.val()
-                & !(self.shaper[i].owed.val() | self.shaper[i].step.val());
+                & !(self.shaper[i].held_back.val() | self.shaper[i].step.val());
         }
         self.clear_now.next = self.clear.val() & self.frozen.val() & !self.in_flight.val();
 
@@ -152,11 +155,13 @@ impl Logic for SixAxis {
         self.nobody.next = self.seg_axis.val() >= self.six.val();
         self.waiting.next = false;
         for i in 0..6 {
-            self.waiting.next = self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
+            self.waiting.next =
+                self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
         }
         self.seg_ready.next = !(self.frozen.val() | self.waiting.val());
         self.taken.next = self.seg_valid.val() & self.seg_ready.val();
-        self.push.next = self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
+        self.push.next =
+            self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
 
         // The port for starts. A start stays armed until every axis of its mask can start; then all
         // start at one strobe.
@@ -165,11 +170,15 @@ impl Logic for SixAxis {
         self.unfed.next = false;
         self.all_startable.next = true;
         for i in 0..6 {
-            self.unfed.next = self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
-            self.all_startable.next =
-                self.all_startable.val() & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
+            self.unfed.next =
+                self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
+            self.all_startable.next = self.all_startable.val()
+                & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
         }
-        self.go.next = self.armed.q.val() & self.tick.strobe.val() & self.all_startable.val() & !self.frozen.val();
+        self.go.next = self.armed.q.val()
+            & self.tick.strobe.val()
+            & self.all_startable.val()
+            & !self.frozen.val();
         if self.go.val() | self.frozen.val() {
             self.armed.d.next = false;
         }

@@ -27,7 +27,7 @@ use rust_hdl::prelude::*;
 
 /// The bisection and the emission of one axis.
 #[derive(LogicBlock, Default)]
-pub struct Edge {
+pub struct StepEdge {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick, even while the core is frozen.
@@ -92,22 +92,35 @@ pub struct Edge {
     phase_zero: Literal<4, 0>,
 }
 
-impl Edge {
+impl StepEdge {
     /// Makes the module for ticks of Q phases. Q is 1, 4 or 16.
     pub(crate) fn new(phases: u32) -> Self {
         Self { first_weight: Parameter::new(u64::from(phases / 2)), ..Self::default() }
     }
 }
 
-impl Logic for Edge {
+impl Logic for StepEdge {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, tick_crossed, tick_back, sign_fwd, sign_back, bisect_p, bisect_v, bisect_q, weight);
+        dff_setup!(
+            self,
+            clock,
+            tick_crossed,
+            tick_back,
+            sign_fwd,
+            sign_back,
+            bisect_p,
+            bisect_v,
+            bisect_q,
+            weight
+        );
         dff_setup!(self, clock, emit, emit_back, emit_q, dir_fwd, dir_back);
 
         // The bisection decides one bit of the phase per clock, the highest bit first.
-        self.half.next = (self.bisect_v.q.val() >> self.by_one.val()) | (self.bisect_v.q.val() & self.sign.val());
-        self.trial.next = bit_cast::<33, 32>(self.bisect_p.q.val()) + bit_cast::<33, 32>(self.half.val());
+        self.half.next = (self.bisect_v.q.val() >> self.by_one.val())
+            | (self.bisect_v.q.val() & self.sign.val());
+        self.trial.next =
+            bit_cast::<33, 32>(self.bisect_p.q.val()) + bit_cast::<33, 32>(self.half.val());
         self.trial_crosses.next = self.trial.val().get_bit(32) ^ self.bisect_v.q.val().get_bit(31);
         if self.weight.q.val().any() {
             self.weight.d.next = self.weight.q.val() >> self.weight_by_one.val();
@@ -143,7 +156,8 @@ impl Logic for Edge {
             self.dir_back.d.next = false;
         }
 
-        self.request.next = self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
+        self.request.next =
+            self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
         self.request_back.next = self.emit_back.q.val();
         self.want_fwd.next = self.dir_fwd.q.val();
         self.want_back.next = self.dir_back.q.val();
@@ -159,7 +173,7 @@ mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
 
-    fn clock(edge: &mut Edge) {
+    fn clock(edge: &mut StepEdge) {
         edge.clock.next = false.into();
         settle(edge);
         edge.clock.next = true.into();
@@ -169,8 +183,8 @@ mod tests {
 
     /// Makes an edge of Q phases, accumulates one tick that contains a step, and finishes its
     /// bisection.
-    fn bisected(phases: u32, p: u64, v: u64) -> Edge {
-        let mut edge = Edge::new(phases);
+    fn bisected(phases: u32, p: u64, v: u64) -> StepEdge {
+        let mut edge = StepEdge::new(phases);
         edge.connect_all();
         edge.strobe.next = true;
         edge.crosses.next = true;
@@ -226,6 +240,6 @@ mod tests {
 
     #[test]
     fn edge_synthesizes() {
-        assert_synthesizes(Edge::new(16), "carrystep_step_edge");
+        assert_synthesizes(StepEdge::new(16), "carrystep_step_edge");
     }
 }

@@ -2,26 +2,28 @@
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
-//!          :<-- D -->:<--- H --->:             :
+//!          :DIR_SETUP:<-DIR_HOLD>:             :
 //! STEP ______________/^^^^^^\________/^^^^^^\__________
-//!                    :<-W ->:<- S -->:
+//!           STEP_HIGH:<---->:<------>:STEP_LOW
 //! ```
 //!
-//! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
-//! of DIR after STEP rises, each in clocks.
+//! `STEP_HIGH` is the least time for which STEP is high, `STEP_LOW` that for which it is low.
+//! `DIR_SETUP` is the set-up of DIR before STEP rises, `DIR_HOLD` its hold after STEP has risen.
+//! All are in clocks.
 //!
 //! Interface: the edge requests a step for one clock. If the pin timing delays the step, the shaper
-//! holds it back (`owed` in the code), at most one per axis. If a second step arrives while one is
-//! held back, the shaper reports the fault `overrun`. DIR follows the sign of V as soon as it is
-//! known, so that the set-up time has normally elapsed before the step is due. In the code, `turn`
-//! means that DIR changes.
+//! holds it back (`held_back` in the code), at most one per axis. If a second step arrives while
+//! one is held back, the shaper reports the fault `overrun`. DIR follows the sign of V as soon as
+//! it is known, so that the set-up time has normally elapsed before the step is due.
 //!
 //! Cost: three timers that count down: `busy` for the pulse and its gap, `hold` and `setup` for
 //! DIR; and two counters of 32 bits for the position and the discarded steps. The engine's
 //! [`crate::engine::pulser`] does the same with shorter counters.
 
 use crate::HdlError;
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::PinTiming;
@@ -50,7 +52,7 @@ pub struct Shaper {
     /// The DIR pin; 1 is backward.
     pub dir: Signal<Out, Bit>,
     /// A step is held back.
-    pub owed: Signal<Out, Bit>,
+    pub held_back: Signal<Out, Bit>,
     /// The steps forward less the steps backward, 32 bits two's complement.
     pub position: Signal<Out, Word<32>>,
     /// The number of steps that were requested but not made, modulo 2^32: the step of an overrun
@@ -61,8 +63,8 @@ pub struct Shaper {
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
-    due: Register<Bit>,      // `owed` of docs/clock-by-clock.md
-    due_back: Register<Bit>, // `owed_back`
+    due: Register<Bit>,      // `held_back` of docs/clock-by-clock.md
+    due_back: Register<Bit>, // `held_back_dir`
     busy: Register<Word<17>>,
     hold: Register<Word<16>>,
     setup: Register<Word<16>>,
@@ -74,9 +76,9 @@ pub struct Shaper {
     first_back: Signal<Local, Bit>,
     rise: Signal<Local, Bit>,
     aim: Signal<Local, Bit>,
-    turn: Signal<Local, Bit>,
+    dir_changes: Signal<Local, Bit>,
     second: Signal<Local, Bit>,
-    gap: Parameter<17>,
+    step_falls_at: Parameter<17>,
     busy_load: Parameter<17>,
     busy_bits: Parameter<17>,
     hold_load: Parameter<16>,
@@ -87,6 +89,10 @@ pub struct Shaper {
     timer_one: Literal<16, 1>,
     one: Literal<32, 1>,
     two: Literal<32, 2>,
+    step_high_out_of_range: ParameterRefusal,
+    step_low_out_of_range: ParameterRefusal,
+    dir_setup_out_of_range: ParameterRefusal,
+    dir_hold_out_of_range: ParameterRefusal,
 }
 
 impl Shaper {
@@ -95,23 +101,38 @@ impl Shaper {
     /// # Errors
     /// Returns [`HdlError::PinTiming`] if a time is not from 1 to [`MAX_CLOCKS`] clocks.
     pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
-        let &PinTiming { width, gap, setup, hold } = pins;
-        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+        let &PinTiming { step_high, step_low, dir_setup, dir_hold } = pins;
+        for (name, clocks) in [
+            ("step_high", step_high),
+            ("step_low", step_low),
+            ("dir_setup", dir_setup),
+            ("dir_hold", dir_hold),
+        ] {
             if !(1..=MAX_CLOCKS).contains(&clocks) {
                 return Err(HdlError::PinTiming { name, clocks });
             }
         }
-        let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
-        let (busy_load, setup_load, hold_load) = (width + gap - 1, setup - 1, hold - 1);
+        let (step_high, step_low) = (STEP_HIGH.of::<32>(step_high), STEP_LOW.of::<32>(step_low));
+        let (dir_setup, dir_hold) = (DIR_SETUP.of::<32>(dir_setup), DIR_HOLD.of::<32>(dir_hold));
+        let most = u64::from(MAX_CLOCKS);
+        let busy_load = (step_high.bits::<17>(0) + step_low.bits::<17>(0)) - Formula::number(1);
+        let (setup_load, hold_load) = (
+            dir_setup.bits::<16>(0) - Formula::number(1),
+            dir_hold.bits::<16>(0) - Formula::number(1),
+        );
         Ok(Self {
-            setup: Register::new(Word::from(setup_load)),
-            gap: Parameter::new(gap),
-            busy_load: Parameter::new(busy_load),
-            busy_bits: Parameter::new(used_bits(busy_load)),
-            hold_load: Parameter::new(hold_load),
-            hold_bits: Parameter::new(used_bits(hold_load)),
-            setup_load: Parameter::new(setup_load),
-            setup_bits: Parameter::new(used_bits(setup_load)),
+            setup: Register::of(&setup_load),
+            step_falls_at: Parameter::of(&step_low.bits(0)),
+            busy_load: Parameter::of(&busy_load),
+            busy_bits: Parameter::of(&busy_load.used_bits()),
+            hold_load: Parameter::of(&hold_load),
+            hold_bits: Parameter::of(&hold_load.used_bits()),
+            setup_load: Parameter::of(&setup_load),
+            setup_bits: Parameter::of(&setup_load.used_bits()),
+            step_high_out_of_range: ParameterRefusal::of(&step_high.is_outside(1, most)),
+            step_low_out_of_range: ParameterRefusal::of(&step_low.is_outside(1, most)),
+            dir_setup_out_of_range: ParameterRefusal::of(&dir_setup.is_outside(1, most)),
+            dir_hold_out_of_range: ParameterRefusal::of(&dir_hold.is_outside(1, most)),
             ..Self::default()
         })
     }
@@ -120,7 +141,10 @@ impl Shaper {
 impl Logic for Shaper {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost, late);
+        dff_setup!(
+            self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost,
+            late
+        );
 
         // The direction that DIR should have, and the direction of the step that is due.
         self.want_now.next = self.want_back.val() | (self.want.q.val() & !self.want_fwd.val());
@@ -141,11 +165,14 @@ impl Logic for Shaper {
         if self.pending.val() {
             self.aim.next = self.first_back.val();
         }
-        self.turn.next = !self.frozen.val() & !self.hold.q.val().any() & (self.dir_pin.q.val() != self.aim.val());
+        self.dir_changes.next = !self.frozen.val()
+            & !self.hold.q.val().any()
+            & (self.dir_pin.q.val() != self.aim.val());
 
         // The pins.
-        self.step_pin.d.next = self.rise.val() | (self.step_pin.q.val() & (self.busy.q.val() != self.gap.val()));
-        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
+        self.step_pin.d.next = self.rise.val()
+            | (self.step_pin.q.val() & (self.busy.q.val() != self.step_falls_at.val()));
+        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.dir_changes.val();
 
         // The timers.
         if self.rise.val() {
@@ -158,7 +185,7 @@ impl Logic for Shaper {
         } else if self.hold.q.val().any() {
             self.hold.d.next = (self.hold.q.val() - self.timer_one.val()) & self.hold_bits.val();
         }
-        if self.turn.val() {
+        if self.dir_changes.val() {
             self.setup.d.next = self.setup_load.val();
         } else if self.setup.q.val().any() {
             self.setup.d.next = (self.setup.q.val() - self.timer_one.val()) & self.setup_bits.val();
@@ -201,7 +228,7 @@ impl Logic for Shaper {
 
         self.step.next = self.step_pin.q.val();
         self.dir.next = self.dir_pin.q.val();
-        self.owed.next = self.due.q.val();
+        self.held_back.next = self.due.q.val();
         self.position.next = self.steps.q.val();
         self.discarded.next = self.lost.q.val();
         self.overrun.next = self.late.q.val();

@@ -13,10 +13,13 @@
 //! Cost: a counter of clocks within the phase, as wide as C/Q requires, and a counter of phases of
 //! 4 bits.
 
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::CLOCKS_PER_TICK;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::Timebase;
+use carrystep_core::build::{MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
 use rust_hdl::prelude::*;
 
 /// Counts clocks within a phase, and phases within a tick.
@@ -41,15 +44,23 @@ pub struct Tick {
     first_phase: Literal<4, 0>,
     one_phase: Literal<4, 1>,
     last_phase: Parameter<4>,
+    clocks_per_tick_out_of_range: ParameterRefusal,
 }
 
 impl Tick {
     /// Makes the counter of a timebase. [`Timebase`] has checked that Q divides C.
     pub fn new(timebase: &Timebase) -> Self {
-        let last_sub = u64::from(timebase.clocks_per_phase() - 1);
+        let clocks = CLOCKS_PER_TICK.of::<32>(timebase.clocks_per_tick());
+        // A shift divides by the phases, which are a power of two; 65536 of one phase are 0 in 16 bits.
+        let last_sub = clocks.bits::<16>(timebase.phase_bits() as usize) - Formula::number(1);
+        let outside = clocks.is_outside(MIN_CLOCKS_PER_TICK.into(), MAX_CLOCKS.into());
+        let remainder = clocks.whole() & Formula::number(u64::from(timebase.phases() - 1));
         Self {
-            last_sub: Parameter::new(last_sub),
-            sub_bits: Parameter::new(used_bits(last_sub)),
+            last_sub: Parameter::of(&last_sub),
+            sub_bits: Parameter::of(&last_sub.used_bits()),
+            clocks_per_tick_out_of_range: ParameterRefusal::of(
+                &(outside | remainder.is_not(&Formula::number(0))),
+            ),
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
             ..Self::default()
         }
@@ -108,6 +119,9 @@ mod tests {
 
     #[test]
     fn tick_synthesizes() {
-        crate::sim::assert_synthesizes(Tick::new(&Timebase::new(16_000_000, 1000, 1).unwrap()), "carrystep_tick");
+        crate::sim::assert_synthesizes(
+            Tick::new(&Timebase::new(16_000_000, 1000, 1).unwrap()),
+            "carrystep_tick",
+        );
     }
 }

@@ -10,16 +10,23 @@
 //! that is read in the cycle in which it is written. Real block RAMs differ there. A design that
 //! needs neither value costs no bypass logic. The simulation returns zero and the old word.
 
+use crate::primitives::constant::{ERROR, TextParameter};
+use crate::primitives::formula::{Formula, ParameterValue};
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The Verilog attribute that places a memory in block RAM. The Verilog of every memory contains
-/// it.
-pub const IN_BLOCK_RAM: &str = "ram_style = \"block\"";
-/// The Verilog statement that writes one bit of a word. Only the Verilog of memories with a write
-/// enable for each bit contains it.
-pub const BIT_BY_BIT: &str = "words[write_address][i] <= write_data[i];";
+const BLOCK: &str = "\"block\"";
+
+/// The Verilog that refuses a memory style other than block and distributed RAM: it instantiates a
+/// module that does not exist.
+fn style_check(style: &str) -> String {
+    let error = format!("{ERROR}{}_out_of_range", style.to_lowercase());
+    format!(
+        "// Words of different lengths are compared.\n// verilator lint_off WIDTH\ngenerate\n    if (({style} != {BLOCK}) && ({style} != \"distributed\")) begin : refused\n        \
+         {error} error ();\n    end\nendgenerate\n// verilator lint_on WIDTH\n\n"
+    )
+}
 
 /// A memory of 2^A words of W bits.
 pub struct Memory<const A: usize, const W: usize> {
@@ -37,8 +44,11 @@ pub struct Memory<const A: usize, const W: usize> {
     pub write_data: Input<Word<W>>,
     words: Vec<Word<W>>,
     rose: bool,
-    whole_words: bool,
-    initial: Vec<Word<W>>,
+    /// The parameter of the Verilog that places the memory; `None`: it is in block RAM, and its words
+    /// are always written whole.
+    placed_by: Option<&'static str>,
+    initial: Vec<(usize, Formula<W>)>,
+    given: Vec<TextParameter>,
 }
 
 impl<const A: usize, const W: usize> Memory<A, W> {
@@ -48,18 +58,36 @@ impl<const A: usize, const W: usize> Memory<A, W> {
     /// # Panics
     /// Panics if an address of `initial` is 2^A or more.
     pub fn of_words(initial: &[(usize, Word<W>)]) -> Self {
-        let mut memory = Self::of_bits();
-        memory.whole_words = true;
+        let numbers: Vec<_> =
+            initial.iter().map(|&(address, word)| (address, Formula::from(word))).collect();
+        Self::of_formulas(&numbers)
+    }
+
+    /// The same with words that follow from parameters of the Verilog.
+    pub fn of_formulas(initial: &[(usize, Formula<W>)]) -> Self {
+        let mut memory = Self::of_zeros();
+        let mut given: Vec<ParameterValue> = Vec::new();
         for (address, word) in initial {
-            memory.words[*address] = *word;
+            memory.words[*address] = word.value();
+            given.extend(
+                word.given().iter().filter(|one| !given.contains(one)).cloned().collect::<Vec<_>>(),
+            );
         }
-        memory.initial.clone_from(&memory.words);
+        memory.given = given.into_iter().map(TextParameter::new).collect();
+        memory.initial = initial.to_vec();
         memory
     }
 
-    /// Makes a memory with a write enable for each bit. All its words are initially zero.
-    pub fn of_bits() -> Self {
-        let words = vec![Word::default(); 1 << A];
+    /// Makes a memory with a write enable for each bit. All its words are initially zero. Not every
+    /// FPGA has block RAM with such enables: the parameter `placed_by` of the Verilog places it.
+    pub fn of_bits(placed_by: &'static str) -> Self {
+        let style =
+            ParameterValue { name: placed_by.to_owned(), bits: 0, literal: BLOCK.to_owned() };
+        let given = vec![TextParameter::new(style)];
+        Self { placed_by: Some(placed_by), given, ..Self::of_zeros() }
+    }
+
+    fn of_zeros() -> Self {
         Self {
             clock: Input::default(),
             read_address: Input::default(),
@@ -67,10 +95,11 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             write_address: Input::default(),
             write_bits: Input::default(),
             write_data: Input::default(),
-            initial: words.clone(),
-            words,
+            words: vec![Word::default(); 1 << A],
             rose: false,
-            whole_words: false,
+            placed_by: None,
+            initial: Vec::new(),
+            given: Vec::new(),
         }
     }
 
@@ -86,24 +115,35 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let top = W - 1;
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
+        let (style, check) = match self.placed_by {
+            None => (BLOCK, String::new()),
+            Some(style) => (style, style_check(style)),
+        };
         let mut text = format!(
-            "(* no_rw_check, {IN_BLOCK_RAM} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
+            "{check}// No word that is read in the clock in which it is written is ever used: no bypass is needed.\n\
+             (* no_rw_check, ram_style = {style} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
              assign read_data = value;\n\ninitial begin\n    for (i = 0; i < {words}; i = i + 1) words[i] = 0;\n",
             words - 1
         );
-        for (address, word) in self.initial.iter().enumerate().filter(|(_, word)| word.any()) {
-            text.push_str(&format!("    words[{address}] = {W}'h{:x};\n", word.value()));
+        // The words have been zero already.
+        let is_zero = |word: &Formula<W>| word.given().is_empty() && !word.value().any();
+        for (address, word) in self.initial.iter().filter(|(_, word)| !is_zero(word)) {
+            let text_of_word = match word.given().is_empty() {
+                true => format!("{W}'h{:x}", word.value().value()),
+                false => word.text().to_owned(),
+            };
+            text.push_str(&format!("    words[{address}] = {text_of_word};\n"));
         }
         text.push_str("end\n\nalways @(posedge clock) begin\n    value <= words[read_address];\n");
-        text.push_str(match (self.whole_words, W) {
-            (true, 1) | (false, 1) => "    if (write_bits) words[write_address] <= write_data;\nend",
-            (true, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
-            (false, _) => "",
+        text.push_str(match (self.placed_by, W) {
+            (_, 1) => "    if (write_bits) words[write_address] <= write_data;\nend",
+            (None, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
+            (Some(_), _) => "",
         });
-        if !self.whole_words && W > 1 {
+        if self.placed_by.is_some() && W > 1 {
             text.push_str(&format!(
                 "    for (i = 0; i < {W}; i = i + 1) begin\n        \
-                 if (write_bits[i]) {BIT_BY_BIT}\n    end\nend"
+                 if (write_bits[i]) words[write_address][i] <= write_data[i];\n    end\nend"
             ));
         }
         text
@@ -165,6 +205,9 @@ impl<const A: usize, const W: usize> Block for Memory<A, W> {
         self.write_address.accept("write_address", probe);
         self.write_bits.accept("write_bits", probe);
         self.write_data.accept("write_data", probe);
+        for given in &self.given {
+            given.accept(given.name(), probe);
+        }
         probe.visit_end_scope(name, self);
     }
 }
@@ -198,7 +241,7 @@ mod tests {
 
     #[test]
     fn memory_writes_only_the_enabled_bits() {
-        let mut memory = Memory::<4, 8>::of_bits();
+        let mut memory = Memory::<4, 8>::of_bits("PLACE");
         memory.connect_all();
         memory.write_data.next = Word::from(0xff_u64);
         memory.write_bits.next = Word::from(0x5a_u64);

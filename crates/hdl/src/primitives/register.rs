@@ -13,12 +13,17 @@
 //! All kernels of the tree run on the values from before the edge, because outputs travel upwards
 //! only in the next pass. A clock edge therefore takes one pass at any depth of the hierarchy.
 
+use crate::primitives::formula::{Formula, Note};
+use crate::primitives::word::Word;
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::signal::get_signal_id;
 use rust_hdl::prelude::{
-    Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo, TypeDescriptor,
-    VCDValue, Verilog,
+    Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo,
+    TypeDescriptor, VCDValue, Verilog,
 };
+
+/// The register's Verilog text writes this before the note of its initial value.
+pub const NOTE: &str = "\n//\t";
 
 /// An input port. Kernels and the Verilog treat it as `Signal<In, T>`.
 #[derive(Debug)]
@@ -41,7 +46,13 @@ impl<T: Synth> Input<T> {
 
 impl<T: Synth> Default for Input<T> {
     fn default() -> Self {
-        Self { next: T::default(), seen: T::default(), changed: false, connected: false, id: get_signal_id() }
+        Self {
+            next: T::default(),
+            seen: T::default(),
+            changed: false,
+            connected: false,
+            id: get_signal_id(),
+        }
     }
 }
 
@@ -108,13 +119,27 @@ pub struct Register<T: Synth> {
     /// The clock.
     pub clock: Input<Clock>,
     initial: T,
+    note: Option<Note>,
+}
+
+impl<const N: usize> Register<Word<N>> {
+    /// A register that configures to what follows from parameters of the Verilog.
+    pub fn of(initial: &Formula<N>) -> Self {
+        Self { note: Some(Note::of(initial, false)), ..Self::new(initial.value()) }
+    }
 }
 
 impl<T: Synth> Register<T> {
     /// Makes a register that holds `initial` after configuration of the FPGA.
     pub fn new(initial: T) -> Self {
         let d = Input { next: initial, ..Input::default() };
-        Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial }
+        Self {
+            d,
+            q: Signal::new_with_default(initial),
+            clock: Input::default(),
+            initial,
+            note: None,
+        }
     }
 }
 
@@ -135,7 +160,10 @@ impl<T: Synth> Logic for Register<T> {
         self.q.connect();
     }
     fn hdl(&self) -> Verilog {
-        Verilog::Custom(format!("initial q = {};\nalways @(posedge clock) q <= d;", self.initial.verilog()))
+        let initial = self.initial.verilog();
+        let note =
+            self.note.as_ref().map_or(String::new(), |note| format!("{NOTE}{}", note.written()));
+        Verilog::Custom(format!("initial q = {initial};\nalways @(posedge clock) q <= d;{note}"))
     }
     fn timing(&self) -> Vec<TimingInfo> {
         vec![TimingInfo {
@@ -175,7 +203,6 @@ impl<T: Synth> Block for Register<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives::word::Word;
 
     #[test]
     fn register_loads_d_only_at_the_rising_edge() {

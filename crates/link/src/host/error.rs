@@ -1,7 +1,7 @@
 //! Errors between a host and a gateware, one variant for each cause.
 
 use crate::command::ProgramError;
-use crate::facts::Refusal;
+use crate::facts::GatewareMismatch;
 use crate::registers::CAUSES;
 use crate::travel::TooLong;
 use crate::window::{Foreign, OutOfStep};
@@ -23,7 +23,9 @@ pub enum HostError<E> {
         ms: u32,
     },
     /// Bytes were received, but no valid frame.
-    #[error("something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate")]
+    #[error(
+        "something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate"
+    )]
     Noise {
         /// Number of bytes.
         bytes: u32,
@@ -41,7 +43,7 @@ pub enum HostError<E> {
     },
     /// The gateware is not the one that this driver was made for.
     #[error(transparent)]
-    Refused(#[from] Refusal),
+    Refused(#[from] GatewareMismatch),
     /// The gateware's sequence number is not one that this host can have caused.
     #[error(transparent)]
     OutOfStep(#[from] OutOfStep),
@@ -54,7 +56,9 @@ pub enum HostError<E> {
     )]
     Restarted,
     /// A program was given while the machine is not at rest.
-    #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]
+    #[error(
+        "the machine moves, or another host has left segments in its queues: stop and clear it first"
+    )]
     NotIdle,
     /// The program cannot be sent.
     #[error(transparent)]

@@ -13,7 +13,7 @@
 use super::motion::{Ended, Progress, Wish};
 use super::{Clock, HomingFault, Host, HostError};
 use crate::command::{ProgramError, Segment};
-use crate::feeder::Source;
+use crate::feeder::SegmentSource;
 use crate::frame::of_axis;
 use crate::line::Line;
 use crate::registers::{HOME, LATCHED};
@@ -22,7 +22,7 @@ use crate::travel::Travel;
 mod request;
 
 use request::{AXES, each};
-pub use request::{AxisHoming, Homed, Homing, Stage, Wiring};
+pub use request::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 
 /// Result of one move of homing.
 struct Leg {
@@ -42,7 +42,7 @@ struct Moves {
     start: Option<u8>,
 }
 
-impl Source for Moves {
+impl SegmentSource for Moves {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         let axis = usize::from(axis);
         let sent = self.sent.get_mut(axis)?;
@@ -81,10 +81,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     pub fn home(
         &mut self,
         homing: &Homing<'_>,
-        mut watch: impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        mut watch: impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Homed, HostError<L::Error>> {
         homing.check().map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
-        let beyond = (homing.mask() | homing.others).checked_shr(self.session.axes().into()).unwrap_or(0);
+        let beyond =
+            (homing.mask() | homing.others).checked_shr(self.session.axes().into()).unwrap_or(0);
         if beyond != 0 {
             let axis = self.session.axes() + beyond.trailing_zeros() as u8;
             return Err(ProgramError::Axis { axis, axes: self.session.axes() }.into());
@@ -101,14 +102,20 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
         // With one input for all switches, a closed switch of any axis would hide the others.
-        if one && self.move_off(homing, homing.mask() | homing.others & homing.known(), watch)?.is_none() {
+        if one
+            && self
+                .move_off(homing, homing.mask() | homing.others & homing.known(), watch)?
+                .is_none()
+        {
             return Ok(None);
         }
-        for group in homing.groups.iter().map(|group| group & homing.known()).filter(|&group| group != 0) {
+        for group in
+            homing.groups.iter().map(|group| group & homing.known()).filter(|&group| group != 0)
+        {
             if !one && self.move_off(homing, group, watch)?.is_none() {
                 return Ok(None);
             }
@@ -120,13 +127,19 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
                 // With one input for all switches, this switch must be open while the other axes
                 // search. It was open at the distance `move_off` before.
-                let place = |axis: &AxisHoming| if one { axis.move_off.max(axis.pull_off) } else { axis.pull_off };
+                let place = |axis: &AxisHoming| {
+                    if one { axis.move_off.max(axis.pull_off) } else { axis.pull_off }
+                };
                 if self.pull_off(homing, axes, edges, place, watch)?.is_none() {
                     return Ok(None);
                 }
             }
         }
-        if one { self.pull_off(homing, homing.mask(), edges, |axis| axis.pull_off, watch) } else { Ok(Some(())) }
+        if one {
+            self.pull_off(homing, homing.mask(), edges, |axis| axis.pull_off, watch)
+        } else {
+            Ok(Some(()))
+        }
     }
 
     /// The axes move away from their switches. With the wiring `Pair` an axis may meet the limit at
@@ -135,10 +148,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         axes: u8,
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let far = |_, axis: &AxisHoming| (axis.move_off, false, axis.seek);
-        let Some(leg) = self.leg(homing, axes, Stage::MoveOff, far, watch)? else { return Ok(None) };
+        let Some(leg) = self.leg(homing, axes, HomingStage::MoveOff, far, watch)? else {
+            return Ok(None);
+        };
         if leg.met != 0 && homing.wiring != Wiring::Pair {
             return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
         }
@@ -152,10 +167,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         homing: &Homing<'_>,
         axes: u8,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let seek = |_, axis: &AxisHoming| (axis.max_travel, true, axis.seek);
-        let Some(found) = self.leg(homing, axes, Stage::Seek, seek, watch)? else { return Ok(None) };
+        let Some(found) = self.leg(homing, axes, HomingStage::Seek, seek, watch)? else {
+            return Ok(None);
+        };
         found.all(homing, axes, HomingFault::NotFound, |axis| axis.seek)?;
         let ran_on = each(axes).fold([0; AXES], |mut ran_on, axis| {
             let rests = self.status.positions.get(usize::from(axis)).copied().unwrap_or(0);
@@ -166,22 +183,32 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             ran_on
         });
         let ran_on = |axis: u8| ran_on.get(usize::from(axis)).copied().unwrap_or(0);
-        let back = |number, axis: &AxisHoming| (axis.move_off.saturating_add(ran_on(number)), false, axis.seek);
-        let Some(leg) = self.leg(homing, axes, Stage::BackOff, back, watch)? else { return Ok(None) };
+        let back = |number, axis: &AxisHoming| {
+            (axis.move_off.saturating_add(ran_on(number)), false, axis.seek)
+        };
+        let Some(leg) = self.leg(homing, axes, HomingStage::BackOff, back, watch)? else {
+            return Ok(None);
+        };
         if leg.met != 0 {
             return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
         }
         // The approach need not go further than the axis has backed off, plus the distance that it
         // moves while the level is accepted.
         let near = |number, axis: &AxisHoming| {
-            let accepted = (u128::from(axis.slow) * u128::from(homing.settle())).div_ceil(1 << 64) as u32;
+            let accepted =
+                (u128::from(axis.slow) * u128::from(homing.settle())).div_ceil(1 << 64) as u32;
             let steps = axis.move_off.saturating_add(ran_on(number)).saturating_add(accepted + 2);
             (steps, true, axis.slow)
         };
-        let Some(found) = self.leg(homing, axes, Stage::Approach, near, watch)? else { return Ok(None) };
+        let Some(found) = self.leg(homing, axes, HomingStage::Approach, near, watch)? else {
+            return Ok(None);
+        };
         found.all(homing, axes, HomingFault::NotAgain, |axis| axis.slow)?;
         for axis in each(axes) {
-            edges.get_mut(usize::from(axis)).into_iter().for_each(|edge| *edge = at(&found.latched, axis));
+            edges
+                .get_mut(usize::from(axis))
+                .into_iter()
+                .for_each(|edge| *edge = at(&found.latched, axis));
         }
         Ok(Some(()))
     }
@@ -193,7 +220,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         axes: u8,
         edges: &[i32; AXES],
         place: impl Fn(&AxisHoming) -> u32,
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let positions = self.status.positions;
         let pull = |number, axis: &AxisHoming| {
@@ -205,7 +232,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let steps = i64::from(wanted) - i64::from(away);
             (u32::try_from(steps.unsigned_abs()).unwrap_or(u32::MAX), steps < 0, axis.seek)
         };
-        let Some(leg) = self.leg(homing, axes, Stage::PullOff, pull, watch)? else { return Ok(None) };
+        let Some(leg) = self.leg(homing, axes, HomingStage::PullOff, pull, watch)? else {
+            return Ok(None);
+        };
         match leg.met {
             0 => Ok(Some(())),
             axes => Err(HostError::Homing { axes, why: HomingFault::Closed }),
@@ -219,20 +248,24 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         axes: u8,
-        stage: Stage,
+        stage: HomingStage,
         wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<Leg>, HostError<L::Error>> {
         let mut moves = Moves { start: Some(axes), ..Moves::default() };
         for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {
             let (steps, toward, speed) = wish(number, axis);
             let rest = if toward { 0 } else { homing.settle() };
-            let travel = axis
-                .travel(steps, toward, speed, rest)
-                .map_err(|error| HostError::Homing { axes: 1 << number, why: HomingFault::TooLong(error) })?;
-            moves.travels.get_mut(usize::from(number)).into_iter().for_each(|place| *place = travel);
+            let travel = axis.travel(steps, toward, speed, rest).map_err(|error| {
+                HostError::Homing { axes: 1 << number, why: HomingFault::TooLong(error) }
+            })?;
+            moves
+                .travels
+                .get_mut(usize::from(number))
+                .into_iter()
+                .for_each(|place| *place = travel);
         }
-        let begun = self.look()?.positions;
+        let begun = self.read_status()?.positions;
         self.write(HOME, axes.into())?;
         let ended = self.stream(moves, |progress| watch(axes, stage, progress));
         let waits = self.status.answer.homing & axes;
@@ -279,8 +312,8 @@ impl Leg {
         // closes during the move is accepted only after `debounce` samples.
         let at_once = |axis: &u8| {
             let Some(homes) = homing.axis(*axis) else { return false };
-            let looks = u128::from(homing.round) * 2;
-            let reach = 1 + ((u128::from(speed(homes)) * looks) >> 64) as u32;
+            let samples = u128::from(homing.round) * 2;
+            let reach = 1 + ((u128::from(speed(homes)) * samples) >> 64) as u32;
             apart(at(&self.begun, *axis), at(&self.latched, *axis)) <= reach
         };
         match each(axes).filter(at_once).fold(0, |mask, axis| mask | 1 << axis) {

@@ -2,7 +2,7 @@
 
 use super::{Clock, Host, HostError, Status};
 use crate::command::{ProgramError, Segment};
-use crate::feeder::{Feeder, Source};
+use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, of_axis};
 use crate::line::Line;
 use crate::registers::POSITION;
@@ -41,7 +41,7 @@ struct Jog<'a> {
     start: Option<u8>,
 }
 
-impl Source for Jog<'_> {
+impl SegmentSource for Jog<'_> {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         if axis == self.axis { self.segments.next().copied() } else { None }
     }
@@ -61,10 +61,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// was sent. Other errors concern the line.
     pub fn stream(
         &mut self,
-        source: impl Source,
+        source: impl SegmentSource,
         mut watch: impl FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
-        let Answer { idle, fault, ready, .. } = self.look()?.answer;
+        let Answer { idle, fault, ready, .. } = self.read_status()?.answer;
         if !idle && !fault {
             return Err(HostError::NotIdle);
         }
@@ -72,7 +72,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Err(ProgramError::NoPower.into());
         }
         let mut feeder = Feeder::new(source);
-        let mut looked = self.clock.milliseconds();
+        let mut last_status = self.clock.milliseconds();
         loop {
             let handed_over = match self.session.feed(&mut feeder) {
                 Ok(done) => done && !self.session.writing(),
@@ -91,11 +91,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 while self.session.writing() {
                     self.pump(|_| ())?;
                 }
-                self.look()?;
+                self.read_status()?;
                 return Err(HostError::Fault { cause: answer.cause, culprits: answer.culprits });
             }
             if handed_over && idle {
-                self.look()?;
+                self.read_status()?;
                 return Ok(Ended::Done);
             }
             if watch(&Progress { status: &self.status, handed_over }) == Wish::Stop {
@@ -107,8 +107,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 return Ok(Ended::Stopped);
             }
             let now = self.clock.milliseconds();
-            if now.wrapping_sub(looked) >= self.patience.look {
-                looked = now;
+            if now.wrapping_sub(last_status) >= self.patience.status_period {
+                last_status = now;
                 self.listen();
                 for axis in 0..self.session.axes() {
                     // An error only means that enough reads are in progress.

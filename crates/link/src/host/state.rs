@@ -24,7 +24,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// # Errors
     /// As [`Self::enable`].
-    pub fn enable_while(&mut self, mut watch: impl FnMut(&Progress<'_>) -> Wish) -> Result<Ended, HostError<L::Error>> {
+    pub fn enable_while(
+        &mut self,
+        mut watch: impl FnMut(&Progress<'_>) -> Wish,
+    ) -> Result<Ended, HostError<L::Error>> {
         self.write(map::CONTROL, map::CONTROL_ENABLE)?;
         let mut asked = Wish::GoOn;
         self.wait_while(
@@ -65,7 +68,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// # Errors
     /// As [`Self::stop`].
-    pub fn stop_while(&mut self, mut watch: impl FnMut(&Status)) -> Result<Status, HostError<L::Error>> {
+    pub fn stop_while(
+        &mut self,
+        mut watch: impl FnMut(&Status),
+    ) -> Result<Status, HostError<L::Error>> {
         self.session.withdraw();
         self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
         self.wait_while(
@@ -76,7 +82,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 Wish::GoOn
             },
         )?;
-        self.look()
+        self.read_status()
     }
 
     /// Ends a stop of any cause; the queues are empty then. Does nothing if no stop is in force.
@@ -86,7 +92,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// [`HostError::TooLong`] if the fault remains for another reason.
     pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
-        self.look()?;
+        self.read_status()?;
         if self.status.answer.fault {
             self.write(map::CONTROL, self.power())?;
             self.wait("the stop", |answer| answer.halted)?;
@@ -94,7 +100,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let first = self.clock.milliseconds();
         while self.status.answer.fault {
             self.write(map::CLEAR, 0)?;
-            self.look()?;
+            self.read_status()?;
             let Answer { fault, cause, .. } = self.status.answer;
             // A CLEAR removes every cause that is over. If the e-stop comes back at once, it is
             // still pressed; after its release it may bounce for some milliseconds.
@@ -104,7 +110,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
             if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
                 let cause = self.status.answer.cause_name();
-                return Err(HostError::TooLong { what: "the clear", cause, ms: self.patience.change });
+                return Err(HostError::TooLong {
+                    what: "the clear",
+                    cause,
+                    ms: self.patience.change,
+                });
             }
         }
         Ok(())
@@ -116,7 +126,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// As [`Self::stop`] and [`Self::clear`].
     pub fn settle(&mut self) -> Result<(), HostError<L::Error>> {
-        let Answer { idle, fault, .. } = self.look()?.answer;
+        let Answer { idle, fault, .. } = self.read_status()?.answer;
         if !idle && !fault {
             self.stop()?;
         }

@@ -42,11 +42,17 @@ pub struct Patience {
     pub change: u32,
     /// Between two reads of the state while there is nothing to send, ms. It must be shorter than
     /// the watchdog's time.
-    pub look: u32,
+    pub status_period: u32,
 }
 
 impl Default for Patience {
     fn default() -> Self {
-        Self { timing: Timing::default(), silence: 500, lost: 2000, change: 5000, look: 20 }
+        Self {
+            timing: Timing::default(),
+            silence: 500,
+            lost: 2000,
+            change: 5000,
+            status_period: 20,
+        }
     }
 }

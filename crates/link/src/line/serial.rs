@@ -90,7 +90,10 @@ impl SerialLine {
     /// # Errors
     /// [`OpenError`] gives the cause.
     pub fn open(port: &str, baud: u32) -> Result<Self, OpenError> {
-        let opened = serialport::new(port, baud).timeout(WAIT).open().map_err(|error| refusal(port, baud, &error))?;
+        let opened = serialport::new(port, baud)
+            .timeout(WAIT)
+            .open()
+            .map_err(|error| refusal(port, baud, &error))?;
         // Old answers are harmless, so an error of this call is ignored.
         let _ = opened.clear(serialport::ClearBuffer::Input);
         Ok(Self { port: opened, ahead: ahead(baud), unheard: 0 })
@@ -114,7 +117,9 @@ fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
     match error.kind() {
         _ if is_file(port) => OpenError::NoPort { port: name(), others: others() },
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::NotPermitted { port: name() },
-        ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent { port: name(), others: others() },
+        ErrorKind::Io(io::ErrorKind::NotFound) => {
+            OpenError::Absent { port: name(), others: others() }
+        }
         // A device that exists and cannot be locked is locked by another program.
         ErrorKind::NoDevice if exists() => OpenError::Busy { port: name() },
         ErrorKind::NoDevice => OpenError::Absent { port: name(), others: others() },
@@ -132,7 +137,9 @@ fn others() -> String {
     let mut names = ports.iter().map(|port| port.port_name.as_str());
     match names.next() {
         None => String::new(),
-        Some(first) => names.fold(format!(" There is {first}"), |list, name| list + ", " + name) + ".",
+        Some(first) => {
+            names.fold(format!(" There is {first}"), |list, name| list + ", " + name) + "."
+        }
     }
 }
 
@@ -141,7 +148,11 @@ impl Line for SerialLine {
 
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> io::Result<Exchanged> {
         // If the system does not report how many bytes wait, none are assumed.
-        let waits = if out.is_empty() { 0 } else { self.port.bytes_to_write().map_or(0, |count| count as usize) };
+        let waits = if out.is_empty() {
+            0
+        } else {
+            self.port.bytes_to_write().map_or(0, |count| count as usize)
+        };
         let most = self.ahead.saturating_sub(waits).min(UNHEARD.saturating_sub(self.unheard));
         let out = out.get(..most).unwrap_or(out);
         let sent = if out.is_empty() { 0 } else { nothing_yet(self.port.write(out))? };
@@ -182,12 +193,16 @@ mod tests {
     /// The errors of the operating system for a port that exists, except in the last row.
     #[test]
     fn open_error_names_the_cause() {
-        let refused = |port: &str, kind| refusal(port, 9600, &serialport::Error::new(kind, "so it is"));
+        let refused =
+            |port: &str, kind| refusal(port, 9600, &serialport::Error::new(kind, "so it is"));
         let denied = ErrorKind::Io(io::ErrorKind::PermissionDenied);
         assert!(matches!(refused("/dev/null", denied), OpenError::NotPermitted { .. }));
         assert!(matches!(refused("/dev/null", ErrorKind::NoDevice), OpenError::Busy { .. }));
         assert!(matches!(refused("/dev/null", ErrorKind::Unknown), OpenError::Unusable { .. }));
-        assert!(matches!(refused("/dev/no-such-port", ErrorKind::NoDevice), OpenError::Absent { .. }));
+        assert!(matches!(
+            refused("/dev/no-such-port", ErrorKind::NoDevice),
+            OpenError::Absent { .. }
+        ));
         assert!(matches!(refused("/dev", denied), OpenError::NoPort { .. }));
     }
 }

@@ -36,9 +36,21 @@ impl Folder {
         let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
         let program = self.0.path().join("program");
         let mut command = Command::new(&compiler);
-        command.current_dir(self.0.path()).args(FLAGS).arg("-I.").args(arguments).arg("-o").arg(&program);
-        let output = command.output().unwrap_or_else(|error| panic!("{compiler} (apt-get install gcc): {error}"));
-        if output.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
+        command
+            .current_dir(self.0.path())
+            .args(FLAGS)
+            .arg("-I.")
+            .args(arguments)
+            .arg("-o")
+            .arg(&program);
+        let output = command
+            .output()
+            .unwrap_or_else(|error| panic!("{compiler} (apt-get install gcc): {error}"));
+        if output.status.success() {
+            Ok(program)
+        } else {
+            Err(String::from_utf8_lossy(&output.stderr).into_owned())
+        }
     }
 }
 
@@ -46,8 +58,15 @@ fn build(arguments: &[&str], change: impl Fn(&str, &str) -> String) -> (Folder, 
     let folder = Folder::new(change);
     folder.write("link_bench.c", include_str!("../bench/link_bench.c"));
     let slots = format!("-DCARRYSTEP_SLOTS={SLOTS}");
-    let files = ["link_bench.c", "carrystep_feeder.c", "carrystep_session.c", "carrystep_frame.c", slots.as_str()];
-    let program = folder.compile(&[&files, arguments].concat()).unwrap_or_else(|words| panic!("{words}"));
+    let files = [
+        "link_bench.c",
+        "carrystep_feeder.c",
+        "carrystep_session.c",
+        "carrystep_frame.c",
+        slots.as_str(),
+    ];
+    let program =
+        folder.compile(&[&files, arguments].concat()).unwrap_or_else(|words| panic!("{words}"));
     (folder, program)
 }
 
@@ -74,8 +93,11 @@ impl CClient {
     }
 
     fn run(program: &Path, folder: Option<Folder>) -> Self {
-        let mut child =
-            Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the bench runs");
+        let mut child = Command::new(program)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the bench runs");
         let to = child.stdin.take().expect("a pipe");
         let from = BufReader::new(child.stdout.take().expect("a pipe"));
         Self { child, to, from, _folder: folder }

@@ -19,7 +19,10 @@
 //! ```
 
 use super::{hex, unhex};
-use carrystep_link::{Answer, Body, Command, Facts, Feeder, ProgramError, Refusal, Segment, Session, Timing, slip};
+use carrystep_link::{
+    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Segment, Session,
+    Timing, slip,
+};
 
 pub trait Client {
     fn say(&mut self, words: &str) -> String;
@@ -41,7 +44,7 @@ struct Owned {
     starts: std::collections::VecDeque<u8>,
 }
 
-impl carrystep_link::Source for Owned {
+impl carrystep_link::SegmentSource for Owned {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         self.segments.get_mut(usize::from(axis))?.pop_front()
     }
@@ -61,14 +64,21 @@ impl Owned {
             })
         };
         let segments = (0..8).map(|axis| own(axis).collect()).collect();
-        let start = |command: &Command| if let Command::Start { mask } = *command { Some(mask) } else { None };
+        let start = |command: &Command| {
+            if let Command::Start { mask } = *command { Some(mask) } else { None }
+        };
         Self { segments, starts: commands.iter().filter_map(start).collect() }
     }
 }
 
 impl Default for RustClient {
     fn default() -> Self {
-        Self { session: Session::new(Timing::default()), axes: 0, commands: Vec::new(), feeder: None }
+        Self {
+            session: Session::new(Timing::default()),
+            axes: 0,
+            commands: Vec::new(),
+            feeder: None,
+        }
     }
 }
 
@@ -95,12 +105,16 @@ fn fields(answer: &Answer) -> String {
         (answer.refused, 'x'),
     ];
     let flags: String = flags.iter().map(|&(on, letter)| if on { letter } else { '.' }).collect();
-    format!("{sequence:02x}:{address:02x}:{next:02x}:{flags}:{cause}:{free}:{culprits:02x}:{homing:02x}:{data:08x}")
+    format!(
+        "{sequence:02x}:{address:02x}:{next:02x}:{flags}:{cause}:{free}:{culprits:02x}:{homing:02x}:{data:08x}"
+    )
 }
 
 impl RustClient {
     fn send(&mut self, now: u32) -> Vec<u8> {
-        self.session.transmit(now).map_or(Vec::new(), |request| slip::encode(request.to_bytes().as_slice()).collect())
+        self.session
+            .transmit(now)
+            .map_or(Vec::new(), |request| slip::encode(request.to_bytes().as_slice()).collect())
     }
 
     fn take(&mut self, now: u32, bytes: &[u8]) -> String {
@@ -137,7 +151,8 @@ impl Client for RustClient {
         match (verb, parts.as_slice()) {
             ("begin", [resend, pause]) => {
                 *self = Self::default();
-                self.session = Session::new(Timing { resend: number(resend), pause: number(pause) });
+                self.session =
+                    Session::new(Timing { resend: number(resend), pause: number(pause) });
                 nothing
             }
             ("adopt", [next, axes]) => {
@@ -147,12 +162,20 @@ impl Client for RustClient {
             }
             ("read", [address]) => yes(self.session.read(hexadecimal(address) as u8).is_ok()),
             ("write", [address, word]) => {
-                let body = Body::Write { address: hexadecimal(address) as u8, word: hexadecimal(word) as u32 };
+                let body = Body::Write {
+                    address: hexadecimal(address) as u8,
+                    word: hexadecimal(word) as u32,
+                };
                 yes(self.session.write(body).is_ok())
             }
             ("segment", [axis, ticks, v, a, j, last]) => {
-                let segment =
-                    Segment { ticks: number(ticks), v: long(v), a: long(a), j: long(j), last: number(last) == 1 };
+                let segment = Segment {
+                    ticks: number(ticks),
+                    v: long(v),
+                    a: long(a),
+                    j: long(j),
+                    last: number(last) == 1,
+                };
                 self.commands.push(Command::Segment { axis: number(axis) as u8, segment });
                 nothing
             }
@@ -187,16 +210,23 @@ impl Client for RustClient {
             ("check", [identity, protocol, build, wanted]) => {
                 let word = |word| hexadecimal(word) as u32;
                 let (identity, protocol) = (word(identity), word(protocol));
-                let facts = Facts { identity, protocol, build: hexadecimal(build), ..Facts::default() };
+                let facts = BuildFacts {
+                    identity,
+                    protocol,
+                    build: hexadecimal(build),
+                    ..BuildFacts::default()
+                };
                 match facts.check(Some(hexadecimal(wanted))) {
                     Ok(()) => "fine",
-                    Err(Refusal::Identity(_)) => "device",
-                    Err(Refusal::Protocol { .. }) => "protocol",
-                    Err(Refusal::Build { .. }) => "build",
+                    Err(GatewareMismatch::Identity(_)) => "device",
+                    Err(GatewareMismatch::Protocol { .. }) => "protocol",
+                    Err(GatewareMismatch::Build { .. }) => "build",
                 }
                 .to_owned()
             }
-            ("busy", []) => format!("{} {}", yes(self.session.waiting()), yes(self.session.writing())),
+            ("busy", []) => {
+                format!("{} {}", yes(self.session.waiting()), yes(self.session.writing()))
+            }
             _ => panic!("no such words: {words}"),
         }
     }

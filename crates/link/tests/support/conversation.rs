@@ -6,8 +6,10 @@ use std::path::Path;
 /// Name and text of each conversation.
 pub fn scripts() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/conversations");
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).expect("conversations").map(|entry| entry.expect("a file").path()).collect();
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .expect("conversations")
+        .map(|entry| entry.expect("a file").path())
+        .collect();
     paths.sort();
     assert!(paths.len() >= 9, "{paths:?}");
     let read = |path: &std::path::PathBuf| {

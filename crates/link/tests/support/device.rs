@@ -70,7 +70,8 @@ pub struct Device {
 
 impl Device {
     pub fn new(axes: u8, next: u8) -> Self {
-        let facts = [0x5054_5343, 1, 0x89ab_cdef, 0x0123_4567, axes.into(), 48_000_000, 2000, 16, 50_000];
+        let facts =
+            [0x5054_5343, 1, 0x89ab_cdef, 0x0123_4567, axes.into(), 48_000_000, 2000, 16, 50_000];
         Self { axes, next, facts, ..Self::default() }
     }
 
@@ -94,7 +95,9 @@ impl Device {
             return Vec::new();
         }
         match frame.split_last_chunk::<4>() {
-            Some((content, sum)) if !broken && (self.bugs.no_crc || crc(content).to_le_bytes() == *sum) => {
+            Some((content, sum))
+                if !broken && (self.bugs.no_crc || crc(content).to_le_bytes() == *sum) =>
+            {
                 self.request(content)
             }
             _ => {
@@ -115,7 +118,8 @@ impl Device {
         self.frames += 1;
         let mut refused = false;
         if address >= 0x80 {
-            let words: Vec<u32> = words.chunks(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
+            let words: Vec<u32> =
+                words.chunks(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
             match self.next.wrapping_sub(sequence) {
                 0 => refused = !self.execute(address & 0x7f, &words),
                 1..=127 if self.bugs.executes_again => {
@@ -144,7 +148,9 @@ impl Device {
             self.log.push(Done::Segment(axis as u8, words));
             match self.fault {
                 Some(_) => {}
-                None if axis >= self.axes.into() || self.queues[axis].len() == 7 => self.fault = Some(2),
+                None if axis >= self.axes.into() || self.queues[axis].len() == 7 => {
+                    self.fault = Some(2);
+                }
                 None => self.queues[axis].push_back((words[0].wrapping_add(1), words[7] & 1 == 1)),
             }
             return true;
@@ -198,15 +204,19 @@ impl Device {
         };
         let halted = self.fault.is_some();
         let state = [halted, halted, self.idle(), self.powered, self.armed.is_some()];
-        let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on)) | self.fault.unwrap_or(0) << 5;
+        let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on))
+            | self.fault.unwrap_or(0) << 5;
         let free = 7 - self.queues[axis].len() as u8;
-        let mut frame = vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, 0];
+        let mut frame =
+            vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, 0];
         frame.extend(data.to_le_bytes());
         on_the_line(&frame)
     }
 
     pub fn idle(&self) -> bool {
-        self.armed.is_none() && self.running.iter().all(Option::is_none) && self.queues.iter().all(VecDeque::is_empty)
+        self.armed.is_none()
+            && self.running.iter().all(Option::is_none)
+            && self.queues.iter().all(VecDeque::is_empty)
     }
 
     /// Advances time by `ticks`: starts moves, runs segments, and stops on empty queues. V moves
@@ -215,12 +225,23 @@ impl Device {
         while ticks > 0 && self.fault.is_none() {
             if let Some(mask) = self.armed {
                 let masked = |axis: &usize| mask >> axis & 1 == 1;
-                if (0..8).filter(masked).all(|axis| self.running[axis].is_none() && !self.queues[axis].is_empty()) {
+                if (0..8)
+                    .filter(masked)
+                    .all(|axis| self.running[axis].is_none() && !self.queues[axis].is_empty())
+                {
                     self.armed = None;
-                    (0..8).filter(masked).for_each(|axis| self.running[axis] = self.queues[axis].pop_front());
+                    (0..8)
+                        .filter(masked)
+                        .for_each(|axis| self.running[axis] = self.queues[axis].pop_front());
                 }
             }
-            let Some(step) = self.running.iter().flatten().map(|(left, _)| *left).min().map(|least| least.min(ticks))
+            let Some(step) = self
+                .running
+                .iter()
+                .flatten()
+                .map(|(left, _)| *left)
+                .min()
+                .map(|least| least.min(ticks))
             else {
                 return;
             };

@@ -19,6 +19,8 @@ pub fn hex(bytes: &[u8]) -> String {
 
 /// The bytes of such a text.
 pub fn unhex(text: &str) -> Vec<u8> {
-    let byte = |pair: &str| u8::from_str_radix(pair, 16).unwrap_or_else(|_| panic!("{pair:?} in {text:?}"));
+    let byte = |pair: &str| {
+        u8::from_str_radix(pair, 16).unwrap_or_else(|_| panic!("{pair:?} in {text:?}"))
+    };
     text.split_whitespace().filter(|&word| word != "-").map(byte).collect()
 }

@@ -48,7 +48,10 @@ pub fn program(random: &mut Random, axes: u8, segments: usize, ticks: u32) -> Ve
         let mut due: Vec<(u32, u8, Segment)> = Vec::new();
         for (axis, &count) in (0..axes).zip(&counts) {
             for k in 0..count {
-                let (from, to) = (total / count * k, if k + 1 == count { total } else { total / count * (k + 1) });
+                let (from, to) = (
+                    total / count * k,
+                    if k + 1 == count { total } else { total / count * (k + 1) },
+                );
                 let (v, a, j) = (random.word(), random.word(), random.word());
                 due.push((from, axis, Segment { ticks: to - from, v, a, j, last: k + 1 == count }));
             }
@@ -61,7 +64,9 @@ pub fn program(random: &mut Random, axes: u8, segments: usize, ticks: u32) -> Ve
             }
             commands.push(Command::Segment { axis, segment });
         }
-        if !matches!(commands.last(), Some(Command::Start { .. })) && counts.iter().all(|&count| count == 1) {
+        if !matches!(commands.last(), Some(Command::Start { .. }))
+            && counts.iter().all(|&count| count == 1)
+        {
             commands.push(Command::Start { mask: ((1_u16 << axes) - 1) as u8 });
         }
     }

@@ -51,7 +51,14 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     for command in commands {
         match command {
             Command::Segment { axis, segment: s } => {
-                client.say(&format!("segment {axis} {} {} {} {} {}", s.ticks, s.v, s.a, s.j, u8::from(s.last)));
+                client.say(&format!(
+                    "segment {axis} {} {} {} {} {}",
+                    s.ticks,
+                    s.v,
+                    s.a,
+                    s.j,
+                    u8::from(s.last)
+                ));
             }
             Command::Start { mask } => {
                 client.say(&format!("start {mask:02x}"));
@@ -95,7 +102,15 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
             compare(&device, commands)?;
             let Device { frames, damaged, repeated, out_of_turn, fault, .. } = device;
             let harmed = there.harmed + back.harmed;
-            return Ok(Outcome { milliseconds: now, frames, damaged, repeated, out_of_turn, harmed, fault });
+            return Ok(Outcome {
+                milliseconds: now,
+                frames,
+                damaged,
+                repeated,
+                out_of_turn,
+                harmed,
+                fault,
+            });
         }
     }
     Err(format!("nothing more is done after {since} ms, {done} of {}", commands.len()))
@@ -123,8 +138,12 @@ fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String
             }
         }
         let data = u32::from_le_bytes([frame[7], frame[8], frame[9], frame[10]]);
-        [format!("{:02x}", frame[0]), format!("{:02x}", frame[1]), format!("{:02x}", frame[2]), format!("{data:08x}")]
-            == wanted
+        [
+            format!("{:02x}", frame[0]),
+            format!("{:02x}", frame[1]),
+            format!("{:02x}", frame[2]),
+            format!("{data:08x}"),
+        ] == wanted
     };
     match sent.iter().position(same) {
         // The answer remains in the list, because the line may repeat it.
@@ -157,13 +176,19 @@ fn compare(device: &Device, commands: &[Command]) -> Result<(), String> {
     let same = |what: &str, found: Vec<Done>, wanted: Vec<Done>| {
         let enough = if whole { found.len() == wanted.len() } else { found.len() <= wanted.len() };
         match found.iter().zip(&wanted).position(|(one, other)| one != other) {
-            Some(place) => Err(format!("{what} {place} is {:x?}, not {:x?}", found[place], wanted[place])),
+            Some(place) => {
+                Err(format!("{what} {place} is {:x?}, not {:x?}", found[place], wanted[place]))
+            }
             None if enough => Ok(()),
             None => Err(format!("{} of {what}, {} were sent", found.len(), wanted.len())),
         }
     };
     for axis in 0..8 {
-        let found = device.log.iter().copied().filter(|done| matches!(done, Done::Segment(own, _) if *own == axis));
+        let found = device
+            .log
+            .iter()
+            .copied()
+            .filter(|done| matches!(done, Done::Segment(own, _) if *own == axis));
         same(&format!("segment of axis {axis}"), found.collect(), wanted(axis).collect())?;
     }
     let found = device.log.iter().copied().filter(|done| matches!(done, Done::Write(..))).collect();

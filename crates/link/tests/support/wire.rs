@@ -20,7 +20,8 @@ pub struct Faults {
 
 impl Faults {
     /// A very bad line: every twentieth frame is damaged.
-    pub const BAD: Self = Self { flip: 800, drop: 400, double: 400, again: 5000, cut: 10_000, delay: 20_000 };
+    pub const BAD: Self =
+        Self { flip: 800, drop: 400, double: 400, again: 5000, cut: 10_000, delay: 20_000 };
 }
 
 #[derive(Debug)]
@@ -42,15 +43,22 @@ impl Wire {
         let Faults { flip, drop, double, again, cut, delay } = self.faults;
         let late = if self.random.happens(delay) { 1 + self.random.below(25) as u32 } else { 0 };
         self.due = self.due.max(now + late);
-        let end =
-            if self.random.happens(cut) { self.random.below(piece.len() as u64 + 1) as usize } else { piece.len() };
+        let end = if self.random.happens(cut) {
+            self.random.below(piece.len() as u64 + 1) as usize
+        } else {
+            piece.len()
+        };
         self.harmed += u64::from(end < piece.len());
         let twice = self.random.happens(again);
         self.harmed += u64::from(twice);
         for &byte in [&piece[..end]].repeat(1 + usize::from(twice)).into_iter().flatten() {
             let flipped = self.random.happens(flip);
             let byte = if flipped { byte ^ 1 << self.random.below(8) } else { byte };
-            let times = if self.random.happens(drop) { 0 } else { 1 + usize::from(self.random.happens(double)) };
+            let times = if self.random.happens(drop) {
+                0
+            } else {
+                1 + usize::from(self.random.happens(double))
+            };
             self.harmed += u64::from(flipped || times != 1);
             self.bytes.extend([(self.due, byte)].repeat(times));
         }

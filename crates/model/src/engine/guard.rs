@@ -5,7 +5,7 @@ use carrystep_core::engine::{Cause, EngineInputs, Guard};
 
 /// State of e-stop input, watchdog and ENABLE.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Watch {
+pub(super) struct Supervisor {
     /// Synchronizer of the e-stop input: two flip-flops, `first` and `now`.
     first: bool,
     now: bool,
@@ -21,9 +21,17 @@ pub(super) struct Watch {
     warm: u32,
 }
 
-impl Watch {
+impl Supervisor {
     pub(super) const fn new() -> Self {
-        Self { first: false, now: false, held: false, tick_of_round: 0, silence: 0, enabled: false, warm: 0 }
+        Self {
+            first: false,
+            now: false,
+            held: false,
+            tick_of_round: 0,
+            silence: 0,
+            enabled: false,
+            warm: 0,
+        }
     }
 
     /// At a strobe: true if the e-stop was active during the whole tick.
@@ -39,6 +47,12 @@ impl Watch {
     /// True if the drivers have been powered for the warm-up time.
     pub(super) const fn is_warm(&self, guard: &Guard) -> bool {
         self.enabled && self.warm == guard.enable
+    }
+
+    /// Restarts the time-out of the watchdog and the warm-up of the drivers.
+    pub(super) const fn forget(&mut self) {
+        self.silence = 0;
+        self.warm = 0;
     }
 
     pub(super) fn clock(&mut self, guard: &Guard, inputs: &EngineInputs, strobe: bool, idle: bool) {
@@ -62,9 +76,15 @@ impl Watch {
 }
 
 /// Access for the fast model, which passes many clocks at once.
-impl Watch {
+impl Supervisor {
     /// True if these inputs and this `idle` change nothing but the counters of rounds.
-    pub(super) fn is_steady(&self, guard: &Guard, inputs: &EngineInputs, idle: bool, stop: &Stop) -> bool {
+    pub(super) fn is_steady(
+        &self,
+        guard: &Guard,
+        inputs: &EngineInputs,
+        idle: bool,
+        stop: &Stop,
+    ) -> bool {
         let estop = inputs.estop != guard.estop_low;
         let seen = [self.first, self.now, self.held].iter().all(|&seen| seen == estop);
         seen && (!estop || (stop.frozen && stop.fault.is_some()))
@@ -75,7 +95,11 @@ impl Watch {
 
     /// Strobes before the strobe at which the watchdog expires.
     pub(super) fn strobes_to_silence(&self, guard: &Guard) -> u64 {
-        if guard.watchdog == 0 { u64::MAX } else { self.strobes_to(guard, guard.watchdog - self.silence) }
+        if guard.watchdog == 0 {
+            u64::MAX
+        } else {
+            self.strobes_to(guard, guard.watchdog - self.silence)
+        }
     }
 
     /// Strobes before the first strobe at which the warm-up time is over.
@@ -86,11 +110,12 @@ impl Watch {
     /// Strobes before the first strobe that finds a counter saturated which is `rounds` rounds
     /// below its maximum.
     fn strobes_to(&self, guard: &Guard, rounds: u32) -> u64 {
-        u64::from(rounds) * u64::from(guard.round) - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
+        u64::from(rounds) * u64::from(guard.round)
+            - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
     }
 
     /// Strobes before the first strobe in this tick of a round.
-    pub(super) const fn strobes_to_look(&self, guard: &Guard, tick_of_round: u32) -> u64 {
+    pub(super) const fn strobes_to_sample(&self, guard: &Guard, tick_of_round: u32) -> u64 {
         ((tick_of_round + guard.round - self.tick_of_round) % guard.round) as u64
     }
 

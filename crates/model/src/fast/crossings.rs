@@ -36,7 +36,8 @@ struct Batch {
 }
 
 impl Batch {
-    const EMPTY: Self = Self { ticks: [0; BATCH], p: [0; BATCH], v: [0; BATCH], phases: [0; BATCH] };
+    const EMPTY: Self =
+        Self { ticks: [0; BATCH], p: [0; BATCH], v: [0; BATCH], phases: [0; BATCH] };
 
     /// Computes the phases of the first `count` ticks. If `backward`, P and V are mirrored.
     fn bisect(&mut self, count: usize, backward: bool, phase_bits: u32) {
@@ -193,7 +194,13 @@ impl Stretch {
         // The coefficients of powers of n instead of binomials.
         let (c1, c2, c3) = (b + j / 3.0, (a - j) / 2.0, j / 6.0);
         let period = 1.0 / v;
-        for (chunk, ticks) in batch.ticks.as_chunks_mut::<LANES>().0.iter_mut().enumerate().take(count.div_ceil(LANES))
+        for (chunk, ticks) in batch
+            .ticks
+            .as_chunks_mut::<LANES>()
+            .0
+            .iter_mut()
+            .enumerate()
+            .take(count.div_ceil(LANES))
         {
             let distance = |i: usize| (chunk * LANES + i + 1) as f64 - begin;
             let mut roots = [0.0; LANES];
@@ -252,8 +259,13 @@ mod tests {
         let straight = Stretch { cubic: Cubic { a: 0, j: 0, ..stretch().cubic }, ..stretch() };
         let square = Stretch { cubic: Cubic { j: 0, ..stretch().cubic }, ..stretch() };
         for count in [1, 7, 8, 9, BATCH] {
-            let all =
-                |batch: Batch| (batch.ticks[..count].to_vec(), batch.p[..count].to_vec(), batch.v[..count].to_vec());
+            let all = |batch: Batch| {
+                (
+                    batch.ticks[..count].to_vec(),
+                    batch.p[..count].to_vec(),
+                    batch.v[..count].to_vec(),
+                )
+            };
             assert_eq!(all(guessed::<1>(straight, count)), all(guessed::<3>(straight, count)));
             assert_eq!(all(guessed::<2>(square, count)), all(guessed::<3>(square, count)));
         }

@@ -3,14 +3,14 @@
 use crate::parts::shaper;
 use carrystep_core::engine::MAX_AXES;
 
-/// A change on an axis' pins. STEP always falls W clocks after it rises, so its falling edge is not
-/// reported.
+/// A change on an axis' pins. STEP always falls `step_high` clocks after it rises, so its falling
+/// edge is not reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Change {
     /// STEP rises.
     Rise,
     /// DIR changes its level.
-    Turn,
+    DirChange,
 }
 
 /// A change on the pins of one axis.
@@ -50,25 +50,36 @@ pub(super) type Record = u64;
 impl Edge {
     #[inline]
     pub(super) const fn record(self) -> Record {
-        let turn = matches!(self.change, Change::Turn) as u64;
-        self.clock << 5 | (self.axis as u64) << 2 | turn << 1 | self.backward as u64
+        let dir_change = matches!(self.change, Change::DirChange) as u64;
+        self.clock << 5 | (self.axis as u64) << 2 | dir_change << 1 | self.backward as u64
     }
 
     #[inline]
     const fn from_record(record: Record) -> Self {
-        let change = if record >> 1 & 1 == 1 { Change::Turn } else { Change::Rise };
-        Self { clock: record >> 5, axis: (record >> 2 & 7) as u8, change, backward: record & 1 == 1 }
+        let change = if record >> 1 & 1 == 1 { Change::DirChange } else { Change::Rise };
+        Self {
+            clock: record >> 5,
+            axis: (record >> 2 & 7) as u8,
+            change,
+            backward: record & 1 == 1,
+        }
     }
 }
 
 /// Reports the edges on an axis' pins between two consecutive states.
-pub(super) fn changes(clock: u64, axis: u8, before: &shaper::State, now: &shaper::State, to: &mut impl Edges) {
+pub(super) fn changes(
+    clock: u64,
+    axis: u8,
+    before: &shaper::ShaperState,
+    now: &shaper::ShaperState,
+    to: &mut impl Edges,
+) {
     let backward = now.dir;
     if now.position != before.position {
         to.edge(Edge { clock, axis, change: Change::Rise, backward });
     }
     if now.dir != before.dir {
-        to.edge(Edge { clock, axis, change: Change::Turn, backward });
+        to.edge(Edge { clock, axis, change: Change::DirChange, backward });
     }
 }
 
@@ -115,7 +126,12 @@ impl Window {
 /// Merges from both ends at once. Each search depends on the result of the previous one, so two
 /// independent searches take no longer than one. The selection is branch-free, because the next
 /// axis cannot be predicted.
-fn merge<const N: usize>(axes: [&[Record]; N], edges: usize, late: &mut Vec<Record>, to: &mut impl Edges) {
+fn merge<const N: usize>(
+    axes: [&[Record]; N],
+    edges: usize,
+    late: &mut Vec<Record>,
+    to: &mut impl Edges,
+) {
     let (mut next, mut last) = ([1; N], axes.map(|axis| axis.len() - 2));
     late.clear();
     for _ in 0..edges / 2 {
@@ -131,14 +147,20 @@ fn merge<const N: usize>(axes: [&[Record]; N], edges: usize, late: &mut Vec<Reco
         late.push(greatest);
     }
     if edges % 2 == 1 {
-        to.edge(Edge::from_record(best(std::array::from_fn::<_, N, _>(|axis| axes[axis][next[axis]]), Record::min)));
+        to.edge(Edge::from_record(best(
+            std::array::from_fn::<_, N, _>(|axis| axes[axis][next[axis]]),
+            Record::min,
+        )));
     }
     late.iter().rev().for_each(|record| to.edge(Edge::from_record(*record)));
 }
 
 /// Returns the least or the greatest record with the fewest dependent comparisons.
 #[inline(always)]
-fn best<const N: usize>(mut records: [Record; N], better: impl Fn(Record, Record) -> Record) -> Record {
+fn best<const N: usize>(
+    mut records: [Record; N],
+    better: impl Fn(Record, Record) -> Record,
+) -> Record {
     let mut count = N;
     while count > 1 {
         let half = count / 2;

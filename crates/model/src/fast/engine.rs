@@ -49,14 +49,20 @@ impl FastEngine {
     /// offered word or start is accepted, axes start, or `fault`, `halted`, `idle`, `enabled` or
     /// `homing` changes after it. Returns the outputs in that cycle, or `None` if `end` was
     /// reached.
-    pub fn run(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) -> Option<EngineOutputs> {
+    pub fn run(
+        &mut self,
+        inputs: &EngineInputs,
+        end: u64,
+        to: &mut impl Edges,
+    ) -> Option<EngineOutputs> {
         while self.cycle < end {
             if self.leap(inputs, end - self.cycle, to) > 0 {
                 continue;
             }
             let outputs = self.outputs(inputs);
             self.clock(inputs, to);
-            let taken = (outputs.put_ready && inputs.put.is_some()) || (outputs.start_ready && inputs.start.is_some());
+            let taken = (outputs.put_ready && inputs.put.is_some())
+                || (outputs.start_ready && inputs.start.is_some());
             let state = |outputs: EngineOutputs| {
                 let EngineOutputs { fault, halted, idle, enabled, homing, .. } = outputs;
                 (fault, halted, idle, enabled, homing)
@@ -71,7 +77,8 @@ impl FastEngine {
     /// Advances by one cycle and reports the edges on the pins to `to`.
     pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let axes = self.core.build().axes();
-        let before: [_; MAX_AXES] = std::array::from_fn(|axis| *self.core.shaper(axis.min(axes - 1)));
+        let before: [_; MAX_AXES] =
+            std::array::from_fn(|axis| *self.core.shaper(axis.min(axes - 1)));
         self.core.clock(inputs);
         self.cycle += 1;
         for (axis, before) in before.iter().enumerate().take(axes) {
@@ -92,7 +99,8 @@ impl FastEngine {
             let build = self.core.build();
             let from = From { cycle: self.cycle, clock_of_tick };
             let strobes;
-            (clocks, strobes) = self.passages.pass(&mut self.axes, from, clocks, &build.timebase, &build.pins, to);
+            (clocks, strobes) =
+                self.passages.pass(&mut self.axes, from, clocks, &build.timebase, &build.pins, to);
             self.core.moved(&self.axes, strobes);
         }
         self.core.pass(inputs, clocks);

@@ -2,7 +2,7 @@
 //! order of time. It chooses the length of windows.
 
 use super::edges::{Edges, Window as EdgeWindow};
-use super::lane::{self, FaultIn, Window};
+use super::one_axis::{self, FaultIn, Window};
 use crate::parts::cubic::MOST_TICKS;
 use crate::parts::moving::Moving;
 use carrystep_core::engine::MAX_AXES;
@@ -73,9 +73,13 @@ impl Passages {
         if clocks == 0 {
             return Ok(());
         }
-        let window = Window { tick: from.cycle - from.clock_of_tick, from: from.cycle, to: from.cycle + clocks };
+        let window = Window {
+            tick: from.cycle - from.clock_of_tick,
+            from: from.cycle,
+            to: from.cycle + clocks,
+        };
         for (((number, axis), pins), edges) in (0..).zip(axes).zip(pins).zip(lists) {
-            lane::pass(axis, number, window, time, *pins, edges)?;
+            one_axis::pass(axis, number, window, time, *pins, edges)?;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@
 //! executed clock by clock until the shaper is calm again.
 
 use super::edges::{Change, Edge, Record};
-use crate::parts::shaper::{self, Input};
+use crate::parts::shaper::{self, ShaperInput};
 use carrystep_core::PinTiming;
 
 /// The clock in which the shaper would latch an overrun.
@@ -21,7 +21,7 @@ pub(super) struct Pins<'a> {
     calm: bool,
     /// The state in clock `at`. While calm, only DIR, the position and the constant fields are up
     /// to date.
-    state: shaper::State,
+    state: shaper::ShaperState,
     at: u64,
     /// The first clock in which each timer is 0.
     busy: u64,
@@ -31,21 +31,30 @@ pub(super) struct Pins<'a> {
 
 impl<'a> Pins<'a> {
     /// The shaper in clock `at`, with the sign of the speed that it sees.
-    pub fn new(axis: u8, pins: PinTiming, state: shaper::State, sign: i8, at: u64, edges: &'a mut Vec<Record>) -> Self {
+    pub fn new(
+        axis: u8,
+        pins: PinTiming,
+        state: shaper::ShaperState,
+        sign: i8,
+        at: u64,
+        edges: &'a mut Vec<Record>,
+    ) -> Self {
         let after = |timer: u32| at + u64::from(timer);
         let (busy, hold, setup) = (after(state.busy), after(state.hold), after(state.setup));
         let agrees = sign == 0 || (sign < 0) == state.want;
-        let calm = agrees && state.owed.is_none() && state.dir == state.want;
+        let calm = agrees && state.held_back.is_none() && state.dir == state.want;
         Self { axis, pins, edges, sign, calm, state, at, busy, hold, setup }
     }
 
     /// Requests steps in these clocks, which must ascend.
     #[inline]
     pub fn requests(&mut self, clocks: &[u64], backward: bool) -> Result<(), Overrun> {
-        let period = u64::from(self.pins.width + self.pins.gap);
+        let period = u64::from(self.pins.step_high + self.pins.step_low);
         let (Some(first), Some(last)) = (clocks.first(), clocks.last()) else { return Ok(()) };
         let ready = self.calm && backward == self.state.dir && *first >= self.busy.max(self.setup);
-        if !ready || clocks.windows(2).fold(false, |close, pair| close | (pair[1] - pair[0] < period)) {
+        if !ready
+            || clocks.windows(2).fold(false, |close, pair| close | (pair[1] - pair[0] < period))
+        {
             return clocks.iter().try_for_each(|at| self.request(*at, backward));
         }
         let axis = self.axis;
@@ -60,17 +69,19 @@ impl<'a> Pins<'a> {
         if !self.calm || backward != self.state.dir || at < self.busy.max(self.setup) {
             return self.hard_request(at, backward);
         }
-        self.edges.push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
+        self.edges
+            .push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
         self.made(at, 1, backward);
         Ok(())
     }
 
     /// Records that `steps` steps rose without delay, the last of them requested in clock `at`.
     fn made(&mut self, at: u64, steps: i32, backward: bool) {
-        self.busy = at + u64::from(self.pins.width + self.pins.gap);
-        self.hold = at + u64::from(self.pins.hold);
+        self.busy = at + u64::from(self.pins.step_high + self.pins.step_low);
+        self.hold = at + u64::from(self.pins.dir_hold);
         self.state.step = true;
-        self.state.position = self.state.position.wrapping_add(if backward { -steps } else { steps });
+        self.state.position =
+            self.state.position.wrapping_add(if backward { -steps } else { steps });
     }
 
     /// Sets the sign of the speed from clock `at` on.
@@ -84,7 +95,7 @@ impl<'a> Pins<'a> {
     }
 
     /// Returns the shaper in clock `at`.
-    pub fn finish(mut self, at: u64) -> Result<shaper::State, Overrun> {
+    pub fn finish(mut self, at: u64) -> Result<shaper::ShaperState, Overrun> {
         self.reach(at)?;
         if self.calm {
             self.wake(at);
@@ -114,8 +125,14 @@ impl<'a> Pins<'a> {
         // A timer is at most 17 bits wide, so the value fits.
         let timer = |end: u64| end.saturating_sub(at) as u32;
         let busy = timer(self.busy);
-        let step = self.state.step && busy >= self.pins.gap;
-        self.state = shaper::State { step, busy, hold: timer(self.hold), setup: timer(self.setup), ..self.state };
+        let step = self.state.step && busy >= self.pins.step_low;
+        self.state = shaper::ShaperState {
+            step,
+            busy,
+            hold: timer(self.hold),
+            setup: timer(self.setup),
+            ..self.state
+        };
         self.at = at;
         self.calm = false;
     }
@@ -123,21 +140,27 @@ impl<'a> Pins<'a> {
     /// Executes one clock of [`shaper::clock`].
     fn clock(&mut self, request: Option<bool>) -> Result<(), Overrun> {
         let before = self.state;
-        let next = shaper::clock(before, Input { request, sign: self.sign, frozen: false }, self.pins);
+        let next = shaper::clock(
+            before,
+            ShaperInput { request, sign: self.sign, frozen: false },
+            self.pins,
+        );
         if next.overrun {
             return Err(Overrun(self.at));
         }
         self.at += 1;
-        let edge = |change, backward| Edge { clock: self.at, axis: self.axis, change, backward }.record();
+        let edge =
+            |change, backward| Edge { clock: self.at, axis: self.axis, change, backward }.record();
         if next.position != before.position {
             self.edges.push(edge(Change::Rise, before.dir));
         }
         if next.dir != before.dir {
-            self.edges.push(edge(Change::Turn, next.dir));
+            self.edges.push(edge(Change::DirChange, next.dir));
         }
         let after = |timer: u32| self.at + u64::from(timer);
-        (self.busy, self.hold, self.setup) = (after(next.busy), after(next.hold), after(next.setup));
-        self.calm = next.owed.is_none() && next.dir == next.want;
+        (self.busy, self.hold, self.setup) =
+            (after(next.busy), after(next.hold), after(next.setup));
+        self.calm = next.held_back.is_none() && next.dir == next.want;
         self.state = next;
         Ok(())
     }

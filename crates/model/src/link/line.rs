@@ -2,7 +2,7 @@
 
 use super::spi::Spi;
 use super::uart::{Receiver, Transmitter};
-use carrystep_core::link::{Line, LinkInputs};
+use carrystep_core::link::{LineKind, LinkInputs};
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum End {
@@ -11,13 +11,13 @@ pub(super) enum End {
 }
 
 impl End {
-    pub(super) const fn new(line: Line) -> Self {
+    pub(super) const fn new(line: LineKind) -> Self {
         match line {
-            Line::Uart(uart) => Self::Uart {
+            LineKind::Uart(uart) => Self::Uart {
                 receiver: Receiver::new(uart.bit_clocks()),
                 transmitter: Transmitter::new(uart.bit_clocks()),
             },
-            Line::Spi => Self::Spi(Spi::new()),
+            LineKind::Spi => Self::Spi(Spi::new()),
         }
     }
 
@@ -62,7 +62,9 @@ impl End {
     /// other pins of an SPI stay at rest, and `offered` stays the same.
     pub(super) fn quiet(&self, rx: bool, offered: bool) -> u64 {
         match self {
-            Self::Uart { receiver, transmitter } => receiver.quiet(rx).min(transmitter.quiet(offered)),
+            Self::Uart { receiver, transmitter } => {
+                receiver.quiet(rx).min(transmitter.quiet(offered))
+            }
             Self::Spi(spi) => spi.quiet(),
         }
     }

@@ -70,7 +70,8 @@ impl Spi {
         if self.now.select_n {
             self.count = 0;
         } else if self.now.sck && !self.before {
-            (self.comes, self.goes, self.count) = (self.shifted(), self.goes << 1, (self.count + 1) & 7);
+            (self.comes, self.goes, self.count) =
+                (self.shifted(), self.goes << 1, (self.count + 1) & 7);
         }
         if let Some(byte) = whole {
             (self.ended, self.goes) = (byte == END, taken.unwrap_or(END));

@@ -34,7 +34,9 @@ impl Receiver {
             None if self.now => None,
             None => Some((self.bit_clocks + self.bit_clocks / 2 - 1, MARK)),
             Some((0, bits)) if bits & 1 == 1 => None,
-            Some((0, bits)) => Some((self.bit_clocks - 1, bits >> 1 | if self.now { MARK } else { 0 })),
+            Some((0, bits)) => {
+                Some((self.bit_clocks - 1, bits >> 1 | if self.now { MARK } else { 0 }))
+            }
             Some((left, bits)) => Some((left - 1, bits)),
         };
         self.now = self.sync;
@@ -90,12 +92,18 @@ impl Transmitter {
 
     pub(super) fn clock(&mut self, taken: Option<u8>) {
         if let Some(byte) = taken {
-            *self = Self { line: false, left: self.bit_clocks - 1, bits: MARK | u16::from(byte), ..*self };
+            *self = Self {
+                line: false,
+                left: self.bit_clocks - 1,
+                bits: MARK | u16::from(byte),
+                ..*self
+            };
         } else if self.left > 0 {
             self.left -= 1;
         } else if self.bits != 0 {
             let bits = self.bits;
-            *self = Self { line: bits & 1 == 1, left: self.bit_clocks - 1, bits: bits >> 1, ..*self };
+            *self =
+                Self { line: bits & 1 == 1, left: self.bit_clocks - 1, bits: bits >> 1, ..*self };
         }
     }
 

@@ -17,7 +17,7 @@ use carrystep_core::Segment;
 
 /// The registers of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct State {
+pub struct AxisRegisters {
     /// Fraction of a step that the axis has travelled, in 2^-64 step.
     pub p: u64,
     /// Speed in 2^-64 step per tick; negative is backward.
@@ -38,7 +38,7 @@ pub struct State {
 
 /// The output of one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Output {
+pub struct TickOutput {
     /// The step in this tick, if there is one.
     pub step: Option<Step>,
     /// Sign of the V that this tick added: -1, 0 or 1.
@@ -49,10 +49,19 @@ pub struct Output {
     pub underrun: bool,
 }
 
-impl State {
+impl AxisRegisters {
     /// An axis at rest, with P = `start_value` (2^-64 step) and no segment waiting.
     pub const fn at_rest(start_value: u64) -> Self {
-        Self { p: start_value, v: 0, a: 0, j: 0, left: 0, running: false, last: false, waiting: None }
+        Self {
+            p: start_value,
+            v: 0,
+            a: 0,
+            j: 0,
+            left: 0,
+            running: false,
+            last: false,
+            waiting: None,
+        }
     }
 
     /// True in the last tick of the running segment.
@@ -74,23 +83,26 @@ impl State {
 }
 
 /// Executes one tick and returns the next state and the output. `go` starts the waiting segment if
-/// the axis is [`State::startable`]. `phase_bits` is log2 of the number of phases per tick.
-pub fn tick(state: State, go: bool, phase_bits: u32) -> (State, Output) {
-    let mut output = Output {
+/// the axis is [`AxisRegisters::startable`]. `phase_bits` is log2 of the number of phases per tick.
+pub fn tick(state: AxisRegisters, go: bool, phase_bits: u32) -> (AxisRegisters, TickOutput) {
+    let mut output = TickOutput {
         step: crosses(state.p, state.v)
             .then(|| Step { backward: state.v < 0, phase: bisect(state.p, state.v, phase_bits) }),
         sign: state.v.signum() as i8,
-        ..Output::default()
+        ..TickOutput::default()
     };
-    let moved = State { p: state.p.wrapping_add(state.v.cast_unsigned()), ..state };
+    let moved = AxisRegisters { p: state.p.wrapping_add(state.v.cast_unsigned()), ..state };
 
     let ending = state.ending();
     let load = state.waiting.filter(|_| (ending && !state.last) || (state.startable() && go));
     let (next, speed) = if let Some(Segment { ticks, v, a, j, last }) = load {
-        (State { v, a, j, left: ticks, running: true, last, waiting: None, ..moved }, Some(v))
+        (
+            AxisRegisters { v, a, j, left: ticks, running: true, last, waiting: None, ..moved },
+            Some(v),
+        )
     } else if state.running && !ending {
         let speed = state.v.checked_add(state.a);
-        let next = State {
+        let next = AxisRegisters {
             v: speed.unwrap_or(0),
             a: state.a.wrapping_add(state.j),
             left: state.left.wrapping_sub(1),

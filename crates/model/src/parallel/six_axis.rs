@@ -20,13 +20,13 @@ use carrystep_core::{AXES, Build, Faults};
 
 /// One axis: its accumulator, the two stages behind it, its latched faults and its step shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Lane {
-    pub axis: axis::State,
+pub(crate) struct AxisModel {
+    pub axis: axis::AxisRegisters,
     pub computed: Stage,
     pub emitted: Stage,
     pub overspeed: bool,
     pub underrun: bool,
-    pub shaper: shaper::State,
+    pub shaper: shaper::ShaperState,
 }
 
 /// The state of the core. [`SixAxis::outputs`] and [`SixAxis::clock`] together are one clock cycle.
@@ -37,46 +37,53 @@ pub struct SixAxis {
     phase: u32,
     armed: Option<u8>,
     protocol: bool,
-    pub(crate) lanes: [Lane; AXES],
+    pub(crate) axis_models: [AxisModel; AXES],
 }
 
 impl SixAxis {
     /// The core at configuration.
     pub fn new(build: &Build) -> Self {
-        let lane = |axis: usize| Lane {
-            axis: axis::State::at_rest(build.phase.start_value()),
+        let axis_model = |axis: usize| AxisModel {
+            axis: axis::AxisRegisters::at_rest(build.phase.start_value()),
             computed: Stage::default(),
             emitted: Stage::default(),
             overspeed: false,
             underrun: false,
-            shaper: shaper::State::at_configuration(build.pins[axis]),
+            shaper: shaper::ShaperState::at_configuration(build.pins[axis]),
         };
-        Self { build: build.clone(), sub: 0, phase: 0, armed: None, protocol: false, lanes: std::array::from_fn(lane) }
+        Self {
+            build: build.clone(),
+            sub: 0,
+            phase: 0,
+            armed: None,
+            protocol: false,
+            axis_models: std::array::from_fn(axis_model),
+        }
     }
 
     /// The registers of an axis' accumulator. Panics if `axis` is not less than 6.
-    pub fn axis(&self, axis: usize) -> &axis::State {
-        &self.lanes[axis].axis
+    pub fn axis(&self, axis: usize) -> &axis::AxisRegisters {
+        &self.axis_models[axis].axis
     }
 
     /// The registers of an axis' step shaper. Panics if `axis` is not less than 6.
-    pub fn shaper(&self, axis: usize) -> &shaper::State {
-        &self.lanes[axis].shaper
+    pub fn shaper(&self, axis: usize) -> &shaper::ShaperState {
+        &self.axis_models[axis].shaper
     }
 
     /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
         let faults = self.faults();
         let frozen = faults.any();
-        let bits = |of: fn(&Lane) -> bool| bits(&self.lanes, of);
+        let bits = |of: fn(&AxisModel) -> bool| bits(&self.axis_models, of);
         Outputs {
             seg_ready: !frozen && self.takes(inputs.segment.map_or(0, |(axis, _)| axis)),
             start_ready: !frozen && self.armed.is_none(),
-            step: bits(|lane| lane.shaper.step),
-            dir: bits(|lane| lane.shaper.dir),
-            position: std::array::from_fn(|axis| self.lanes[axis].shaper.position),
-            discarded: std::array::from_fn(|axis| self.lanes[axis].shaper.discarded),
-            idle: self.armed.is_none() && self.lanes.iter().all(Lane::idle),
+            step: bits(|axis_model| axis_model.shaper.step),
+            dir: bits(|axis_model| axis_model.shaper.dir),
+            position: std::array::from_fn(|axis| self.axis_models[axis].shaper.position),
+            discarded: std::array::from_fn(|axis| self.axis_models[axis].shaper.discarded),
+            idle: self.armed.is_none() && self.axis_models.iter().all(AxisModel::idle),
             faults,
             started: !frozen && self.strobe() && self.go().is_some(),
         }
@@ -86,26 +93,32 @@ impl SixAxis {
     pub fn clock(&mut self, inputs: &Inputs) {
         let frozen = self.faults().any();
         let strobe = self.strobe();
-        let clear = inputs.clear && frozen && !self.lanes.iter().any(Lane::on_its_way);
+        let clear = inputs.clear && frozen && !self.axis_models.iter().any(AxisModel::on_its_way);
         let go = self.go().filter(|_| strobe && !frozen);
         let phase_start = self.sub == 0;
         let armed_before = self.armed;
         let seg_ready = !frozen && self.takes(inputs.segment.map_or(0, |(axis, _)| axis));
-        let waiting_before: u8 = bits(&self.lanes, |lane| lane.axis.waiting.is_some());
+        let waiting_before: u8 =
+            bits(&self.axis_models, |axis_model| axis_model.axis.waiting.is_some());
 
-        for (axis, lane) in self.lanes.iter_mut().enumerate() {
-            let request = lane.emitted.step.filter(|step| phase_start && step.phase == self.phase);
-            let input = shaper::Input { request: request.map(|step| step.backward), sign: lane.emitted.sign, frozen };
-            lane.shaper = shaper::clock(lane.shaper, input, self.build.pins[axis]);
+        for (axis, axis_model) in self.axis_models.iter_mut().enumerate() {
+            let request =
+                axis_model.emitted.step.filter(|step| phase_start && step.phase == self.phase);
+            let input = shaper::ShaperInput {
+                request: request.map(|step| step.backward),
+                sign: axis_model.emitted.sign,
+                frozen,
+            };
+            axis_model.shaper = shaper::clock(axis_model.shaper, input, self.build.pins[axis]);
             if strobe {
                 let selected = go.is_some_and(|mask| mask >> axis & 1 == 1);
-                lane.tick(selected, frozen, self.build.timebase.phase_bits());
+                axis_model.tick(selected, frozen, self.build.timebase.phase_bits());
             }
             if frozen {
-                lane.axis = lane.axis.stopped();
+                axis_model.axis = axis_model.axis.stopped();
             }
             if clear {
-                lane.clear(self.build.phase.start_value());
+                axis_model.clear(self.build.phase.start_value());
             }
         }
         if go.is_some() || frozen {
@@ -115,8 +128,8 @@ impl SixAxis {
             self.protocol = false;
         }
         if let Some((axis, segment)) = inputs.segment.filter(|_| seg_ready) {
-            match self.lanes.get_mut(usize::from(axis)).filter(|_| segment.ticks > 0) {
-                Some(lane) => lane.axis.waiting = Some(segment),
+            match self.axis_models.get_mut(usize::from(axis)).filter(|_| segment.ticks > 0) {
+                Some(axis_model) => axis_model.axis.waiting = Some(segment),
                 None => self.protocol = true,
             }
         }
@@ -133,9 +146,9 @@ impl SixAxis {
     /// The latched faults. Any of them freezes the core.
     pub fn faults(&self) -> Faults {
         Faults {
-            overrun: bits(&self.lanes, |lane| lane.shaper.overrun),
-            overspeed: bits(&self.lanes, |lane| lane.overspeed),
-            underrun: bits(&self.lanes, |lane| lane.underrun),
+            overrun: bits(&self.axis_models, |axis_model| axis_model.shaper.overrun),
+            overspeed: bits(&self.axis_models, |axis_model| axis_model.overspeed),
+            underrun: bits(&self.axis_models, |axis_model| axis_model.underrun),
             protocol: self.protocol,
         }
     }
@@ -143,12 +156,14 @@ impl SixAxis {
     /// True if a segment for this axis is accepted: its waiting slot is free, or the axis does not
     /// exist (a protocol fault).
     fn takes(&self, axis: u8) -> bool {
-        self.lanes.get(usize::from(axis)).is_none_or(|lane| lane.axis.waiting.is_none())
+        self.axis_models
+            .get(usize::from(axis))
+            .is_none_or(|axis_model| axis_model.axis.waiting.is_none())
     }
 
     /// The axes that start in the coming tick: all armed axes together, or `None`.
     fn go(&self) -> Option<u8> {
-        let startable = bits(&self.lanes, |lane| lane.axis.startable());
+        let startable = bits(&self.axis_models, |axis_model| axis_model.axis.startable());
         self.armed.filter(|mask| mask & !startable == 0)
     }
 
@@ -187,25 +202,30 @@ impl SixAxis {
     /// True if the inputs change nothing in this cycle, the next strobe only adds, and neither
     /// `idle` nor a fault can occur before a segment ends.
     pub(crate) fn only_adds(&self, inputs: &Inputs) -> bool {
-        let moving = self.armed.is_some() || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
+        let moving = self.armed.is_some()
+            || self.axis_models.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
         moving && !self.faults().any() && self.go().is_none() && !self.hears(inputs)
     }
 
     /// True if nothing changes as long as the inputs stay the same.
     pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
         let frozen = self.faults().any();
-        let deaf =
-            if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
-        deaf && self.lanes.iter().all(Lane::is_still)
+        let deaf = if frozen {
+            !inputs.clear && self.armed.is_none()
+        } else {
+            self.go().is_none() && !self.hears(inputs)
+        };
+        deaf && self.axis_models.iter().all(AxisModel::is_still)
     }
 
     /// True if a core that is not frozen would accept an offered segment or start in this cycle.
     fn hears(&self, inputs: &Inputs) -> bool {
-        inputs.segment.is_some_and(|(axis, _)| self.takes(axis)) || (inputs.start.is_some() && self.armed.is_none())
+        inputs.segment.is_some_and(|(axis, _)| self.takes(axis))
+            || (inputs.start.is_some() && self.armed.is_none())
     }
 }
 
-impl Lane {
+impl AxisModel {
     /// Executes the strobe: the stages advance, and one tick is added unless the core is frozen.
     pub(crate) fn tick(&mut self, go: bool, frozen: bool, phase_bits: u32) {
         self.emitted = self.computed;
@@ -220,7 +240,7 @@ impl Lane {
     }
 
     fn clear(&mut self, start_value: u64) {
-        self.axis = axis::State::at_rest(start_value);
+        self.axis = axis::AxisRegisters::at_rest(start_value);
         self.computed.sign = 0;
         self.emitted.sign = 0;
         self.overspeed = false;
@@ -235,28 +255,43 @@ impl Lane {
 
     /// True if no clock and no strobe changes the axis.
     fn is_still(&self) -> bool {
-        !self.axis.running && self.computed.is_empty() && self.emitted.is_empty() && self.shaper.is_still(false)
+        !self.axis.running
+            && self.computed.is_empty()
+            && self.emitted.is_empty()
+            && self.shaper.is_still(false)
     }
 
     /// The part of the axis that a window of the fast model changes.
     pub(crate) fn moving(&self) -> Moving {
         let cubic = Cubic { v: self.axis.v, a: self.axis.a, j: self.axis.j };
-        Moving { p: self.axis.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+        Moving {
+            p: self.axis.p,
+            cubic,
+            computed: self.computed,
+            emitted: self.emitted,
+            shaper: self.shaper,
+        }
     }
 
     /// Writes back the axis as it is after a window with this many strobes.
     pub(crate) fn moved(&mut self, moved: &Moving, strobes: u32) {
         let Moving { p, cubic: Cubic { v, a, .. }, computed, emitted, shaper } = *moved;
         let left = self.axis.left - if self.axis.running { strobes } else { 0 };
-        self.axis = axis::State { p, v, a, left, ..self.axis };
+        self.axis = axis::AxisRegisters { p, v, a, left, ..self.axis };
         (self.computed, self.emitted, self.shaper) = (computed, emitted, shaper);
     }
 
     fn idle(&self) -> bool {
-        !self.axis.running && self.axis.waiting.is_none() && self.shaper.owed.is_none() && !self.on_its_way()
+        !self.axis.running
+            && self.axis.waiting.is_none()
+            && self.shaper.held_back.is_none()
+            && !self.on_its_way()
     }
 }
 
-fn bits(lanes: &[Lane; AXES], of: impl Fn(&Lane) -> bool) -> u8 {
-    lanes.iter().enumerate().fold(0, |bits, (axis, lane)| bits | u8::from(of(lane)) << axis)
+fn bits(axis_models: &[AxisModel; AXES], of: impl Fn(&AxisModel) -> bool) -> u8 {
+    axis_models
+        .iter()
+        .enumerate()
+        .fold(0, |bits, (axis, axis_model)| bits | u8::from(of(axis_model)) << axis)
 }

@@ -67,7 +67,11 @@ impl Cubic {
     /// The registers before tick `n`. The cubic must satisfy [`Cubic::stays_in_range`] for `n`
     /// ticks.
     pub const fn after(self, n: u32) -> Self {
-        Self { v: self.speed_wrapping(n), a: self.a.wrapping_add(self.j.wrapping_mul(n as i64)), j: self.j }
+        Self {
+            v: self.speed_wrapping(n),
+            a: self.a.wrapping_add(self.j.wrapping_mul(n as i64)),
+            j: self.j,
+        }
     }
 
     /// The same motion in the opposite direction. It is exact if this cubic stays in range.
@@ -86,8 +90,10 @@ impl Cubic {
     /// True if `ticks` ticks keep both V and A in the open interval (-2^63, 2^63).
     pub fn stays_in_range(self, ticks: u32) -> bool {
         let inside = |x: i128| x.unsigned_abs() <= i64::MAX.unsigned_abs().into();
-        let ends = [self.speed(ticks), self.acceleration(0), self.acceleration(ticks), self.j.into()];
-        ends.into_iter().all(inside) && self.extremum(ticks).is_none_or(|tick| inside(self.speed(tick)))
+        let ends =
+            [self.speed(ticks), self.acceleration(0), self.acceleration(ticks), self.j.into()];
+        ends.into_iter().all(inside)
+            && self.extremum(ticks).is_none_or(|tick| inside(self.speed(tick)))
     }
 
     /// How many of the next `ticks` ticks (at least 1) add a V with the sign of the first one. The
@@ -135,7 +141,15 @@ mod tests {
 
     #[test]
     fn closed_forms_equal_tick_by_tick_sums() {
-        for (v, a, j) in [(-50, 31, -4), (7, -3, 1), (0, 5, -2), (0, 0, 1), (i64::MAX, -1, 0), (-9, 0, 3), (8, -4, 0)] {
+        for (v, a, j) in [
+            (-50, 31, -4),
+            (7, -3, 1),
+            (0, 5, -2),
+            (0, 0, 1),
+            (i64::MAX, -1, 0),
+            (-9, 0, 3),
+            (8, -4, 0),
+        ] {
             let cubic = Cubic { v, a, j };
             let ticked = ticked(cubic, 40);
             for n in 0..40 {
@@ -144,7 +158,10 @@ mod tests {
                 assert_eq!((cubic.speed(n), cubic.acceleration(n)), ticked[n as usize]);
             }
             let length = cubic.same_sign(40);
-            let same = ticked.iter().take_while(|(v, _)| v.signum() == i128::from(cubic.v).signum()).count();
+            let same = ticked
+                .iter()
+                .take_while(|(v, _)| v.signum() == i128::from(cubic.v).signum())
+                .count();
             assert!(
                 length as usize <= same.max(1) && (length as usize == same.min(40) || j != 0),
                 "{cubic:?} {length}"

@@ -11,5 +11,5 @@ pub(crate) struct Moving {
     pub cubic: Cubic,
     pub computed: Stage,
     pub emitted: Stage,
-    pub shaper: shaper::State,
+    pub shaper: shaper::ShaperState,
 }

@@ -72,14 +72,19 @@ mod tests {
     fn bisect_all_equals_bisect_for_each_tick() {
         let mut seed = 1_u64;
         let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             seed ^ seed >> 29
         };
         for _ in 0..1000 {
             let p: [u64; 16] = std::array::from_fn(|_| next());
             let v: [i64; 16] = std::array::from_fn(|_| next().cast_signed());
             for bits in [0, 2, 4] {
-                assert_eq!(bisect_all(&p, &v, bits), std::array::from_fn(|i| bisect(p[i], v[i], bits)));
+                assert_eq!(
+                    bisect_all(&p, &v, bits),
+                    std::array::from_fn(|i| bisect(p[i], v[i], bits))
+                );
             }
         }
     }

@@ -1,23 +1,23 @@
-//! The step shaper of one axis. It keeps the promised pulse width W, gap S, direction set-up D and
-//! direction hold H on the pins STEP and DIR, all in clocks. [`clock`] must stay equal to the
+//! The step shaper of one axis. It keeps the promised times on the pins STEP and DIR: `step_high`,
+//! `step_low`, `dir_setup` and `dir_hold`, all in clocks. [`clock`] must stay equal to the
 //! section "shaper" of docs/clock-by-clock.md.
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
-//!          :<-- D -->:<--- H --->:             :
+//!          :DIR_SETUP:<-DIR_HOLD>:             :
 //! STEP ______________/^^^^^^\________/^^^^^^\__________
-//!                    :<-W ->:<- S -->:
+//!           STEP_HIGH:<---->:<------>:STEP_LOW
 //! ```
 //!
-//! While the timers run, one step is held back (`owed`). A second step in that time is an overrun.
-//! Every step is accounted for; in every clock: rising edges + held-back steps + discarded steps ==
-//! requests.
+//! While the timers run, one step is held back (`held_back`). A second step in that time is an
+//! overrun. Every step is accounted for; in every clock: rising edges + held-back steps + discarded
+//! steps == requests.
 
 use carrystep_core::PinTiming;
 
 /// The registers of one shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct State {
+pub struct ShaperState {
     /// Level of the STEP pin.
     pub step: bool,
     /// Level of the DIR pin; true is backward.
@@ -25,7 +25,7 @@ pub struct State {
     /// Direction of the last speed that was not zero; true is backward.
     pub want: bool,
     /// The direction of the step that is held back until the timers allow it, if there is one.
-    pub owed: Option<bool>,
+    pub held_back: Option<bool>,
     /// Clocks until the next rising edge of STEP is allowed.
     pub busy: u32,
     /// Clocks until DIR may change.
@@ -42,7 +42,7 @@ pub struct State {
 
 /// The inputs of a shaper in one clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Input {
+pub struct ShaperInput {
     /// The direction of the step that is due in this clock, if there is one; true is backward.
     pub request: Option<bool>,
     /// Sign of the speed (-1, 0 or 1). DIR follows it; 0 keeps the direction.
@@ -51,7 +51,7 @@ pub struct Input {
     pub frozen: bool,
 }
 
-impl State {
+impl ShaperState {
     /// The state at configuration. The set-up timer runs, so that the direction set-up is kept from
     /// the first clock on.
     pub const fn at_configuration(pins: PinTiming) -> Self {
@@ -59,10 +59,10 @@ impl State {
             step: false,
             dir: false,
             want: false,
-            owed: None,
+            held_back: None,
             busy: 0,
             hold: 0,
-            setup: pins.setup - 1,
+            setup: pins.dir_setup - 1,
             position: 0,
             discarded: 0,
             overrun: false,
@@ -70,40 +70,44 @@ impl State {
     }
 }
 
-impl State {
+impl ShaperState {
     /// True if no clock changes the state while no step is requested and the speed keeps its sign.
     pub(crate) const fn is_still(&self, frozen: bool) -> bool {
         let timers = self.busy == 0 && self.hold == 0 && self.setup == 0;
-        timers && !self.step && self.owed.is_none() && (frozen || self.dir == self.want)
+        timers && !self.step && self.held_back.is_none() && (frozen || self.dir == self.want)
     }
 }
 
 /// Executes one clock and returns the next state. The pins are registers of the state.
 #[inline]
-pub fn clock(state: State, input: Input, pins: PinTiming) -> State {
-    let Input { request, sign, frozen } = input;
+pub fn clock(state: ShaperState, input: ShaperInput, pins: PinTiming) -> ShaperState {
+    let ShaperInput { request, sign, frozen } = input;
     let want = if sign == 0 { state.want } else { sign < 0 };
-    let first = state.owed.or(request);
+    let first = state.held_back.or(request);
     let rise = !frozen && first == Some(state.dir) && state.busy == 0 && state.setup == 0;
-    let turn = !frozen && state.hold == 0 && state.dir != first.unwrap_or(want);
-    let lost = match (frozen, state.owed, request) {
-        (true, owed, request) => u32::from(owed.is_some()) + u32::from(request.is_some()),
+    let dir_changes = !frozen && state.hold == 0 && state.dir != first.unwrap_or(want);
+    let lost = match (frozen, state.held_back, request) {
+        (true, held_back, request) => u32::from(held_back.is_some()) + u32::from(request.is_some()),
         (false, Some(_), Some(_)) => u32::from(!rise),
         _ => 0,
     };
-    State {
-        step: rise || (state.step && state.busy != pins.gap),
-        dir: state.dir != turn,
+    ShaperState {
+        step: rise || (state.step && state.busy != pins.step_low),
+        dir: state.dir != dir_changes,
         want,
-        owed: match (frozen, rise) {
+        held_back: match (frozen, rise) {
             (true, _) => None,
-            (false, true) => state.owed.and(request),
+            (false, true) => state.held_back.and(request),
             (false, false) => first,
         },
-        busy: if rise { pins.width + pins.gap - 1 } else { state.busy.saturating_sub(1) },
-        hold: if rise { pins.hold - 1 } else { state.hold.saturating_sub(1) },
-        setup: if turn { pins.setup - 1 } else { state.setup.saturating_sub(1) },
-        position: if rise { state.position.wrapping_add(if state.dir { -1 } else { 1 }) } else { state.position },
+        busy: if rise { pins.step_high + pins.step_low - 1 } else { state.busy.saturating_sub(1) },
+        hold: if rise { pins.dir_hold - 1 } else { state.hold.saturating_sub(1) },
+        setup: if dir_changes { pins.dir_setup - 1 } else { state.setup.saturating_sub(1) },
+        position: if rise {
+            state.position.wrapping_add(if state.dir { -1 } else { 1 })
+        } else {
+            state.position
+        },
         discarded: state.discarded.wrapping_add(lost),
         overrun: state.overrun || (!frozen && lost > 0),
     }

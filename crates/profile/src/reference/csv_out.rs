@@ -33,7 +33,11 @@ impl From<csv::Error> for CsvError {
 /// # Errors
 /// [`CsvError::Reference`] if a profile has too many steps or the clock is out of range; nothing is
 /// written in that case. [`CsvError::Write`] if the writer fails.
-pub fn write_csv(out: impl Write, references: &[Reference], listing: &Listing) -> Result<(), CsvError> {
+pub fn write_csv(
+    out: impl Write,
+    references: &[Reference],
+    listing: &Listing,
+) -> Result<(), CsvError> {
     // All profiles are checked before the first byte is written.
     references.iter().try_for_each(|reference| reference.rows(listing).map(|_| ()))?;
     let mut out = csv::Writer::from_writer(out);

@@ -2,7 +2,7 @@
 
 use crate::reference::error::ReferenceError;
 use crate::reference::row::{Listing, MOST_ROWS, Row};
-use crate::{Curve, Figures};
+use crate::{Curve, CurveFigures};
 use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ pub struct Reference {
     kind: ProfileKind,
     ramp: bool,
     curve: Arc<dyn Curve<f64>>,
-    figures: Figures<f64>,
+    figures: CurveFigures<f64>,
 }
 
 impl Reference {
@@ -37,7 +37,7 @@ impl Reference {
     }
 
     /// The figures that a user needs to judge the profile.
-    pub fn figures(&self) -> &Figures<f64> {
+    pub fn figures(&self) -> &CurveFigures<f64> {
         &self.figures
     }
 
@@ -53,7 +53,11 @@ impl Reference {
     /// continues, as in the cruise that follows.
     pub fn crossing(&self, n: f64) -> f64 {
         let beyond = n - self.figures.steps;
-        if beyond <= 0.0 { self.curve.crossing(n) } else { self.figures.seconds + beyond / self.figures.end_speed }
+        if beyond <= 0.0 {
+            self.curve.crossing(n)
+        } else {
+            self.figures.seconds + beyond / self.figures.end_speed
+        }
     }
 
     /// The delay c_n = t_(n+1) - t_n, seconds, computed without taking the difference.
@@ -72,7 +76,10 @@ impl Reference {
     /// # Errors
     /// [`ReferenceError::TooLong`] for more than [`MOST_ROWS`] steps;
     /// [`ReferenceError::OutOfRange`] for a clock that is not over 0 and at most 10^12 Hz.
-    pub fn rows(&self, listing: &Listing) -> Result<impl Iterator<Item = Row> + '_, ReferenceError> {
+    pub fn rows(
+        &self,
+        listing: &Listing,
+    ) -> Result<impl Iterator<Item = Row> + '_, ReferenceError> {
         let steps = self.whole_steps();
         if steps > f64::from(MOST_ROWS) {
             return Err(ReferenceError::TooLong { kind: self.kind, steps });
@@ -96,7 +103,9 @@ impl Reference {
                 time_s,
                 speed_steps_per_s: self.curve.speed(time_s),
                 delay_s,
-                delay_counts: delay_s.zip(clock_hz).map(|(delay, clock)| (delay * clock).round() as u64),
+                delay_counts: delay_s
+                    .zip(clock_hz)
+                    .map(|(delay, clock)| (delay * clock).round() as u64),
             }
         }))
     }

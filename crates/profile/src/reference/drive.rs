@@ -39,7 +39,9 @@ impl Drive {
             Length::Step => 1.0,
             Length::Degree => self.steps_per_degree(),
             Length::Turn => self.steps_per_rev(),
-            Length::Millimetre => self.steps_per_rev() / self.travel_per_rev_mm.ok_or(ReferenceError::NoTravel)?,
+            Length::Millimetre => {
+                self.steps_per_rev() / self.travel_per_rev_mm.ok_or(ReferenceError::NoTravel)?
+            }
         })
     }
 
@@ -49,9 +51,24 @@ impl Drive {
         };
         let (angle, travel) = (self.step_angle_deg, self.travel_per_rev_mm.unwrap_or(1.0));
         let microsteps = self.microsteps;
-        range("the step angle", angle, "over 0 and at most 180 degrees", angle > 0.0 && angle <= 180.0)?;
-        range("the microsteps", f64::from(microsteps), "1 to 65536", (1..=65_536).contains(&microsteps))?;
-        range("the travel per turn", travel, "finite and over 0 mm", travel > 0.0 && travel.is_finite())
+        range(
+            "the step angle",
+            angle,
+            "over 0 and at most 180 degrees",
+            angle > 0.0 && angle <= 180.0,
+        )?;
+        range(
+            "the microsteps",
+            f64::from(microsteps),
+            "1 to 65536",
+            (1..=65_536).contains(&microsteps),
+        )?;
+        range(
+            "the travel per turn",
+            travel,
+            "finite and over 0 mm",
+            travel > 0.0 && travel.is_finite(),
+        )
     }
 }
 
@@ -64,7 +81,8 @@ mod tests {
     #[test]
     fn drives_of_the_sources_have_their_steps_per_unit() {
         let sorn = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
-        let steps = [Length::Step, Length::Degree, Length::Turn, Length::Millimetre].map(|unit| sorn.steps_in(unit));
+        let steps = [Length::Step, Length::Degree, Length::Turn, Length::Millimetre]
+            .map(|unit| sorn.steps_in(unit));
         assert_eq!(steps, [Ok(1.0), Ok(2.0 / 1.8), Ok(400.0), Ok(80.0)]);
         let trapezoid = Drive { microsteps: 1, travel_per_rev_mm: None, ..sorn };
         assert_eq!(trapezoid.steps_per_degree(), 5.0 / 9.0);

@@ -22,7 +22,9 @@ pub enum ReferenceError {
         must: &'static str,
     },
     /// A length is in millimetres, but the drive has no travel per turn.
-    #[error("millimetres need the travel per revolution of the motor; degrees, rpm and steps do without")]
+    #[error(
+        "millimetres need the travel per revolution of the motor; degrees, rpm and steps do without"
+    )]
     NoTravel,
     /// A kind lacks a value that it needs.
     #[error("{kind} needs {what}")]
@@ -60,7 +62,9 @@ pub enum ReferenceError {
     },
     /// The centre T_i already fixes the start of a logistic ramp, and a second value contradicts
     /// it.
-    #[error("the centre T_i fixes a ramp together with its acceleration: {what} besides contradicts it; leave one out")]
+    #[error(
+        "the centre T_i fixes a ramp together with its acceleration: {what} besides contradicts it; leave one out"
+    )]
     CentreAnd {
         /// The value that contradicts it.
         what: &'static str,
@@ -96,7 +100,9 @@ pub enum ReferenceError {
         bad: BadRamp,
     },
     /// The profile has too many steps to be listed.
-    #[error("{kind} has {steps} steps: a list holds at most {MOST_ROWS}; its figures and its plot can be had")]
+    #[error(
+        "{kind} has {steps} steps: a list holds at most {MOST_ROWS}; its figures and its plot can be had"
+    )]
     TooLong {
         /// The kind.
         kind: ProfileKind,
@@ -107,11 +113,16 @@ pub enum ReferenceError {
 
 fn advice(limit: &str, wanted: f64, unit: &str, least_time: Option<f64>) -> String {
     match (wanted.is_finite().then_some(wanted), least_time) {
-        (Some(wanted), Some(least)) => format!("it needs at least {wanted} {unit}, or a time of {least} s"),
+        (Some(wanted), Some(least)) => {
+            format!("it needs at least {wanted} {unit}, or a time of {least} s")
+        }
         (None, Some(least)) => format!("it needs a time of {least} s"),
         (Some(wanted), None) => format!("it needs at least {wanted} {unit}"),
         (None, None) => {
-            format!("no time would do without a greater {}", limit.trim_start_matches("a ").trim_start_matches("an "))
+            format!(
+                "no time would do without a greater {}",
+                limit.trim_start_matches("a ").trim_start_matches("an ")
+            )
         }
     }
 }

@@ -58,7 +58,8 @@ fn failed(error: impl Display) -> PictureError {
 /// A [`PictureError`] if the drawing library fails.
 pub fn picture(references: &[Reference], scale: Scale) -> Result<String, PictureError> {
     let span = references.iter().map(|r| r.figures().seconds).fold(0.0, f64::max);
-    let sampled: Vec<Sampled> = references.iter().map(|r| Sampled::new(r, span, scale.steps)).collect();
+    let sampled: Vec<Sampled> =
+        references.iter().map(|r| Sampled::new(r, span, scale.steps)).collect();
     let mut text = String::new();
     {
         let size = (SIZE.0 * FINE, SIZE.1 * FINE);
@@ -95,9 +96,11 @@ fn stroke(colour: impl Into<ShapeStyle>, tenths: u32) -> ShapeStyle {
 
 /// The title: the distance or speed and the greatest acceleration of all profiles.
 fn title(references: &[Reference], scale: Scale) -> String {
-    let unit = scale.unit.name();
+    let unit = scale.unit;
     let several = if references.len() == 1 { "" } else { "s" };
-    let most = |of: fn(&Reference) -> f64| number(references.iter().map(of).fold(0.0, f64::max) / scale.steps);
+    let most = |of: fn(&Reference) -> f64| {
+        number(references.iter().map(of).fold(0.0, f64::max) / scale.steps)
+    };
     let acceleration = most(|r| r.figures().peak_acceleration);
     if references.iter().all(Reference::is_ramp) {
         let speed = most(|r| r.figures().top_speed);
@@ -114,7 +117,8 @@ fn heading(area: &Area<'_>, title: &str, sampled: &[Sampled]) -> Result<(), Pict
         let (x, y) = (28 + 188 * index, 58);
         let ends = vec![(px(x), px(y)), (px(x + 22), px(y))];
         area.draw(&PathElement::new(ends, stroke(colour(curve.kind), 40))).map_err(failed)?;
-        area.draw(&Text::new(curve.legend.clone(), (px(x + 30), px(y - 9)), label(15, INK))).map_err(failed)?;
+        area.draw(&Text::new(curve.legend.clone(), (px(x + 30), px(y - 9)), label(15, INK)))
+            .map_err(failed)?;
     }
     Ok(())
 }
@@ -174,5 +178,9 @@ fn number(value: f64) -> String {
     }
     let digits = if size >= 1.0 || size == 0.0 { 2 } else { 2 - size.log10().floor() as usize };
     let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

@@ -42,10 +42,10 @@ impl Quantity {
     pub fn unit(&self, power: u32) -> String {
         match (power, self.per_minute, self.length) {
             (_, true, Length::Turn) => "rpm".to_owned(),
-            (_, true, length) => format!("{}/min", length.name()),
-            (0, false, length) => length.name().to_owned(),
-            (1, false, length) => format!("{}/s", length.name()),
-            (power, false, length) => format!("{}/s^{power}", length.name()),
+            (_, true, length) => format!("{length}/min"),
+            (0, false, length) => length.to_string(),
+            (1, false, length) => format!("{length}/s"),
+            (power, false, length) => format!("{length}/s^{power}"),
         }
     }
 
@@ -100,7 +100,10 @@ mod tests {
     #[test]
     fn millimetres_without_a_travel_are_refused() {
         let motor = Drive { travel_per_rev_mm: None, ..SORN };
-        assert_eq!(Quantity::new(1.0, Length::Millimetre).in_steps(&motor), Err(ReferenceError::NoTravel));
+        assert_eq!(
+            Quantity::new(1.0, Length::Millimetre).in_steps(&motor),
+            Err(ReferenceError::NoTravel)
+        );
         assert_eq!(Quantity::new(1.0, Length::Turn).in_steps(&motor), Ok(400.0));
     }
 }

@@ -7,7 +7,7 @@ use crate::reference::drive::Drive;
 use crate::reference::error::{ReferenceError, in_words, rounded, up};
 use crate::reference::length::Length;
 use crate::reference::quantity::Quantity;
-use crate::{Curve, Limit, Limits, Refusal, kinds, rule};
+use crate::{Curve, Limit, LimitRefusal, Limits, kinds, rule};
 use carrystep_core::ProfileKind;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -22,11 +22,11 @@ const VALUES: RangeInclusive<f64> = 1e-9..=1e15;
 
 /// The request for a profile, without its kind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
+pub struct ReferenceRequest {
     /// The motor.
     pub drive: Drive,
     /// Whether a ramp or a whole move is requested.
-    pub travel: Travel,
+    pub travel: ReferenceDistance,
     /// Duration of the profile, seconds; `None`: as fast as the limits allow.
     pub time: Option<f64>,
     /// For a ramp the speed that it reaches, for a move the speed limit.
@@ -43,7 +43,7 @@ pub struct Request {
 
 /// The distance of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Travel {
+pub enum ReferenceDistance {
     /// A ramp, which ends at its top speed.
     Ramp,
     /// A move over this distance, which ends at rest.
@@ -58,11 +58,20 @@ struct Steps {
     limits: Limits<f64>,
 }
 
-impl Request {
+impl ReferenceRequest {
     /// A request without any limits.
-    pub const fn new(drive: Drive, travel: Travel) -> Self {
+    pub const fn new(drive: Drive, travel: ReferenceDistance) -> Self {
         let (time, centre) = (None, None);
-        Self { drive, travel, time, speed: None, start_speed: None, acceleration: None, jerk: None, centre }
+        Self {
+            drive,
+            travel,
+            time,
+            speed: None,
+            start_speed: None,
+            acceleration: None,
+            jerk: None,
+            centre,
+        }
     }
 
     /// The profiles of several kinds.
@@ -86,7 +95,7 @@ impl Request {
             Some(distance) => self.whole(kind, distance, &steps)?,
             None => self.ramp(kind, &steps)?,
         };
-        Ok(Reference::new(kind, curve, self.travel == Travel::Ramp))
+        Ok(Reference::new(kind, curve, self.travel == ReferenceDistance::Ramp))
     }
 
     fn in_steps(&self) -> Result<Steps, ReferenceError> {
@@ -97,26 +106,36 @@ impl Request {
             if VALUES.contains(&value) || zero && value == 0.0 {
                 return Ok(Some(value));
             }
-            let must = if zero { "0, or 1e-9 to 1e15 in steps" } else { "over 0: 1e-9 to 1e15 in steps" };
+            let must =
+                if zero { "0, or 1e-9 to 1e15 in steps" } else { "over 0: 1e-9 to 1e15 in steps" };
             Err(ReferenceError::OutOfRange { what, value: quantity.value(), must })
         };
         let start_speed = read("the start speed", self.start_speed, true)?.unwrap_or(0.0);
         let top = read("the speed", self.speed, false)?;
-        let acceleration = read("the acceleration", self.acceleration, false)?.unwrap_or(f64::INFINITY);
+        let acceleration =
+            read("the acceleration", self.acceleration, false)?.unwrap_or(f64::INFINITY);
         let jerk = read("the jerk", self.jerk, false)?.unwrap_or(f64::INFINITY);
         if let Some(value) = self.time.filter(|time| !VALUES.contains(time)) {
-            return Err(ReferenceError::OutOfRange { what: "the time", value, must: "over 0: 1e-9 to 1e15 s" });
+            return Err(ReferenceError::OutOfRange {
+                what: "the time",
+                value,
+                must: "over 0: 1e-9 to 1e15 s",
+            });
         }
         if let Some(value) = self.centre.filter(|centre| !(-1e15..=1e15).contains(centre)) {
-            return Err(ReferenceError::OutOfRange { what: "the centre T_i", value, must: "-1e15 to 1e15 s" });
+            return Err(ReferenceError::OutOfRange {
+                what: "the centre T_i",
+                value,
+                must: "-1e15 to 1e15 s",
+            });
         }
         let speed = top.unwrap_or(f64::INFINITY);
         if start_speed >= speed {
             return Err(ReferenceError::TopUnderStart { start: start_speed, top: speed });
         }
         let distance = match self.travel {
-            Travel::Ramp => None,
-            Travel::Move(distance) => Some(self.whole_steps(&distance)?),
+            ReferenceDistance::Ramp => None,
+            ReferenceDistance::Move(distance) => Some(self.whole_steps(&distance)?),
         };
         Ok(Steps { distance, top, limits: Limits { start_speed, speed, acceleration, jerk } })
     }
@@ -141,7 +160,11 @@ impl Request {
         })
     }
 
-    fn ramp(&self, kind: ProfileKind, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+    fn ramp(
+        &self,
+        kind: ProfileKind,
+        steps: &Steps,
+    ) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
         if kind == ProfileKind::Constant {
             return Err(ReferenceError::NoRamp);
         }
@@ -163,10 +186,17 @@ impl Request {
         kinds::ramp(kind, top, self.time, limits).ok_or(ReferenceError::NoRamp)?.map_err(refused)
     }
 
-    fn whole(&self, kind: ProfileKind, distance: f64, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+    fn whole(
+        &self,
+        kind: ProfileKind,
+        distance: f64,
+        steps: &Steps,
+    ) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
         let Steps { limits, .. } = steps;
         if self.centre.is_some() && kind == ProfileKind::Logistic {
-            return Err(ReferenceError::CentreOf { what: "a move has two, symmetric in themselves" });
+            return Err(ReferenceError::CentreOf {
+                what: "a move has two, symmetric in themselves",
+            });
         }
         let missing = |what: String| Err(ReferenceError::Missing { kind, what });
         if kind != ProfileKind::Constant && limits.acceleration.is_infinite() {
@@ -183,8 +213,8 @@ impl Request {
     }
 
     /// Converts a refusal to the unit in which the user gave the limit.
-    fn refused(&self, kind: ProfileKind, refusal: Refusal) -> ReferenceError {
-        let Refusal { limit, wanted, available, least_time } = refusal;
+    fn refused(&self, kind: ProfileKind, refusal: LimitRefusal) -> ReferenceError {
+        let LimitRefusal { limit, wanted, available, least_time } = refusal;
         let stated = match limit {
             Limit::StartSpeed => self.start_speed,
             Limit::Speed => self.speed,
@@ -195,20 +225,30 @@ impl Request {
         let (limit, power) = in_words(limit);
         let wanted = stated.back(wanted, &self.drive).map_or(wanted, up);
         let (available, unit) = (stated.value(), stated.unit(power));
-        ReferenceError::Refused { kind, limit, available, wanted, unit, least_time: least_time.map(up) }
+        ReferenceError::Refused {
+            kind,
+            limit,
+            available,
+            wanted,
+            unit,
+            least_time: least_time.map(up),
+        }
     }
 
     /// The advice to a user who gave no jerk limit: the jerk of the sine with the same speed and
     /// acceleration.
     fn jerk_advice(&self, top: f64, limits: &Limits<f64>) -> String {
-        let acceleration = self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
+        let acceleration =
+            self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
         if acceleration.is_infinite() {
             return "a jerk limit".to_owned();
         }
         let jerk = PI * acceleration * acceleration / (2.0 * top);
         let stated = Quantity::new(jerk, self.acceleration.map_or(Length::Step, |a| a.length()));
         let (jerk, unit) = (stated.back(jerk, &self.drive).map_or(jerk, up), stated.unit(3));
-        format!("a jerk limit; the sine has one of {jerk} {unit} at the same speed and acceleration")
+        format!(
+            "a jerk limit; the sine has one of {jerk} {unit} at the same speed and acceleration"
+        )
     }
 
     fn nothing_besides_the_centre(&self) -> Result<(), ReferenceError> {

@@ -33,7 +33,8 @@ impl Source {
 
     /// The ramp that ends at `fraction` of the asymptote.
     fn ramp(&self, fraction: f64) -> LogisticRamp<f64> {
-        LogisticRamp::new(self.omega / self.alpha, self.a / self.alpha, self.centre, 1.0 - fraction).unwrap()
+        LogisticRamp::new(self.omega / self.alpha, self.a / self.alpha, self.centre, 1.0 - fraction)
+            .unwrap()
     }
 
     #[track_caller]
@@ -90,14 +91,20 @@ fn start_and_end_of_the_ramp_equal_the_golden_numbers() {
     source.check("/sigmoid/start_accel_steps_s2", ramp.acceleration(0.0));
     source.check("/sigmoid/code_0.995/t_end_s", ramp.duration());
     source.check("/sigmoid/code_0.995/n_exact", ramp.distance());
-    source.check("/sigmoid/code_0.995/omega_end_over_omega", ramp.figures().end_speed / ramp.asymptote());
+    source.check(
+        "/sigmoid/code_0.995/omega_end_over_omega",
+        ramp.figures().end_speed / ramp.asymptote(),
+    );
     source.check("/sigmoid/code_0.995/q", ((ramp.centre() - ramp.duration()) * k).exp());
     assert_eq!(ramp.distance().round(), source.number("/sigmoid/code_0.995/n_rounded"));
 
     let text = source.ramp(1.0 / 1.005);
     source.check("/sigmoid/text_1.005/t_end_s", text.duration());
     source.check("/sigmoid/text_1.005/n_exact", text.distance());
-    source.check("/sigmoid/text_1.005/omega_end_over_omega", text.figures().end_speed / text.asymptote());
+    source.check(
+        "/sigmoid/text_1.005/omega_end_over_omega",
+        text.figures().end_speed / text.asymptote(),
+    );
     assert_eq!(text.distance().round(), source.number("/sigmoid/text_1.005/n_rounded"));
 }
 
@@ -112,8 +119,15 @@ fn equation_5_as_printed_ends_at_the_wrong_speed() {
     source.check("/sigmoid/printed_ln(1.005*omega-1)/t_end_s", printed.duration());
     source.check("/sigmoid/printed_ln(1.005*omega-1)/n_exact", printed.distance());
     source.check("/sigmoid/printed_ln(1.005*omega-1)/omega_end_over_omega", fraction);
-    assert_eq!(printed.distance().round(), source.number("/sigmoid/printed_ln(1.005*omega-1)/n_rounded"));
-    source.golden.check("/printed_eq5_domain/ln_argument_positive_iff_omega_gt", 1.0 / 1.005, TIGHT);
+    assert_eq!(
+        printed.distance().round(),
+        source.number("/sigmoid/printed_ln(1.005*omega-1)/n_rounded")
+    );
+    source.golden.check(
+        "/printed_eq5_domain/ln_argument_positive_iff_omega_gt",
+        1.0 / 1.005,
+        TIGHT,
+    );
 }
 
 #[test]
@@ -125,11 +139,17 @@ fn step_times_and_delays_equal_the_golden_numbers() {
     source.check("/sigmoid/profile_code/c0", ramp.delay(0.0));
     source.check("/sigmoid/profile_code/c1", ramp.delay(1.0));
     let n = source.number("/sigmoid/profile_code/n");
-    source.check("/sigmoid/profile_code/c_mid", ramp.delay(source.number("/sigmoid/profile_code/c_mid_index")));
+    source.check(
+        "/sigmoid/profile_code/c_mid",
+        ramp.delay(source.number("/sigmoid/profile_code/c_mid_index")),
+    );
     source.check("/sigmoid/profile_code/c_last", ramp.delay(n - 1.0));
     let end = ramp.crossing(n);
     source.check("/sigmoid/profile_code/c_total_s", end);
-    source.check("/sigmoid/profile_code/omega_at_c_total_over_omega", ramp.speed(end) / ramp.asymptote());
+    source.check(
+        "/sigmoid/profile_code/omega_at_c_total_over_omega",
+        ramp.speed(end) / ramp.asymptote(),
+    );
     source.check("/sigmoid/profile_code/theta_check_quad_steps", ramp.position(end));
     // The values that the listing itself prints, in doubles.
     source.golden.check("/seed_code_in_double/1000/sig_c0", ramp.delay(0.0), TIGHT);
@@ -141,7 +161,8 @@ fn step_times_and_delays_equal_the_golden_numbers() {
 #[test]
 fn symmetric_ramp_has_equal_shortfalls_at_both_ends() {
     let source = Source::read();
-    let ramp = LogisticRamp::symmetric(source.number("/v_steps_s"), source.number("/a_steps_s2")).unwrap();
+    let ramp =
+        LogisticRamp::symmetric(source.number("/v_steps_s"), source.number("/a_steps_s2")).unwrap();
     source.check("/sigmoid/T_i_symmetric_0.5pct", ramp.centre());
     source.check("/sigmoid/T_a_symmetric", ramp.duration());
     source.check("/sigmoid/ramp_steps_symmetric", ramp.distance());
@@ -156,7 +177,11 @@ fn slow_ramps_do_not_overflow() {
     let source = Source::read();
     let least = 4.0 * source.a * source.centre / f64::MAX.ln();
     source.golden.check("/double_overflow/omega_min_rad_s", least, TIGHT);
-    source.golden.check("/double_overflow/vm_min_mm_per_min", least * 5.0 * 60.0 / (2.0 * PI), TIGHT);
+    source.golden.check(
+        "/double_overflow/vm_min_mm_per_min",
+        least * 5.0 * 60.0 / (2.0 * PI),
+        TIGHT,
+    );
     for slower in [1.0, 0.99, 0.1, 1e-3, 1e-6] {
         let w = slower * least / source.alpha;
         let ramp = LogisticRamp::new(w, source.a / source.alpha, source.centre, SHORTFALL).unwrap();
@@ -170,6 +195,9 @@ fn slow_ramps_do_not_overflow() {
         }
         assert!((ramp.speed(ramp.centre()) / w - 0.5).abs() < tolerance);
         let mean = ramp.mean_speed(0.0, ramp.duration());
-        assert!((mean * ramp.duration() / ramp.distance() - 1.0).abs() < tolerance, "{slower}: {mean:e}");
+        assert!(
+            (mean * ramp.duration() / ramp.distance() - 1.0).abs() < tolerance,
+            "{slower}: {mean:e}"
+        );
     }
 }

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 
 fn example() -> (Golden, SineRamp<f64>) {
     let golden = Golden::read("sinusoid");
-    let ramp = SineRamp::new(golden.number("/example/vmax_steps_s"), golden.number("/example/T_s")).unwrap();
+    let ramp = SineRamp::new(golden.number("/example/vmax_steps_s"), golden.number("/example/T_s"))
+        .unwrap();
     (golden, ramp)
 }
 
@@ -19,7 +20,11 @@ fn ramp_figures_equal_the_golden_numbers() {
     golden.check("/example/peak_jerk", ramp.peak_jerk(), TIGHT);
     golden.check("/half_time/s(0.5)~1s(1)", ramp.position(0.1) / ramp.distance(), TIGHT);
     golden.check("/half_time/v(0.5)~1vmax", ramp.speed(0.1) / ramp.top_speed(), TIGHT);
-    golden.check("/snap_jump_example", (2.0 * PI).powi(2) * ramp.top_speed() / ramp.duration().powi(3), TIGHT);
+    golden.check(
+        "/snap_jump_example",
+        (2.0 * PI).powi(2) * ramp.top_speed() / ramp.duration().powi(3),
+        TIGHT,
+    );
     let twice = SineRamp::with_acceleration(ramp.top_speed(), ramp.peak_acceleration()).unwrap();
     assert_eq!(twice, ramp);
 }
@@ -84,7 +89,8 @@ impl<'a> Table<'a> {
         let at = (x / self.ramp.distance()).powf(f64::from(self.root).recip()) * last as f64;
         let left = (at as usize).min(last - 1);
         let (low, high) = (self.entries[left], self.entries[left + 1]);
-        (low + (high - low) * (at - left as f64) - self.ramp.crossing(x) / self.ramp.duration()).abs()
+        (low + (high - low) * (at - left as f64) - self.ramp.crossing(x) / self.ramp.duration())
+            .abs()
     }
 
     /// The greatest error of the table at the steps of the ramp, and the number of that step.
@@ -110,7 +116,8 @@ fn interpolation_error_of_a_small_table_equals_the_golden_numbers() {
         let worst = ramp.position(golden.number(&at("at_u")) * ramp.duration());
         golden.check(&at("max_abs_err_u"), table.error(worst), 1e-9);
 
-        let at = |key: &str| format!("/table_lookup_linear_interp_in_fourth_root_of_s/{entries}/{key}");
+        let at =
+            |key: &str| format!("/table_lookup_linear_interp_in_fourth_root_of_s/{entries}/{key}");
         let (error, _) = Table::new(&ramp, entries, 4).worst_step();
         golden.check(&at("max_abs_err_u_at_steps_N1000"), error, 1e-9);
         golden.check(&at("max_err_us_T0.2s"), error * milli * 1e3, 1e-9);

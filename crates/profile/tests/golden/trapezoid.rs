@@ -20,7 +20,8 @@ impl Source {
         let input = |name: &str| golden.number(&format!("/example/{name}"));
         let steps_per_degree = input("gear") * input("steps_per_rev") / 360.0;
         let acceleration = input("alpha_deg_s2") * steps_per_degree;
-        let limits = Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration, jerk: f64::INFINITY };
+        let limits =
+            Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration, jerk: f64::INFINITY };
         let (steps, time) = (input("theta_deg") * steps_per_degree, input("t_d_s"));
         Self { golden, steps_per_degree, limits, steps, time }
     }
@@ -71,7 +72,8 @@ fn too_short_a_time_names_the_acceleration_that_is_needed() {
 fn third_segment_as_printed_jumps_and_loses_distance() {
     let source = Source::read();
     let ramp = source.move_in_time();
-    let (degrees, [t0, t1]) = (1.0 / source.steps_per_degree, [ramp.breakpoints()[0], ramp.breakpoints()[1]]);
+    let (degrees, [t0, t1]) =
+        (1.0 / source.steps_per_degree, [ramp.breakpoints()[0], ramp.breakpoints()[1]]);
     source.check("/third_segment/area_corrected_deg", ramp.distance() * degrees);
     let middle = t1 + 0.1;
     assert!((ramp.speed(middle) * degrees - 1800.0 * (t0 + t1 - middle)).abs() < 1e-9);
@@ -101,7 +103,8 @@ fn delays_and_their_recurrence_equal_the_golden_numbers() {
     let timer = source.golden.number("/example/f_timer_Hz");
     let ramp = source.move_in_time();
     let delay = |n: u32| (ramp.crossing(f64::from(n + 1)) - ramp.crossing(f64::from(n))) * timer;
-    let recurrence = |start: f64, n: u32| (1..=n).fold(start, |c, n| c - 2.0 * c / f64::from(4 * n + 1));
+    let recurrence =
+        |start: f64, n: u32| (1..=n).fold(start, |c, n| c - 2.0 * c / f64::from(4 * n + 1));
     let c0 = delay(0);
     source.check("/austin/c0_exact_ticks", c0);
     for n in [0, 1, 2, 10] {
@@ -109,7 +112,8 @@ fn delays_and_their_recurrence_equal_the_golden_numbers() {
     }
     // Step 100 is beyond the ramp of this move. A longer move with the same acceleration has it.
     let acceleration = source.limits.acceleration;
-    let long: Ramp<f64> = Ramp::triangle(1000.0, 2.0 * (1000.0 / acceleration).sqrt(), 0.0, acceleration);
+    let long: Ramp<f64> =
+        Ramp::triangle(1000.0, 2.0 * (1000.0 / acceleration).sqrt(), 0.0, acceleration);
     source.check("/austin/exact_c_n/100", (long.crossing(101.0) - long.crossing(100.0)) * timer);
     for n in [0, 1, 2, 10, 100] {
         source.check(&format!("/austin/rec_from_c0/{n}"), recurrence(c0, n));
@@ -151,7 +155,12 @@ fn recurrence_without_remainder_is_57_percent_too_slow_at_step_1000() {
     }
     source.check("/avr446_integer/c_100", kept(100) as f64);
     source.check("/avr446_integer/without_rest_c_1000", dropped(1000) as f64);
-    let exact = source.golden.number("/austin/c0_exact_ticks") / (1001.0_f64.sqrt() + 1000.0_f64.sqrt());
+    let exact =
+        source.golden.number("/austin/c0_exact_ticks") / (1001.0_f64.sqrt() + 1000.0_f64.sqrt());
     source.check("/avr446_integer/exact_c_1000", exact);
-    assert_eq!((dropped(1000) as f64 / exact * 100.0 - 100.0).round(), 57.0, "per cent too slow at step 1000");
+    assert_eq!(
+        (dropped(1000) as f64 / exact * 100.0 - 100.0).round(),
+        57.0,
+        "per cent too slow at step 1000"
+    );
 }

@@ -37,7 +37,10 @@ fn ends<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     let end = wide(curve.position(duration) / distance) - 1.0;
     assert!(end.abs() <= slack.rounding * wide(F::epsilon()), "ends {end:e} off");
     let breakpoints = curve.breakpoints();
-    assert!(breakpoints.iter().all(|&b| b > F::zero() && b < duration), "{breakpoints:?} in {duration:?}");
+    assert!(
+        breakpoints.iter().all(|&b| b > F::zero() && b < duration),
+        "{breakpoints:?} in {duration:?}"
+    );
     assert!(breakpoints.windows(2).all(|pair| pair[0] < pair[1]), "{breakpoints:?}");
 }
 
@@ -64,7 +67,8 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     ends.extend(curve.breakpoints());
     ends.push(duration);
     let epsilon = wide(F::epsilon());
-    let (top, steepest, sharpest) = (wide(curve.top_speed()), wide(curve.peak_acceleration()), wide(curve.peak_jerk()));
+    let (top, steepest, sharpest) =
+        (wide(curve.top_speed()), wide(curve.peak_acceleration()), wide(curve.peak_jerk()));
     // `late` is the rounding of a time, and `few` the relative rounding of a sum of a few numbers.
     let (late, few) = (slack.rounding * epsilon * wide(duration), slack.rounding * epsilon);
     for piece in ends.windows(2) {
@@ -75,13 +79,18 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
         let step = (piece[1] - piece[0]) / float(f64::from(PARTS));
         // The breakpoints themselves are left out, because acceleration and jerk have two values
         // there.
-        let near = |i: u32| piece[0] + step * float(f64::from(i).clamp(0.1, f64::from(PARTS) - 0.1));
+        let near =
+            |i: u32| piece[0] + step * float(f64::from(i).clamp(0.1, f64::from(PARTS) - 0.1));
         for i in 0..PARTS {
             let (from, to) = (near(i), near(i + 1));
             let span = wide(to) - wide(from);
             let check = |name: &str, actual: f64, ideal: f64, scale: f64, lost: f64| {
-                let (error, allowed) = ((actual - ideal).abs(), slack.quadrature * epsilon * scale + lost);
-                assert!(error <= allowed, "{name} {from:?}..{to:?}: {actual:e}, not {ideal:e}; {curve:?}");
+                let (error, allowed) =
+                    ((actual - ideal).abs(), slack.quadrature * epsilon * scale + lost);
+                assert!(
+                    error <= allowed,
+                    "{name} {from:?}..{to:?}: {actual:e}, not {ideal:e}; {curve:?}"
+                );
             };
             let fastest = wide(curve.speed(from).max(curve.speed(to)));
             let speed = mean(from, to, |t| curve.speed(t));
@@ -93,7 +102,13 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
             check("speed", gain, acceleration * span, steepest * span, few * top + late * steepest);
             let change = wide(curve.acceleration(to)) - wide(curve.acceleration(from));
             let jerk = mean(from, to, |t| curve.jerk(t));
-            check("acceleration", change, jerk * span, sharpest * span, few * steepest + late * sharpest);
+            check(
+                "acceleration",
+                change,
+                jerk * span,
+                sharpest * span,
+                few * steepest + late * sharpest,
+            );
         }
     }
 }
@@ -104,7 +119,23 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
 fn crossings<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), curve.distance());
     let tolerance = slack.rounding * wide(F::epsilon());
-    let parts = [1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.1, 0.3, 0.499, 0.5, 0.501, 0.7, 0.9, 0.99, 0.999, 1.0 - 1e-6];
+    let parts = [
+        1e-12,
+        1e-9,
+        1e-6,
+        1e-3,
+        0.01,
+        0.1,
+        0.3,
+        0.499,
+        0.5,
+        0.501,
+        0.7,
+        0.9,
+        0.99,
+        0.999,
+        1.0 - 1e-6,
+    ];
     let mut last = F::zero();
     for part in parts {
         let x = distance * float(part);
@@ -120,6 +151,9 @@ fn crossings<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
         } else {
             wide(distance) + wide(duration) * wide(curve.speed(t))
         };
-        assert!(error <= tolerance * allowed, "{part} of {distance:?}: {x:?} became {error:e} off; {curve:?}");
+        assert!(
+            error <= tolerance * allowed,
+            "{part} of {distance:?}: {x:?} became {error:e} off; {curve:?}"
+        );
     }
 }

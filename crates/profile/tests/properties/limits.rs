@@ -1,8 +1,10 @@
 //! Tests that the least time is the least one, and that a refusal names a value that works.
 
 use crate::decades;
-use carrystep_profile::rule::{logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time};
-use carrystep_profile::{Curve, Limit, Limits, Profile, RampedMove, Refusal};
+use carrystep_profile::rule::{
+    logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
+};
+use carrystep_profile::{Curve, Limit, LimitRefusal, Limits, Profile, RampedMove};
 use proptest::prelude::*;
 
 /// A kind of profile, with the function that plans a move in a given time and the one that returns
@@ -10,7 +12,12 @@ use proptest::prelude::*;
 trait Kind {
     type Ramp: Curve<f64>;
     fn least(&self, distance: f64, limits: &Limits<f64>) -> f64;
-    fn plan(&self, distance: f64, time: f64, limits: &Limits<f64>) -> Result<RampedMove<f64, Self::Ramp>, Refusal>;
+    fn plan(
+        &self,
+        distance: f64,
+        time: f64,
+        limits: &Limits<f64>,
+    ) -> Result<RampedMove<f64, Self::Ramp>, LimitRefusal>;
 }
 
 macro_rules! kind {
@@ -29,7 +36,7 @@ macro_rules! kind {
                 distance: f64,
                 time: f64,
                 limits: &Limits<f64>,
-            ) -> Result<RampedMove<f64, Self::Ramp>, Refusal> {
+            ) -> Result<RampedMove<f64, Self::Ramp>, LimitRefusal> {
                 $plan(distance, time, limits)
             }
         }
@@ -51,10 +58,14 @@ fn refusals<K: Kind>(kind: &K, distance: f64, limits: &Limits<f64>, hurry: f64) 
     let gain = figures.top_speed - figures.start_speed;
     let blur = 1e-7 + 4.0 * f64::EPSILON * figures.top_speed / gain;
     let touches = |value: f64, limit: f64| (value / limit - 1.0).abs() < blur;
-    let steep = touches(figures.peak_acceleration, limits.acceleration) || touches(figures.peak_jerk, limits.jerk);
+    let steep = touches(figures.peak_acceleration, limits.acceleration)
+        || touches(figures.peak_jerk, limits.jerk);
     let constant = figures.top_speed <= limits.start_speed;
     assert!(steep || constant, "{figures:?} {limits:?}");
-    assert!(figures.top_speed == limits.speed || fastest.cruise_time() < blur * least, "{fastest:?}");
+    assert!(
+        figures.top_speed == limits.speed || fastest.cruise_time() < blur * least,
+        "{fastest:?}"
+    );
 
     let time = least * hurry;
     let refusal = kind.plan(distance, time, limits).unwrap_err();
@@ -111,7 +122,7 @@ proptest! {
     fn invalid_limits_never_panic(numbers in prop::array::uniform6(any::<f64>()), at in any::<f64>()) {
         let [start_speed, speed, acceleration, jerk, distance, time] = numbers;
         let limits = Limits { start_speed, speed, acceleration, jerk };
-        fn ask<R: Curve<f64>>(answer: Result<RampedMove<f64, R>, Refusal>, at: f64) {
+        fn ask<R: Curve<f64>>(answer: Result<RampedMove<f64, R>, LimitRefusal>, at: f64) {
             match answer {
                 Ok(curve) => {
                     let _ = (curve.position(at), curve.speed(at), curve.acceleration(at), curve.jerk(at));
@@ -130,7 +141,10 @@ proptest! {
 fn move_without_distance_is_at_rest() {
     let limits = Limits { start_speed: 0.0, speed: 1e4, acceleration: 1e5, jerk: 1e7 };
     let rest = Sine.plan(0.0, 0.5, &limits).unwrap();
-    assert_eq!((rest.duration(), rest.distance(), rest.speed(0.2), rest.position(0.2)), (0.5, 0.0, 0.0, 0.0));
+    assert_eq!(
+        (rest.duration(), rest.distance(), rest.speed(0.2), rest.position(0.2)),
+        (0.5, 0.0, 0.0, 0.0)
+    );
     assert_eq!(Sine.least(0.0, &limits), 0.0);
 }
 

@@ -3,7 +3,9 @@
 
 use crate::decades;
 use crate::laws::{Slack, hold};
-use carrystep_profile::rule::{logistic, logistic_least_time, scurve, scurve_least_time, scurve_to};
+use carrystep_profile::rule::{
+    logistic, logistic_least_time, scurve, scurve_least_time, scurve_to,
+};
 use carrystep_profile::rule::{scurve_to_least_time, sine, sine_least_time};
 use carrystep_profile::{Curve, Limits, Profile, RampedMove, Real};
 use proptest::prelude::*;
@@ -12,16 +14,22 @@ fn limits() -> impl Strategy<Value = Limits<f64>> {
     // A start speed of 0 and an unlimited jerk are separate cases.
     let start = prop_oneof![Just(0.0), decades(1e-6, 1.0)];
     let bend = prop_oneof![Just(f64::INFINITY), decades(1e-3, 1e6)];
-    (decades(1e-3, 1e7), start, decades(1e-3, 1e5), bend).prop_map(|(speed, start, per_second, bend)| Limits {
-        start_speed: start * speed,
-        speed,
-        acceleration: speed * per_second,
-        jerk: speed * per_second * bend,
-    })
+    (decades(1e-3, 1e7), start, decades(1e-3, 1e5), bend).prop_map(
+        |(speed, start, per_second, bend)| Limits {
+            start_speed: start * speed,
+            speed,
+            acceleration: speed * per_second,
+            jerk: speed * per_second * bend,
+        },
+    )
 }
 
 fn steps() -> impl Strategy<Value = f64> {
-    prop_oneof![Just(1.0), decades(1.0, 2.0_f64.powi(31)).prop_map(f64::round), Just(2.0_f64.powi(31))]
+    prop_oneof![
+        Just(1.0),
+        decades(1.0, 2.0_f64.powi(31)).prop_map(f64::round),
+        Just(2.0_f64.powi(31))
+    ]
 }
 
 /// A time as a multiple of the least time.
@@ -30,7 +38,12 @@ fn patience() -> impl Strategy<Value = f64> {
 }
 
 #[track_caller]
-fn check<F: Real, R: Curve<F>>(ramped: &RampedMove<F, R>, distance: F, time: F, limits: &Limits<F>) {
+fn check<F: Real, R: Curve<F>>(
+    ramped: &RampedMove<F, R>,
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) {
     assert_eq!((ramped.distance(), ramped.duration()), (distance, time));
     hold(ramped, &Slack { rounding: 64.0, quadrature: 1e4 });
     keeps(ramped, limits);
@@ -61,7 +74,8 @@ fn mirrored<R: Curve<f64>>(ramped: &RampedMove<f64, R>) {
         let back = duration - t;
         let lost = 8.0 * f64::EPSILON * (distance + duration * ramped.top_speed());
         assert!((ramped.position(t) + ramped.position(back) - distance).abs() <= lost);
-        let lost = 8.0 * f64::EPSILON * (ramped.top_speed() + duration * ramped.peak_acceleration());
+        let lost =
+            8.0 * f64::EPSILON * (ramped.top_speed() + duration * ramped.peak_acceleration());
         assert!((ramped.speed(t) - ramped.speed(back)).abs() <= lost);
     }
 }

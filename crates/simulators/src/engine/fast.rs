@@ -30,7 +30,8 @@ impl Fed {
         let told = EngineOutputs { latch: None, room: None, ..quiet };
         listener.outputs(self.core.cycle(), &told);
         let rests = self.host.is_done() && (outputs.idle || outputs.halted);
-        let patience = self.host.patience(&outputs).min(if rests { most_at_rest.min(most) } else { most });
+        let patience =
+            self.host.patience(&outputs).min(if rests { most_at_rest.min(most) } else { most });
         let cycles = if patience > 0 { self.core.leap(&inputs, patience, listener) } else { 0 };
         if cycles > 0 {
             self.host.wait(cycles);
@@ -51,7 +52,10 @@ impl EngineJob<'_> {
     ///
     /// # Errors
     /// [`LevelError::Endless`] if the run does not end; [`LevelError::Halted`] if it was halted.
-    pub fn run_fast(&self, listener: &mut impl Listener<EngineOutputs>) -> Result<EngineOutcome, LevelError> {
+    pub fn run_fast(
+        &self,
+        listener: &mut impl Listener<EngineOutputs>,
+    ) -> Result<EngineOutcome, LevelError> {
         let mut fed = self.fed();
         let settle = replay::settle(self.build);
         let mut quiet = 0;
@@ -60,11 +64,22 @@ impl EngineJob<'_> {
                 return Err(LevelError::Halted);
             }
             how_far::tell(self.how_far, fed.core.cycle());
-            let (cycles, outputs) = fed.advance(self.max_clocks - fed.core.cycle(), settle - quiet, listener);
-            quiet = if fed.host.is_done() && (outputs.idle || outputs.halted) { quiet + cycles } else { 0 };
+            let (cycles, outputs) =
+                fed.advance(self.max_clocks - fed.core.cycle(), settle - quiet, listener);
+            quiet = if fed.host.is_done() && (outputs.idle || outputs.halted) {
+                quiet + cycles
+            } else {
+                0
+            };
             if quiet == settle {
-                let positions = (0..self.build.axes()).map(|axis| fed.core.core().shaper(axis).position).collect();
-                return Ok(EngineOutcome { clocks: fed.core.cycle(), positions, fault: outputs.fault });
+                let positions = (0..self.build.axes())
+                    .map(|axis| fed.core.core().shaper(axis).position)
+                    .collect();
+                return Ok(EngineOutcome {
+                    clocks: fed.core.cycle(),
+                    positions,
+                    fault: outputs.fault,
+                });
             }
         }
         Err(LevelError::Endless(self.max_clocks))
@@ -72,7 +87,10 @@ impl EngineJob<'_> {
 
     /// As [`Self::run_fast`], for an observer. It is called for each cycle in which any output
     /// changed except `put_ready` and `start_ready`, which are reported as 0.
-    pub(super) fn observe_fast(&self, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
+    pub(super) fn observe_fast(
+        &self,
+        observer: &mut EngineObserver<'_>,
+    ) -> Result<EngineOutcome, LevelError> {
         let mut replay = Replay::new(&self.build.pins, observer);
         let end = self.run_fast(&mut replay);
         replay.reach(end.as_ref().map_or(self.max_clocks, |outcome| outcome.clocks));

@@ -24,7 +24,7 @@ struct Due {
 
 /// The segments of an axis so far.
 #[derive(Clone, Default)]
-struct Lane {
+struct AxisFeed {
     begins: Vec<u64>,
     end: u64,
     /// Time at which there was room for the last of them.
@@ -68,27 +68,34 @@ fn alone(command: Command) -> Option<Act> {
 /// The time at which there is room for each command. In a planned move the segments of all axes
 /// have the same total of ticks.
 fn due(program: &Program) -> Vec<Due> {
-    let mut lanes = vec![Lane::default(); 8];
+    let mut axis_feeds = vec![AxisFeed::default(); 8];
     let (mut started, mut started_before) = (0, false);
     let place = |command: &Command| {
         let command = *command;
         match command {
             Command::Segment { axis, segment } => {
-                let lane = &mut lanes[usize::from(axis) % 8];
-                let place = lane.begins.len();
-                lane.room = place.checked_sub(QUEUE).map_or(0, |earlier| lane.begins[earlier] + 1);
-                lane.begins.push(lane.end);
-                lane.end += u64::from(segment.ticks);
-                Due { room: lane.room, place, command }
+                let axis_feed = &mut axis_feeds[usize::from(axis) % 8];
+                let place = axis_feed.begins.len();
+                axis_feed.room =
+                    place.checked_sub(QUEUE).map_or(0, |earlier| axis_feed.begins[earlier] + 1);
+                axis_feed.begins.push(axis_feed.end);
+                axis_feed.end += u64::from(segment.ticks);
+                Due { room: axis_feed.room, place, command }
             }
             // A start can be armed as soon as the move before has begun and each axis has its first
             // segment.
             _ => {
-                let room = lanes.iter().map(|lane| lane.room).fold(started, u64::max);
-                let begins = lanes.iter().filter_map(|lane| lane.begins.last());
+                let room =
+                    axis_feeds.iter().map(|axis_feed| axis_feed.room).fold(started, u64::max);
+                let begins = axis_feeds.iter().filter_map(|axis_feed| axis_feed.begins.last());
                 started = begins.map(|begin| begin + 1).fold(started, u64::max);
                 // The first waits for full queues. A later one for its own segments only: the move before may be short.
-                let own = lanes.iter().map(|lane| lane.begins.len()).max().unwrap_or(0).saturating_sub(1);
+                let own = axis_feeds
+                    .iter()
+                    .map(|axis_feed| axis_feed.begins.len())
+                    .max()
+                    .unwrap_or(0)
+                    .saturating_sub(1);
                 let place = if started_before { own } else { usize::MAX };
                 started_before = true;
                 Due { room, place, command }
@@ -101,7 +108,8 @@ fn due(program: &Program) -> Vec<Due> {
 /// Sends segments of different axes in parallel: one word for each in a tick.
 fn side_by_side(row: &[(u64, u8, Segment)]) -> Vec<Act> {
     let words: Vec<Vec<Put>> = row.iter().map(|(_, axis, segment)| puts(*axis, segment)).collect();
-    let word = |k: usize| words.iter().filter_map(move |words| words.get(k)).map(|put| Act::Put(*put));
+    let word =
+        |k: usize| words.iter().filter_map(move |words| words.get(k)).map(|put| Act::Put(*put));
     (0..=usize::from(SEGMENT_WORDS)).flat_map(word).collect()
 }
 
@@ -117,7 +125,10 @@ mod tests {
 
     fn build() -> EngineBuild {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-        EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] }, 1 << 50)
+        EngineBuild::minimal(
+            &Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] },
+            1 << 50,
+        )
     }
 
     /// Moves whose axes have segments of these ticks, in the order in which a plan sends them.
@@ -128,12 +139,18 @@ mod tests {
             for (axis, ticks) in (0_u8..).zip(axes) {
                 for (k, &length) in ticks.iter().enumerate() {
                     let (begin, last) = (ticks[..k].iter().sum::<u32>(), k + 1 == ticks.len());
-                    due.push((begin, axis, Segment { ticks: length, v: 1 << 60, a: 0, j: 0, last }));
+                    due.push((
+                        begin,
+                        axis,
+                        Segment { ticks: length, v: 1 << 60, a: 0, j: 0, last },
+                    ));
                 }
             }
             due.sort_by_key(|&(begin, axis, _)| (begin, axis));
-            let mut commands: Vec<_> =
-                due.into_iter().map(|(_, axis, segment)| Command::Segment { axis, segment }).collect();
+            let mut commands: Vec<_> = due
+                .into_iter()
+                .map(|(_, axis, segment)| Command::Segment { axis, segment })
+                .collect();
             commands.insert(axes.len(), Command::Start { mask: (1 << axes.len()) - 1 });
             program.extend(commands);
         }
@@ -142,7 +159,8 @@ mod tests {
 
     fn steps(program: &Program, ticks: u64) -> (Vec<i32>, Option<Cause>) {
         let build = build();
-        let outcome = EngineJob::new(&build, program, ticks).run(Level::Model, &mut |_, _| {}).unwrap();
+        let outcome =
+            EngineJob::new(&build, program, ticks).run(Level::Model, &mut |_, _| {}).unwrap();
         (outcome.positions, outcome.fault.map(|(cause, _)| cause))
     }
 
@@ -151,7 +169,9 @@ mod tests {
         let acts = acts(&program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]));
         let start = acts.iter().position(|act| matches!(act, Act::Start(_))).unwrap();
         let commits = |acts: &[Act], of: u8| {
-            acts.iter().filter(|act| matches!(act, Act::Put(put) if put.axis == of && put.word == 7)).count()
+            acts.iter()
+                .filter(|act| matches!(act, Act::Put(put) if put.axis == of && put.word == 7))
+                .count()
         };
         assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (QUEUE, 2));
         assert_eq!((commits(&acts, 0), commits(&acts, 1)), (10, 2));
@@ -166,11 +186,12 @@ mod tests {
             moves.push(vec![vec![20; 9]; axes]);
             let program = program(&moves);
             let mut starts = Vec::new();
-            let outcome = EngineJob::new(&build, &program, 300).run(Level::Model, &mut |cycle, outputs| {
-                if outputs.started && starts.last() != Some(&cycle) {
-                    starts.push(cycle);
-                }
-            });
+            let outcome =
+                EngineJob::new(&build, &program, 300).run(Level::Model, &mut |cycle, outputs| {
+                    if outputs.started && starts.last() != Some(&cycle) {
+                        starts.push(cycle);
+                    }
+                });
             assert_eq!(outcome.unwrap().fault, None, "{axes} axes");
             let ticks: Vec<u64> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
             assert_eq!(ticks, [800; 12], "{axes} axes");
@@ -183,14 +204,17 @@ mod tests {
         let moved = |ticks: i32| (ticks + 8) / 16;
         let begun = program(&[vec![vec![1, 1, 1, 1, 1, 1, 834], vec![840]]]);
         assert_eq!(steps(&begun, 840), ([[moved(840); 2].as_slice(), &[0; 4]].concat(), None));
-        let rows = [vec![28; 30], vec![40; 21], vec![60; 14], vec![84; 10], vec![120; 7], vec![840]];
+        let rows =
+            [vec![28; 30], vec![40; 21], vec![60; 14], vec![84; 10], vec![120; 7], vec![840]];
         let three = program(&[rows.to_vec(), vec![vec![40]; 6], rows.to_vec()]);
         assert_eq!(steps(&three, 1720), (vec![moved(1720); 6], None));
         // A host that waits for each command in turn is too late.
         let build = build();
         let late = EngineHost::new(&build.guard, &begun, &Vec::new());
-        let fault =
-            Recording::of(&build, late, 1_000_000, &[], None).outputs.last().and_then(|(_, outputs)| outputs.fault);
+        let fault = Recording::of(&build, late, 1_000_000, &[], None)
+            .outputs
+            .last()
+            .and_then(|(_, outputs)| outputs.fault);
         assert_eq!(fault, Some((Cause::Underrun, 1)));
     }
 

@@ -4,20 +4,19 @@
 //! The outputs must equal those of the model in every clock, and so must the contents of the engine
 //! at the end.
 
+use crate::bench;
 use crate::engine::{EngineHost, Events};
 use crate::tool::{self, ICARUS};
 use crate::verilator::Simulation;
 use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
-use carrystep_core::engine::{EngineInputs, EngineOutputs};
+use carrystep_core::engine::{EngineInputs, EngineOutputs, recorded_ports};
+use carrystep_core::ports::Direction;
 use carrystep_core::{EngineBuild, Program};
 use carrystep_model::Engine;
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-
-const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
-const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
 
 /// P (low and high word), position and discarded steps of each axis.
 pub type Kept = Vec<[u32; 4]>;
@@ -51,7 +50,8 @@ impl Recording {
         how_far: Option<&HowFar>,
     ) -> Self {
         let mut model = Engine::new(build);
-        let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
+        let mut recording =
+            Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
         let settle = settle(build);
         let mut quiet = 0;
         while quiet < settle && recording.clocks < max_clocks && !halted(halt) {
@@ -84,28 +84,32 @@ impl Recording {
         self.clocks += 1;
     }
 
-    /// The stimuli as text, a line for each: `count put_valid put_axis put_word put_data
-    /// start_valid start_mask clear stop broken home_valid home_mask kick enable estop limit_min
-    /// limit_max`.
+    /// The stimuli as text, a line for each: the number of cycles, then the inputs in hexadecimal in
+    /// the order of the engine's table of ports.
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
-            let (axis, word, data) = inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
-            let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
-            let EngineInputs { clear, stop, broken, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
-            let [clear, stop, broken, kick, enable, estop] = [clear, stop, broken, kick, enable, estop].map(u8::from);
-            let homes = u8::from(inputs.home.is_some());
-            let [mask, home, min, max] = [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
-                .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
-            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
             // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{count} {host} {stop} {broken} {homes} {home:x} {kick} {enable} {estop} {min:x} {max:x}"
-            );
+            let _ = write!(text, "{count}");
+            for value in driven(Direction::Input, &inputs.at_ports(), self.axes()) {
+                let _ = write!(text, " {value:x}");
+            }
+            text.push('\n');
         }
         text
     }
+}
+
+/// The value of each recorded port of this direction, cut to its width; 0 where it is not valid.
+fn driven(
+    direction: Direction,
+    values: &[(&str, Option<u64>)],
+    axes: usize,
+) -> impl Iterator<Item = u64> {
+    let widths = recorded_ports(direction).map(move |port| port.width.of(axes));
+    let cut =
+        |(width, (_, value)): (u32, &(&str, Option<u64>))| value.unwrap_or(0) & ((1 << width) - 1);
+    widths.zip(values).map(cut)
 }
 
 /// Number of cycles of rest after which every step has been counted.
@@ -120,7 +124,11 @@ pub(super) fn settle(build: &EngineBuild) -> u64 {
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, or if the level has no Verilog.
-pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
+pub fn difference(
+    level: Level,
+    verilog: &str,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
     match level {
         Level::Icarus => {
             let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
@@ -139,7 +147,11 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails.
-pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
+pub fn difference_of_mutant(
+    verilog: &str,
+    mutant: usize,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
     let mut simulation = Command::new(verilated(verilog, recording.axes())?);
@@ -148,8 +160,14 @@ pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording)
 }
 
 /// Runs a simulation until it differs from the recording, or to its end.
-fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
-    let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
+fn first_difference(
+    simulation: &mut Command,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
+    let mut running = simulation
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(tool::io("cannot start the simulation"))?;
     let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
     let mut found = lines.into_iter().flatten().map_while(Result::ok);
     let difference = compare(&mut found, recording);
@@ -185,22 +203,17 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
     Some((cycle.parse().ok()?, u64::from_str_radix(bits, 16).ok()?))
 }
 
-/// Packs the outputs in the order of the benches.
+/// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
 fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
-    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started, .. } = *outputs;
-    let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
-    let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
-    let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
-    let number = |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
-    let host = number(latch) << 6 | number(room) << 2 | u64::from(armed) << 1 | u64::from(ready);
-    let host = host << axes | u64::from(homing);
-    let flags = flags.into_iter().fold(host, |all, flag| all << 1 | u64::from(flag));
-    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
+    let widths = recorded_ports(Direction::Output).map(|port| port.width.of(axes));
+    widths
+        .zip(driven(Direction::Output, &outputs.at_ports(), axes))
+        .fold(0, |all, (width, value)| all << width | value)
 }
 
 fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
-    tool::put(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
+    tool::put(folder, &[("core.v", verilog), ("bench.v", &bench::icarus()?)])?;
     let parameter = format!("-Pengine_bench.AXES={axes}");
     let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
     tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
@@ -213,5 +226,6 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
 fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
     let flags = format!("-DAXES={axes}");
     let options: &[&str] = &["-CFLAGS", &flags];
-    Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }.compiled(verilog)
+    let bench = &bench::verilator()?;
+    Simulation { name: "engine", top: "carrystep_engine", bench, options }.compiled(verilog)
 }

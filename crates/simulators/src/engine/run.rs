@@ -2,7 +2,7 @@
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
-use crate::{Halt, HowFar, Level, LevelError, Stage, halted, how_far};
+use crate::{Halt, HowFar, Level, LevelError, RunStage, halted, how_far};
 use carrystep_core::engine::{Cause, EngineOutputs};
 use carrystep_core::{Command, EngineBuild, Program};
 use carrystep_hdl::EngineSim;
@@ -45,9 +45,16 @@ impl<'a> EngineJob<'a> {
     /// A job of `ticks` ticks of motion. Its limit of cycles includes time for the drivers' power
     /// and for the words of all segments.
     pub fn new(build: &'a EngineBuild, program: &'a Program, ticks: u64) -> Self {
-        let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count() as u64;
+        let segments =
+            program.iter().filter(|command| matches!(command, Command::Segment { .. })).count()
+                as u64;
         let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
-        let pins = build.pins.iter().map(|pins| u64::from(pins.width + pins.gap)).max().unwrap_or(0);
+        let pins = build
+            .pins
+            .iter()
+            .map(|pins| u64::from(pins.step_high + pins.step_low))
+            .max()
+            .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
         Self { build, program, max_clocks, halt: &[], how_far: None }
@@ -65,7 +72,11 @@ impl<'a> EngineJob<'a> {
     /// # Errors
     /// [`LevelError`] if a tool is missing or fails, if the run does not end or is halted, or if
     /// the Verilog differs.
-    pub fn run(&self, level: Level, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
+    pub fn run(
+        &self,
+        level: Level,
+        observer: &mut EngineObserver<'_>,
+    ) -> Result<EngineOutcome, LevelError> {
         let axes = 0..self.build.axes();
         let gateware = |error: &dyn std::fmt::Display| LevelError::Gateware(error.to_string());
         match level {
@@ -83,12 +94,19 @@ impl<'a> EngineJob<'a> {
                 Ok(EngineOutcome { clocks, positions, fault })
             }
             Level::Icarus | Level::Verilator => {
-                let verilog =
-                    carrystep_verilog::engine_verilog(self.build, "a simulation").map_err(|error| gateware(&error))?;
-                let begin = |stage| self.how_far.into_iter().for_each(|how_far| how_far.begin(stage));
-                begin(Stage::ModelRuns);
-                let recording = Recording::of(self.build, self.host(), self.max_clocks, self.halt, self.how_far);
-                begin(Stage::VerilogRuns);
+                let verilog = carrystep_verilog::engine_verilog(self.build, "a simulation")
+                    .map_err(|error| gateware(&error))?;
+                let begin =
+                    |stage| self.how_far.into_iter().for_each(|how_far| how_far.begin(stage));
+                begin(RunStage::ModelRuns);
+                let recording = Recording::of(
+                    self.build,
+                    self.host(),
+                    self.max_clocks,
+                    self.halt,
+                    self.how_far,
+                );
+                begin(RunStage::VerilogRuns);
                 if halted(self.halt) {
                     return Err(LevelError::Halted);
                 }
@@ -96,10 +114,13 @@ impl<'a> EngineJob<'a> {
                     return Err(LevelError::Endless(self.max_clocks));
                 }
                 if let Some(found) = replay::difference(level, &verilog, &recording)? {
-                    return Err(LevelError::Gateware(format!("{level} differs from the model: {found}")));
+                    return Err(LevelError::Gateware(format!(
+                        "{level} differs from the model: {found}"
+                    )));
                 }
                 recording.outputs.iter().for_each(|(cycle, outputs)| observer(*cycle, outputs));
-                let positions = axes.map(|axis| recording.kept[axis][POSITION].cast_signed()).collect();
+                let positions =
+                    axes.map(|axis| recording.kept[axis][POSITION].cast_signed()).collect();
                 let fault = recording.outputs.last().and_then(|(_, outputs)| outputs.fault);
                 Ok(EngineOutcome { clocks: recording.clocks, positions, fault })
             }

@@ -2,7 +2,9 @@
 //! timer.
 #![allow(dead_code)]
 
-use carrystep_table::{Kind, Mode, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer};
+use carrystep_table::{
+    Kind, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
+};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,7 +41,8 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(header: &str) -> Self {
-        let bench = Self { folder: tempfile::tempdir().expect("a temporary folder"), flags: Vec::new() };
+        let bench =
+            Self { folder: tempfile::tempdir().expect("a temporary folder"), flags: Vec::new() };
         for (name, text) in PLAYER {
             bench.write(name, text);
         }
@@ -72,10 +75,20 @@ impl Bench {
         let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
         let program = self.path("bench");
         let mut command = Command::new(&compiler);
-        command.current_dir(self.folder.path()).args(FLAGS).arg("-I.").args(&self.flags).args(sources);
+        command
+            .current_dir(self.folder.path())
+            .args(FLAGS)
+            .arg("-I.")
+            .args(&self.flags)
+            .args(sources);
         let output = command.arg("-o").arg(&program).output();
-        let output = output.unwrap_or_else(|error| panic!("{compiler} (apt-get install gcc): {error}"));
-        if output.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
+        let output =
+            output.unwrap_or_else(|error| panic!("{compiler} (apt-get install gcc): {error}"));
+        if output.status.success() {
+            Ok(program)
+        } else {
+            Err(String::from_utf8_lossy(&output.stderr).into_owned())
+        }
     }
 
     /// The clocks of all pulses of each move. Compiles the bench first if that was not done yet.
@@ -92,9 +105,13 @@ impl Bench {
         let mut arguments = vec![latency.to_string()];
         arguments.extend(moves.iter().map(Move::to_string));
         let text = run(&self.path("bench"), &arguments)?;
-        let clock = |line: &str| line.parse().map_err(|_| format!("{line} interrupt after the end"));
+        let clock =
+            |line: &str| line.parse().map_err(|_| format!("{line} interrupt after the end"));
         let mut played = text.split("end\n").map(|text| text.lines().map(clock).collect());
-        moves.iter().map(|_| played.next().unwrap_or_else(|| Err("the bench stops early".to_owned()))).collect()
+        moves
+            .iter()
+            .map(|_| played.next().unwrap_or_else(|| Err("the bench stops early".to_owned())))
+            .collect()
     }
 }
 
@@ -126,7 +143,9 @@ pub fn judge(table: &Table, steps: u32, pulses: &[u64], per_pulse: f64) -> Resul
         ideal += delay;
         let bound = per_pulse * (n + 1) as f64 + 1e-6;
         if (pulse as f64 - ideal).abs() > bound {
-            return Err(format!("pulse {n} of {steps} at {pulse}, by the formula {ideal}, bound {bound}"));
+            return Err(format!(
+                "pulse {n} of {steps} at {pulse}, by the formula {ideal}, bound {bound}"
+            ));
         }
     }
     Ok(())
@@ -141,7 +160,7 @@ pub fn lengths(table: &Table) -> Vec<u32> {
 }
 
 /// The table of the source: 500 to 13 333 Hz, 1000 entries, 16 MHz / 64.
-pub fn source(mode: Mode, entries: u32, pulses: Pulses) -> TableRequest {
+pub fn source(mode: TimerMode, entries: u32, pulses: Pulses) -> TableRequest {
     TableRequest {
         timer: Timer::avr16(16_000_000, 64, mode),
         motor: Motor { step_angle_deg: 1.8, microsteps: 8 },

@@ -1,7 +1,7 @@
 //! Writes `hdl-out/boards.md`: the resources that the gateware of each board uses, and the clock
 //! that it reaches.
 
-use super::{Built, Job, build};
+use super::{BuildJob, Built, build};
 use crate::resources::failed;
 use crate::{SynthesisError, ice40, xilinx};
 use carrystep_boards::{AllMeasured, Board, Mapped, Measured, Placed, boards};
@@ -19,14 +19,18 @@ pub fn built(board: &Board) -> Result<Built, SynthesisError> {
     let gateware = gateware(board)?;
     let files = gateware.files().map_err(failed)?;
     let texts = |extension: &str| -> String {
-        files.iter().filter(|file| file.name.ends_with(extension)).map(|file| file.text.as_str()).collect()
+        files
+            .iter()
+            .filter(|file| file.name.ends_with(extension))
+            .map(|file| file.text.as_str())
+            .collect()
     };
     let part = gateware.part();
-    let job = Job {
+    let job = BuildJob {
         verilog: &texts(".v"),
         top: &gateware.top(),
         pcf: &texts(".pcf"),
-        part: ice40::Part { device: &part.name, package: &part.package },
+        part: ice40::NextpnrPart { device: &part.name, package: &part.package },
         clock_hz: gateware.build().timebase.clock_hz(),
     };
     build(&job, &mut |_| {})
@@ -36,7 +40,8 @@ pub fn built(board: &Board) -> Result<Built, SynthesisError> {
 /// clock is not rounded up to the required one.
 pub fn placed(board: &Board, built: &Built) -> Placed {
     let reached = built.reaches(board.clocks[0].clock_hz);
-    let tenths = |mhz: f64| if reached { (mhz * 10.0).round() } else { (mhz * 10.0).floor() } / 10.0;
+    let tenths =
+        |mhz: f64| if reached { (mhz * 10.0).round() } else { (mhz * 10.0).floor() } / 10.0;
     Placed {
         logic_cells: built.size.logic_cells,
         block_rams: built.size.block_rams,
@@ -69,14 +74,16 @@ pub fn row(board: &Board, measured: &Measured) -> String {
     let (part, clock) = (&board.parts[0], &board.clocks[0]);
     let time = format!("{} | {} | {}", mhz(clock.clock_hz), clock.tick_ns, clock.phases);
     match *measured {
-        Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, icetime_mhz, seed }) => format!(
-            "| `{}` | {} | {logic_cells} of {} | {block_rams} of {} | {time} | {nextpnr_mhz:.1} | {icetime_mhz:.1} | {seed} | {} |\n",
-            board.name,
-            part.name,
-            part.logic_cells.unwrap_or_default(),
-            part.block_rams,
-            if nextpnr_mhz * 1e6 >= clock.clock_hz as f64 { "yes" } else { "**no**" },
-        ),
+        Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, icetime_mhz, seed }) => {
+            format!(
+                "| `{}` | {} | {logic_cells} of {} | {block_rams} of {} | {time} | {nextpnr_mhz:.1} | {icetime_mhz:.1} | {seed} | {} |\n",
+                board.name,
+                part.name,
+                part.logic_cells.unwrap_or_default(),
+                part.block_rams,
+                if nextpnr_mhz * 1e6 >= clock.clock_hz as f64 { "yes" } else { "**no**" },
+            )
+        }
         Measured::Mapped(Mapped { luts, flip_flops, carries, block_rams }) => format!(
             "| `{}` | {} | {luts} | {flip_flops} | {carries} | {block_rams} of {} | {time} |\n",
             board.name,
@@ -89,7 +96,9 @@ pub fn row(board: &Board, measured: &Measured) -> String {
 /// The whole page.
 pub fn page(all: &AllMeasured) -> String {
     let (mut ours, mut theirs) = (String::new(), String::new());
-    for (board, measured) in boards().iter().filter_map(|board| Some((board, all.get(&board.name)?))) {
+    for (board, measured) in
+        boards().iter().filter_map(|board| Some((board, all.get(&board.name)?)))
+    {
         let rows = if matches!(measured, Measured::Placed(_)) { &mut ours } else { &mut theirs };
         rows.push_str(&row(board, measured));
     }
@@ -126,7 +135,8 @@ fn gateware(board: &Board) -> Result<Gateware<'_>, SynthesisError> {
 
 fn cells(board: &Board, family: &str) -> Result<Mapped, SynthesisError> {
     let gateware = gateware(board)?;
-    let verilog: String = gateware.verilog().map_err(failed)?.into_iter().map(|file| file.text).collect();
+    let verilog: String =
+        gateware.verilog().map_err(failed)?.into_iter().map(|file| file.text).collect();
     xilinx::cells(&verilog, &gateware.top(), family)
 }
 

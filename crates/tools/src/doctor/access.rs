@@ -1,6 +1,6 @@
 //! Checks whether the user may open a device, and finds the reason if not.
 
-use crate::doctor::Host;
+use crate::doctor::Computer;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// Whether a device may be used.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Access {
+pub enum PortAccess {
     /// The user may open the device.
     Granted,
     /// Another program has the device open.
@@ -21,13 +21,13 @@ pub enum Access {
         program: String,
     },
     /// The operating system denies access.
-    Refused(Refusal),
+    Refused(AccessRefusal),
 }
 
 /// Why the operating system denies access.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
-pub enum Refusal {
+pub enum AccessRefusal {
     /// The device's group may use it, but the user is not a member of the group.
     NotInGroup {
         /// The group.
@@ -43,69 +43,72 @@ pub enum Refusal {
 }
 
 /// Whether the user may open this device.
-pub(crate) fn access(host: &Host, device: &Path) -> Access {
+pub(crate) fn access(host: &Computer, device: &Path) -> PortAccess {
     if !(host.may)(device) {
-        return Access::Refused(refusal(host, device));
+        return PortAccess::Refused(refusal(host, device));
     }
-    user_of(host, device).unwrap_or(Access::Granted)
+    user_of(host, device).unwrap_or(PortAccess::Granted)
 }
 
 /// Why the user may not open this device of this machine, if a reason can be found. Symbolic links
 /// are followed.
-pub fn obstacle(device: &Path) -> Option<Access> {
+pub fn obstacle(device: &Path) -> Option<PortAccess> {
     let device = fs::canonicalize(device).ok()?;
-    Some(access(&Host::this(), &device)).filter(|access| *access != Access::Granted)
+    Some(access(&Computer::this(), &device)).filter(|access| *access != PortAccess::Granted)
 }
 
 #[cfg(unix)]
-fn refusal(host: &Host, device: &Path) -> Refusal {
+fn refusal(host: &Computer, device: &Path) -> AccessRefusal {
     use std::os::unix::fs::MetadataExt;
-    let Ok(there) = fs::metadata(device) else { return Refusal::NoRule };
+    let Ok(there) = fs::metadata(device) else { return AccessRefusal::NoRule };
     // The group must be able to read and write. The group of root does not count.
     let for_group = there.mode() & 0o060 == 0o060;
     match host.group(there.gid()).filter(|(name, _)| for_group && name != "root") {
-        None => Refusal::NoRule,
+        None => AccessRefusal::NoRule,
         // The group is not the reason either.
-        Some(_) if host.user.groups.contains(&there.gid()) => Refusal::NoRule,
-        Some((group, true)) => Refusal::LogInAgain { group },
-        Some((group, false)) => Refusal::NotInGroup { group },
+        Some(_) if host.user.groups.contains(&there.gid()) => AccessRefusal::NoRule,
+        Some((group, true)) => AccessRefusal::LogInAgain { group },
+        Some((group, false)) => AccessRefusal::NotInGroup { group },
     }
 }
 
 #[cfg(not(unix))]
-fn refusal(_: &Host, _: &Path) -> Refusal {
-    Refusal::NoRule
+fn refusal(_: &Computer, _: &Path) -> AccessRefusal {
+    AccessRefusal::NoRule
 }
 
 /// The process that has the device open, among the processes that this user may inspect.
-fn user_of(host: &Host, device: &Path) -> Option<Access> {
+fn user_of(host: &Computer, device: &Path) -> Option<PortAccess> {
     let numbered = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();
     host.list("proc").into_iter().find_map(|process| {
         let pid = numbered(&process)?;
         let mut files = fs::read_dir(process.join("fd")).ok()?.flatten();
         files.find(|file| fs::read_link(file.path()).is_ok_and(|target| target == device))?;
-        let program = fs::read_to_string(process.join("comm")).unwrap_or_default().trim().to_owned();
-        Some(Access::InUse { pid, program })
+        let program =
+            fs::read_to_string(process.join("comm")).unwrap_or_default().trim().to_owned();
+        Some(PortAccess::InUse { pid, program })
     })
 }
 
-impl fmt::Display for Access {
+impl fmt::Display for PortAccess {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Granted => f.write_str("may be used"),
-            Self::InUse { pid, program } => write!(f, "in use by {program} (process {pid}): close that first"),
-            Self::Refused(Refusal::NotInGroup { group }) => write!(
+            Self::InUse { pid, program } => {
+                write!(f, "in use by {program} (process {pid}): close that first")
+            }
+            Self::Refused(AccessRefusal::NotInGroup { group }) => write!(
                 f,
                 "may not be opened: you are not in its group {group}. `sudo usermod -aG {group} $USER`, then log out and in"
             ),
-            Self::Refused(Refusal::LogInAgain { group }) => write!(
+            Self::Refused(AccessRefusal::LogInAgain { group }) => write!(
                 f,
                 "may not be opened yet: you are in its group {group} since this session began. Log out and in, or run \
                  `newgrp {group}`"
             ),
-            Self::Refused(Refusal::NoRule) => {
-                f.write_str("may not be opened: no rule of udev gives it to a group. docs/flashing.md has one")
-            }
+            Self::Refused(AccessRefusal::NoRule) => f.write_str(
+                "may not be opened: no rule of udev gives it to a group. docs/flashing.md has one",
+            ),
         }
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// A machine.
 #[derive(Debug, Clone)]
-pub struct Host {
+pub struct Computer {
     /// Directory that contains `dev`, `sys`, `proc` and `etc`.
     pub root: PathBuf,
     /// Search path of programs, as in PATH.
@@ -27,7 +27,7 @@ pub struct User {
     pub groups: Vec<u32>,
 }
 
-impl Host {
+impl Computer {
     /// The machine on which this process runs.
     pub fn this() -> Self {
         let path = std::env::var_os("PATH").unwrap_or_default();
@@ -54,14 +54,20 @@ impl Host {
         let mut rows = text.lines().map(|line| line.split(':').collect::<Vec<_>>());
         let row = rows.find(|row| row.get(2).is_some_and(|id| id.parse() == Ok(gid)))?;
         let members = row.get(3).copied().unwrap_or_default();
-        Some((row[0].to_owned(), members.split(',').any(|member| self.user.name.as_deref() == Some(member))))
+        Some((
+            row[0].to_owned(),
+            members.split(',').any(|member| self.user.name.as_deref() == Some(member)),
+        ))
     }
 }
 
 #[cfg(unix)]
 fn groups() -> Vec<u32> {
-    let mut groups: Vec<u32> =
-        rustix::process::getgroups().unwrap_or_default().into_iter().map(|gid| gid.as_raw()).collect();
+    let mut groups: Vec<u32> = rustix::process::getgroups()
+        .unwrap_or_default()
+        .into_iter()
+        .map(|gid| gid.as_raw())
+        .collect();
     groups.push(rustix::process::getegid().as_raw());
     groups
 }

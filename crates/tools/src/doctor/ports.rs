@@ -1,7 +1,7 @@
 //! Finds serial ports of USB devices, and USB devices that may be a board; programmers open these.
 
-use crate::doctor::Host;
-use crate::doctor::access::{Access, access};
+use crate::doctor::Computer;
+use crate::doctor::access::{PortAccess, access};
 use carrystep_boards::boards;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct SerialPort {
     /// Boards that have this USB chip. Many other devices have the same chip.
     pub maybe: Vec<String>,
     /// Whether it may be opened.
-    pub access: Access,
+    pub access: PortAccess,
 }
 
 /// A USB device with the vendor and product of a board.
@@ -31,11 +31,11 @@ pub struct UsbDevice {
     /// Boards that have this USB chip.
     pub maybe: Vec<String>,
     /// Whether a programmer may open it.
-    pub access: Access,
+    pub access: PortAccess,
 }
 
 /// All serial ports that belong to USB devices.
-pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
+pub fn serial_ports(host: &Computer) -> Vec<SerialPort> {
     let is_one = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         name.starts_with("ttyUSB") || name.starts_with("ttyACM")
@@ -53,11 +53,12 @@ pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
 }
 
 /// All USB devices that may be a board.
-pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
+pub fn usb_devices(host: &Computer) -> Vec<UsbDevice> {
     let device = |folder: PathBuf| {
         let usb = usb_id(&folder)?;
         let maybe = with(Some(&usb));
-        let number = |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse::<u32>().ok();
+        let number =
+            |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse::<u32>().ok();
         let node = format!("dev/bus/usb/{:03}/{:03}", number("busnum")?, number("devnum")?);
         let path = host.root.join(node);
         (!maybe.is_empty()).then(|| UsbDevice { access: access(host, &path), path, usb, maybe })
@@ -67,7 +68,8 @@ pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
 
 /// Vendor and product id in a directory of `sys`.
 fn usb_id(folder: &Path) -> Option<String> {
-    let read = |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
+    let read =
+        |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
     Some(format!("{}:{}", read("idVendor")?, read("idProduct")?))
 }
 

@@ -1,7 +1,9 @@
 //! Finds the tools: their paths, their versions, and the commands that install missing ones.
 
-use crate::doctor::Host;
-use crate::programs::{FLOWS, ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, YOSYS, Z3};
+use crate::doctor::Computer;
+use crate::programs::{
+    FLOWS, ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, YOSYS, Z3,
+};
 use carrystep_boards::Board;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,7 +12,7 @@ use std::process::Command;
 
 /// A tool, installed or not.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
-pub struct Found {
+pub struct FoundTool {
     /// Name of the command.
     pub name: &'static str,
     /// Path of the program, if it is installed.
@@ -24,24 +26,28 @@ pub struct Found {
 }
 
 /// The tools that a board needs; without a board, the simulators and the open tools.
-pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
+pub fn tools(host: &Computer, board: Option<&Board>) -> Vec<FoundTool> {
     let wanted: Vec<Tool> = match board {
         None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
         Some(board) => {
             let programs = board.family.facts().toolchain().programs;
-            let flow = programs.iter().filter_map(|name| FLOWS.into_iter().find(|tool| tool.name == *name));
-            let loads = PROGRAMMERS.into_iter().filter(|tool| board.flash.split(' ').next() == Some(tool.name));
+            let flow = programs
+                .iter()
+                .filter_map(|name| FLOWS.into_iter().find(|tool| tool.name == *name));
+            let loads = PROGRAMMERS
+                .into_iter()
+                .filter(|tool| board.flash.split(' ').next() == Some(tool.name));
             flow.chain(loads).collect()
         }
     };
     wanted.into_iter().map(|program| tool(host, program)).collect()
 }
 
-fn tool(host: &Host, Tool { name, version: option, purpose, install }: Tool) -> Found {
+fn tool(host: &Computer, Tool { name, version: option, purpose, install }: Tool) -> FoundTool {
     // The packages of pip install the same tools under another name.
     let path = host.program(name).or_else(|| host.program(&format!("yowasp-{name}")));
     let version = path.as_deref().zip(option).and_then(|(path, option)| version(path, option));
-    Found { name, path, version, purpose, install: install.join(", or ") }
+    FoundTool { name, path, version, purpose, install: install.join(", or ") }
 }
 
 /// The first line that a tool prints, on standard output or standard error.
@@ -61,7 +67,11 @@ mod tests {
     fn programs_of_every_family_are_known() {
         for board in boards() {
             for program in board.family.facts().toolchain().programs {
-                assert!(FLOWS.iter().any(|tool| tool.name == *program), "{}: {program}", board.name);
+                assert!(
+                    FLOWS.iter().any(|tool| tool.name == *program),
+                    "{}: {program}",
+                    board.name
+                );
             }
         }
     }

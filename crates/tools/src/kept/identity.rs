@@ -42,7 +42,8 @@ pub(super) fn of(tool: &Tool) -> Option<String> {
 }
 
 fn one(tool: &Tool) -> Option<String> {
-    let found = which::which_global(tool.name).or_else(|_| which::which_global(name_of_pip(tool.name)));
+    let found =
+        which::which_global(tool.name).or_else(|_| which::which_global(name_of_pip(tool.name)));
     let file = fs::canonicalize(found.ok()?).ok()?;
     let there = fs::metadata(&file).ok()?;
     let version = match tool.version {

@@ -48,15 +48,18 @@ impl Record {
         };
         let (stdout, stderr) = (part(&head["stdout"])?, part(&head["stderr"])?);
         let files = head["files"].as_array()?.iter().map(|file| {
-            let name = file[0].as_str().filter(|name| !name.contains(['/', '\\']) && *name != "..")?;
+            let name =
+                file[0].as_str().filter(|name| !name.contains(['/', '\\']) && *name != "..")?;
             Some((name.to_owned(), part(&file[1])?))
         });
         Some(Self { stdout, stderr, files: files.collect::<Option<_>>()? })
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let files: Vec<Value> = self.files.iter().map(|(name, content)| json!([name, content.len()])).collect();
-        let head = json!({"stdout": self.stdout.len(), "stderr": self.stderr.len(), "files": files});
+        let files: Vec<Value> =
+            self.files.iter().map(|(name, content)| json!([name, content.len()])).collect();
+        let head =
+            json!({"stdout": self.stdout.len(), "stderr": self.stderr.len(), "files": files});
         let mut rest = format!("{head}\n").into_bytes();
         rest.extend(self.stdout.iter().chain(&self.stderr));
         self.files.values().for_each(|content| rest.extend(content));
@@ -92,7 +95,8 @@ mod tests {
     use super::Record;
 
     fn record() -> Record {
-        let files = [("core.bin", vec![0, 10, 255]), ("log.txt", b"done\n".to_vec()), ("empty", vec![])];
+        let files =
+            [("core.bin", vec![0, 10, 255]), ("log.txt", b"done\n".to_vec()), ("empty", vec![])];
         let files = files.map(|(name, content)| (name.to_owned(), content)).into();
         Record { stdout: b"a\nb".to_vec(), stderr: b"c".to_vec(), files }
     }

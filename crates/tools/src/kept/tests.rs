@@ -18,7 +18,10 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        Self { answers: tempfile::tempdir().unwrap(), runs: tempfile::NamedTempFile::new().unwrap() }
+        Self {
+            answers: tempfile::tempdir().unwrap(),
+            runs: tempfile::NamedTempFile::new().unwrap(),
+        }
     }
 
     fn runs(&self) -> usize {
@@ -26,13 +29,20 @@ impl Bench {
     }
 
     /// Asks for `out`, which is made of `in`; the answer and `out`.
-    fn ask(&self, content: &str, script: &str, is_fresh: bool, is_complete: bool) -> (Output, String) {
+    fn ask(
+        &self,
+        content: &str,
+        script: &str,
+        is_fresh: bool,
+        is_complete: bool,
+    ) -> (Output, String) {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("in"), content).unwrap();
         let script = format!("printf x >> {}; {script}", self.runs.path().display());
         let arguments = ["-c", &script];
         let answers = Some(self.answers.path().to_owned());
-        let question = Question { tool: &SH, folder: folder.path(), arguments: &arguments, is_fresh, answers };
+        let question =
+            Question { tool: &SH, folder: folder.path(), arguments: &arguments, is_fresh, answers };
         let output = question.ask(|_| is_complete).unwrap();
         (output, fs::read_to_string(folder.path().join("out")).unwrap_or_default())
     }
@@ -121,7 +131,8 @@ fn a_tool_that_is_not_there_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let none = Tool { name: "carrystep-no-such-tool", ..SH };
     let answers = Some(answers.path().to_owned());
-    let question = Question { tool: &none, folder: folder.path(), arguments: &[], is_fresh: false, answers };
+    let question =
+        Question { tool: &none, folder: folder.path(), arguments: &[], is_fresh: false, answers };
     assert_eq!(question.ask(|_| true).unwrap_err().kind(), std::io::ErrorKind::NotFound);
 }
 

@@ -1,5 +1,6 @@
-// Connects every port of carrystep_engine to two pins by way of registers. Any package then has
-// enough pins, and only paths within the engine are timed.
+// Connects all ports of carrystep_engine to registers, which shift from one input pin and to one
+// output pin. Any package then has enough pins, and the timing analysis covers only paths that are
+// inside the engine.
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 53 + 4 * AXES;
@@ -21,7 +22,7 @@ module budget_harness (input wire clock, input wire in, output reg out);
         .home_mask(inputs[53 + 3 * AXES +: AXES]), .latch(latch), .latch_axis(latch_axis), .room(room),
         .room_valid(room_valid), .armed(armed), .ready(ready), .homing(homing), .get_data(get_data), .get_valid(get_valid), .step(step), .dir(dir),
         .enabled(enabled), .idle(idle), .fault(fault), .halted(halted), .cause(cause), .culprits(culprits),
-        .started(started));
+        .started(started), .reset(1'b0), .resetting());
 
     reg [OUTPUTS - 1:0] outputs = 0;
     always @(posedge clock) begin

@@ -4,7 +4,7 @@ use super::measure::{failed, machine};
 use super::rows::ROWS;
 use crate::SynthesisError;
 use crate::ice40::{self, Size};
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// Budget of the link: logic cells and block RAMs.
@@ -22,7 +22,10 @@ pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
     let build = machine(row)?;
     let uart = Uart::new(row.clock_hz, 3_000_000).map_err(failed)?;
     let size = |line| {
-        let parts = [(link_verilog(&build, line, ""), LINK_NAME), (line_verilog(line, ""), line_name(line))];
+        let parts = [
+            (link_verilog(&build, line, ""), LINK_NAME),
+            (line_verilog(line, ""), line_name(line)),
+        ];
         let mut all = Size { logic_cells: 0, block_rams: 0 };
         for (verilog, name) in parts {
             let found = ice40::synthesise(&verilog.map_err(failed)?, name)?.size(row.part)?;
@@ -31,5 +34,5 @@ pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
         }
         Ok(all)
     };
-    Ok([size(Line::Uart(uart))?, size(Line::Spi)?])
+    Ok([size(LineKind::Uart(uart))?, size(LineKind::Spi)?])
 }

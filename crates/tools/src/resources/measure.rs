@@ -1,10 +1,10 @@
 //! Measures the engine of a row.
 
-use super::rows::{Row, SEEDS};
+use super::rows::{EngineRow, SEEDS};
 use crate::SynthesisError;
 use crate::ice40::{self, Size};
 use carrystep_core::EngineBuild;
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use carrystep_verilog::{ENGINE_NAME, engine_verilog};
 
 /// The machine whose engine is measured; clock and tick are those of the row.
@@ -18,19 +18,19 @@ const HARNESS: &str = include_str!("harness.v");
 
 /// Measurements of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
+pub struct RowMeasurement {
     /// Resources of the engine alone.
     pub size: Size,
     /// Clock in MHz that each of the [`SEEDS`] reaches, between registers of engine and harness.
     pub mhz: [f64; SEEDS.len()],
 }
 
-impl Measured {
+impl RowMeasurement {
     /// Measures resources and clock of a row.
     ///
     /// # Errors
     /// [`SynthesisError`] if a tool is missing or fails.
-    pub fn of(row: &Row) -> Result<Self, SynthesisError> {
+    pub fn of(row: &EngineRow) -> Result<Self, SynthesisError> {
         let size = ice40::synthesise(&verilog(row)?, ENGINE_NAME)?.size(row.part)?;
         let mut mhz = [0.0; SEEDS.len()];
         for (mhz, reached) in mhz.iter_mut().zip(placed(row)?) {
@@ -56,18 +56,19 @@ impl Measured {
 ///
 /// # Errors
 /// [`SynthesisError::Gateware`] if there is no such engine.
-pub fn verilog(row: &Row) -> Result<String, SynthesisError> {
+pub fn verilog(row: &EngineRow) -> Result<String, SynthesisError> {
     engine_verilog(&machine(row)?, SHIPPED).map_err(failed)
 }
 
 /// Build parameters of a row's engine.
-pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
-    let Row { clock_hz, tick_ns, .. } = row;
+pub(super) fn machine(row: &EngineRow) -> Result<EngineBuild, SynthesisError> {
+    let EngineRow { clock_hz, tick_ns, .. } = row;
     if !MACHINE.contains(SHIPPED_TIME) {
         return Err(failed(format!("{SHIPPED} has no {SHIPPED_TIME}")));
     }
-    let text = MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
-    let source = Source { path: SHIPPED.into(), text: text.into() };
+    let text =
+        MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
+    let source = SourceText { path: SHIPPED.into(), text: text.into() };
     let mut build = Machine::from_source(&source).map_err(failed)?.engine();
     // If the row has more axes than the machine, the machine's axes are repeated.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();
@@ -84,7 +85,9 @@ pub(crate) fn failed(error: impl Into<Box<dyn std::error::Error>>) -> SynthesisE
 ///
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or fails.
-pub fn placed(row: &Row) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
+pub fn placed(
+    row: &EngineRow,
+) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
     let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
     let netlist = ice40::synthesise(&(verilog(row)? + &harness), "budget_harness")?;
     let row = *row;

@@ -2,9 +2,9 @@
 //! budgets.
 
 use super::link::{LINES, LINK_BUDGET};
-use super::measure::Measured;
+use super::measure::RowMeasurement;
 use super::peers::PEERS;
-use super::rows::{FAMILIES, Family, ROWS, Row, SEEDS};
+use super::rows::{EngineRow, FAMILIES, FamilyRow, ROWS, SEEDS};
 use crate::ice40::Size;
 use carrystep_boards::Mapped;
 
@@ -12,7 +12,7 @@ use carrystep_boards::Mapped;
 pub const PAGE: &str = "hdl-out/resources.md";
 
 /// The page, from the measurements of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
-pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
+pub fn page(rows: &[RowMeasurement], links: &[Size], families: &[Mapped]) -> String {
     let mut text = format!(
         "# What the engine costs\n\n\
          Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/system/engine_fits_its_budget.rs` fails where a change goes \
@@ -27,7 +27,7 @@ pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
     for (row, found) in ROWS.iter().zip(rows) {
         text += &line(row, found);
     }
-    text += "\nThe schedule needs the clocks of its turns, and the least clock whose tick holds them and divides into phases.\n\n\
+    text += "\nThe schedule needs the clocks of its time slots, and the least clock whose tick holds them and divides into phases.\n\n\
          ## The host link\n\n\
          Beside the engine of the first row: the link and its line, each by itself.\n\n\
          | line | logic cells (budget) | block RAM |\n|---|---|---|\n";
@@ -53,30 +53,42 @@ pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
 const ICE40: &str = "| part | axes | tick | clock, MHz: has, needs | clocks per tick: has, needs | logic cells (budget) | block RAM | Fmax, MHz (each seed) | clock reached |";
 
 /// Beginning of a row's line.
-fn key(row: &Row) -> String {
+fn key(row: &EngineRow) -> String {
     let (part, axes, us) = (row.part, row.axes, row.tick_ns / 1000);
     let [mhz, least] = [row.clock_hz, row.clock_needed_hz()].map(|hz| hz / 1_000_000);
     let (has, needs) = (row.clocks_per_tick(), row.clocks_needed());
-    format!("| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |", part.device, part.package)
+    format!(
+        "| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |",
+        part.device, part.package
+    )
 }
 
-fn line(row: &Row, found: &Measured) -> String {
+fn line(row: &EngineRow, found: &RowMeasurement) -> String {
     let each: Vec<String> = found.mhz.iter().map(|mhz| format!("{mhz:.0}")).collect();
     let reached = if is_met(row, found) { "yes" } else { "**no**" };
-    let (cells, rams, budget) = (found.size.logic_cells, found.size.block_rams, row.budget.logic_cells);
-    format!("{} {cells} ({budget}) | {rams} | {:.1} ({}) | {reached} |\n", key(row), found.best(), each.join(", "))
+    let (cells, rams, budget) =
+        (found.size.logic_cells, found.size.block_rams, row.budget.logic_cells);
+    format!(
+        "{} {cells} ({budget}) | {rams} | {:.1} ({}) | {reached} |\n",
+        key(row),
+        found.best(),
+        each.join(", ")
+    )
 }
 
 /// Whether the best seed reaches the row's clock.
-fn is_met(row: &Row, found: &Measured) -> bool {
+fn is_met(row: &EngineRow, found: &RowMeasurement) -> bool {
     found.best() * 1e6 >= row.clock_hz as f64
 }
 
 fn link_line(name: &str, found: &Size) -> String {
-    format!("| {name} | {} ({}) | {} |\n", found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams)
+    format!(
+        "| {name} | {} ({}) | {} |\n",
+        found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams
+    )
 }
 
-fn cells_line(family: &Family, found: &Mapped) -> String {
+fn cells_line(family: &FamilyRow, found: &Mapped) -> String {
     let (luts, budget) = (found.luts, family.budget.luts);
     format!(
         "| {} | {luts} ({budget}) | {} | {} | {} |\n",
@@ -85,12 +97,18 @@ fn cells_line(family: &Family, found: &Mapped) -> String {
 }
 
 /// The table of our engines beside other cores, sorted by size.
-fn beside(rows: &[Measured]) -> String {
+fn beside(rows: &[RowMeasurement]) -> String {
     let mut lines: Vec<(u32, String)> = PEERS
         .iter()
         .map(|peer| {
             let (queue, cells, mhz) = (peer.queue, peer.logic_cells, peer.mhz);
-            (cells, format!("| {} | {} | {} | {queue} | {cells} | {mhz} |\n", peer.core, peer.ramp, peer.pins))
+            (
+                cells,
+                format!(
+                    "| {} | {} | {} | {queue} | {cells} | {mhz} |\n",
+                    peer.core, peer.ramp, peer.pins
+                ),
+            )
         })
         .collect();
     let ours = ROWS.iter().zip(rows).filter(|(row, _)| row.part == ROWS[0].part && row.always);
@@ -101,7 +119,10 @@ fn beside(rows: &[Measured]) -> String {
         let cells = size.logic_cells;
         (
             cells,
-            format!("| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n", found.median()),
+            format!(
+                "| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n",
+                found.median()
+            ),
         )
     }));
     lines.sort_by_key(|(cells, _)| *cells);
@@ -116,10 +137,13 @@ pub fn check(page: &str) -> Result<(), String> {
     for row in &ROWS {
         let key = key(row);
         let rest = page.lines().find_map(|line| line.strip_prefix(&key));
-        let rest = rest.ok_or_else(|| format!("{PAGE} has no row {key}: run `cargo xtask resources`"))?;
+        let rest =
+            rest.ok_or_else(|| format!("{PAGE} has no row {key}: run `cargo xtask resources`"))?;
         let cells: u32 = number(rest).ok_or_else(|| format!("no logic cells in {key}{rest}"))?;
         let mut wrong = String::new();
-        if cells > row.budget.logic_cells || !rest.contains(&format!("({})", row.budget.logic_cells)) {
+        if cells > row.budget.logic_cells
+            || !rest.contains(&format!("({})", row.budget.logic_cells))
+        {
             wrong += " logic cells";
         }
         if rest.contains("| yes |") != row.met {
@@ -133,12 +157,15 @@ pub fn check(page: &str) -> Result<(), String> {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {name} |")));
         let cells = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {name}"))?;
         if cells > LINK_BUDGET.logic_cells {
-            return Err(format!("{PAGE}: {cells} logic cells of the link over {name} are over budget"));
+            return Err(format!(
+                "{PAGE}: {cells} logic cells of the link over {name} are over budget"
+            ));
         }
     }
     for family in &FAMILIES {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {} |", family.name)));
-        let luts = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
+        let luts =
+            rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
         if luts > family.budget.luts {
             return Err(format!("{PAGE}: {} LUTs in {} are over budget", luts, family.name));
         }
@@ -157,9 +184,9 @@ mod tests {
     use super::*;
 
     /// Measurements that use the whole budget of a row.
-    fn found(row: &Row) -> Measured {
+    fn found(row: &EngineRow) -> RowMeasurement {
         let mhz = row.clock_hz as f64 / 1e6 + if row.met { 0.0 } else { -1.0 };
-        Measured { size: row.budget, mhz: [mhz - 2.0, mhz, mhz - 1.0] }
+        RowMeasurement { size: row.budget, mhz: [mhz - 2.0, mhz, mhz - 1.0] }
     }
 
     #[test]

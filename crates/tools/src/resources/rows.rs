@@ -1,8 +1,8 @@
 //! The rows and their budgets. A new part, tick or number of axes needs a new row.
 
-use crate::ice40::{Part, Size};
+use crate::ice40::{NextpnrPart, Size};
 use carrystep_boards::Mapped;
-use carrystep_core::engine::clocks_of_turns;
+use carrystep_core::engine::clocks_of_time_slots;
 
 /// Seeds of placement; the best result counts.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
@@ -12,9 +12,9 @@ const PHASES: u32 = 16;
 
 /// An engine on an iCE40.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Row {
+pub struct EngineRow {
     /// The part.
-    pub part: Part<'static>,
+    pub part: NextpnrPart<'static>,
     /// Axes of the engine; `sim/six-axis.toml` says what they are.
     pub axes: usize,
     /// Tick, ns.
@@ -29,30 +29,31 @@ pub struct Row {
     pub always: bool,
 }
 
-impl Row {
+impl EngineRow {
     /// Number of clocks per tick.
     pub const fn clocks_per_tick(&self) -> u64 {
         self.clock_hz * self.tick_ns / 1_000_000_000
     }
 
-    /// The slowest clock, Hz, whose tick holds the turns of all axes and divides into phases.
+    /// The slowest clock, Hz, whose tick holds the time slots of all axes and divides into phases.
     pub const fn clock_needed_hz(&self) -> u64 {
-        (self.clocks_needed().next_multiple_of(PHASES) as u64 * 1_000_000_000).div_ceil(self.tick_ns)
+        (self.clocks_needed().next_multiple_of(PHASES) as u64 * 1_000_000_000)
+            .div_ceil(self.tick_ns)
     }
 
-    /// Number of clocks of a tick that the turns of all axes need.
+    /// Number of clocks of a tick that the time slots of all axes need.
     pub const fn clocks_needed(&self) -> u32 {
-        clocks_of_turns(self.axes)
+        clocks_of_time_slots(self.axes)
     }
 }
 
-const HX1K: Part<'_> = Part { device: "hx1k", package: "tq144" };
-const HX8K: Part<'_> = Part { device: "hx8k", package: "ct256" };
-const LP8K: Part<'_> = Part { device: "lp8k", package: "cm81" };
-const UP5K: Part<'_> = Part { device: "up5k", package: "sg48" };
+const HX1K: NextpnrPart<'_> = NextpnrPart { device: "hx1k", package: "tq144" };
+const HX8K: NextpnrPart<'_> = NextpnrPart { device: "hx8k", package: "ct256" };
+const LP8K: NextpnrPart<'_> = NextpnrPart { device: "lp8k", package: "cm81" };
+const UP5K: NextpnrPart<'_> = NextpnrPart { device: "up5k", package: "sg48" };
 
 /// A tick of 2 us at 48 MHz.
-const TWO: Row = Row {
+const TWO: EngineRow = EngineRow {
     part: HX8K,
     axes: 6,
     tick_ns: 2000,
@@ -63,43 +64,61 @@ const TWO: Row = Row {
 };
 
 /// A tick of 1 us at 80 MHz.
-const ONE: Row = Row { tick_ns: 1000, clock_hz: 80_000_000, budget: Size { logic_cells: 910, block_rams: 8 }, ..TWO };
+const ONE: EngineRow = EngineRow {
+    tick_ns: 1000,
+    clock_hz: 80_000_000,
+    budget: Size { logic_cells: 910, block_rams: 8 },
+    ..TWO
+};
 
 /// Six axes to be compared with eight: a tick of 2 us at the slowest clock that eight axes need.
-const SIX: Row = Row { clock_hz: 56_000_000, always: false, ..TWO };
-const EIGHT: Row = Row { axes: 8, budget: Size { logic_cells: 1020, block_rams: 8 }, ..SIX };
+const SIX: EngineRow = EngineRow { clock_hz: 56_000_000, always: false, ..TWO };
+const EIGHT: EngineRow =
+    EngineRow { axes: 8, budget: Size { logic_cells: 1020, block_rams: 8 }, ..SIX };
 
 /// Eight axes, six axes, and the greatest ratio of their logic cells.
-pub const EIGHT_TO_SIX: (Row, Row, f64) = (EIGHT, SIX, 1.15);
+pub const EIGHT_TO_SIX: (EngineRow, EngineRow, f64) = (EIGHT, SIX, 1.15);
 
 /// All rows for iCE40.
-pub const ROWS: [Row; 9] = [
+pub const ROWS: [EngineRow; 9] = [
     TWO,
     ONE,
-    Row { part: HX1K, ..TWO },
-    Row { part: HX1K, always: false, ..ONE },
-    Row { part: LP8K, always: false, ..TWO },
-    Row { part: LP8K, always: false, met: false, ..ONE },
+    EngineRow { part: HX1K, ..TWO },
+    EngineRow { part: HX1K, always: false, ..ONE },
+    EngineRow { part: LP8K, always: false, ..TWO },
+    EngineRow { part: LP8K, always: false, met: false, ..ONE },
     // 40 MHz is the slowest clock for a tick of 2 us.
-    Row { part: UP5K, clock_hz: 40_000_000, ..TWO },
+    EngineRow { part: UP5K, clock_hz: 40_000_000, ..TWO },
     SIX,
     EIGHT,
 ];
 
 /// An engine in the cells of a Xilinx family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Family {
+pub struct FamilyRow {
     /// Name of the family in yosys.
     pub name: &'static str,
     /// The engine.
-    pub of: Row,
+    pub of: EngineRow,
     /// Budget of the engine.
     pub budget: Mapped,
 }
 
 /// All rows for Xilinx; each has the engine of the first row.
-pub const FAMILIES: [Family; 3] = [
-    Family { name: "xc3s", of: TWO, budget: Mapped { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 } },
-    Family { name: "xc6s", of: TWO, budget: Mapped { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 } },
-    Family { name: "xc7", of: TWO, budget: Mapped { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 } },
+pub const FAMILIES: [FamilyRow; 3] = [
+    FamilyRow {
+        name: "xc3s",
+        of: TWO,
+        budget: Mapped { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 },
+    },
+    FamilyRow {
+        name: "xc6s",
+        of: TWO,
+        budget: Mapped { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 },
+    },
+    FamilyRow {
+        name: "xc7",
+        of: TWO,
+        budget: Mapped { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 },
+    },
 ];

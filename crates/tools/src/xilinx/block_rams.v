@@ -1,31 +1,35 @@
-// Models of the block RAMs of Spartans, for which yosys has none. They cover only what yosys uses:
-// one port writes, both read, all on one clock, without output registers, resets or inversion.
+// Simulation models of the block RAMs of Spartan FPGAs, for which yosys has none. The models cover
+// only what yosys uses: one port writes, both ports read, all on one clock, without output
+// registers, resets or inverted inputs.
 //
-// The models are strict where the data sheets guarantee nothing. A word read before the first clock
-// is x. A byte that is read and written in the same clock reads x, unless the mode is READ_FIRST.
-// An enable of x writes x.
+// Where the data sheets guarantee nothing, the models return x. The outputs are x before the first
+// clock. A byte that is read and written in the same clock reads as x, unless the mode is
+// READ_FIRST. A write enable of x writes x.
 
 module bench_block_ram #(
     parameter BYTES = 2048,
     parameter [8*BYTES-1:0] INIT = 0,
     parameter [BYTES-1:0] INITP = 0,
-    parameter READ_A = 0, READ_B = 0, WRITE = 0, // bits of a word with parity; 0: the port is not used
+    // Width of a word in bits, parity included; 0 if the port is not used.
+    parameter READ_A = 0, READ_B = 0, WRITE = 0,
     parameter READ_FIRST = 0
 ) (
     input clock, writes,
-    input [1:0] reads, // ports B, A
-    input [14:0] address, address_a, address_b, // in bits without parity; `address` is that of the write
-    input [7:0] mask, // a bit for each byte
+    input [1:0] reads, // read enables: bit 0 of port A, bit 1 of port B
+    // Addresses of the write and of the reads at port A and B, in data bits without parity.
+    input [14:0] address, address_a, address_b,
+    input [7:0] mask, // write enable of each byte
     input [63:0] data,
     input [7:0] parity,
     output [63:0] value_a, value_b,
     output [7:0] parity_a, parity_b
 );
-    reg [8:0] bytes [0:BYTES-1]; // the parity bit is the highest
+    reg [8:0] bytes [0:BYTES-1]; // bit 8 is the parity bit
     integer i, j;
     initial for (i = 0; i < BYTES; i = i + 1) bytes[i] = {INITP[i], INIT[8*i +: 8]};
 
-    // Number of bytes of a word (1 for words shorter than a byte), and index of its first byte.
+    // The number of bytes in a written word (1 for words shorter than a byte), and the index of its
+    // first byte.
     localparam MANY = WRITE < 9 ? 1 : WRITE / 9;
     wire [11:0] first = address[14:3] / MANY * MANY;
     wire any = writes && WRITE != 0;
@@ -57,7 +61,8 @@ module bench_block_ram #(
     assign parity_b = reader[1].odd;
 endmodule
 
-// Spartan-6, 9 kbit. In SDP mode, port A writes and port B reads words of the width of both ports.
+// The 9 kbit block RAM of the Spartan-6. In SDP mode (simple dual port), port A writes and port B
+// reads, and a word uses the data pins of both ports.
 module RAMB8BWER #(
     INITS(32, 4)
     parameter DATA_WIDTH_A = 0, DATA_WIDTH_B = 0, DOA_REG = 0, DOB_REG = 0, EN_RSTRAM_A = "TRUE", EN_RSTRAM_B = "TRUE",
@@ -88,7 +93,7 @@ module RAMB8BWER #(
     always @(WEBWEU) if (!SDP && |WEBWEU) $display("port B of %m writes");
 endmodule
 
-// Spartan-6, 18 kbit.
+// The 18 kbit block RAM of the Spartan-6.
 module RAMB16BWER #(
     INITS(64, 8)
     parameter DATA_WIDTH_A = 0, DATA_WIDTH_B = 0, DOA_REG = 0, DOB_REG = 0, EN_RSTRAM_A = "TRUE", EN_RSTRAM_B = "TRUE",
@@ -116,7 +121,8 @@ module RAMB16BWER #(
     always @(WEB) if (|WEB) $display("port B of %m writes");
 endmodule
 
-// Spartan-7, 18 kbit. In SDP mode, port A reads and port B writes words of the width of both ports.
+// The 18 kbit block RAM of the Spartan-7. In SDP mode, port A reads and port B writes, and a word
+// uses the data pins of both ports.
 module RAMB18E1 #(
     INITS(64, 8)
     parameter DOA_REG = 0, DOB_REG = 0, INIT_A = 0, INIT_B = 0, RAM_MODE = "TDP",
@@ -148,7 +154,7 @@ module RAMB18E1 #(
     always @(WEA or WEBWE) if (|(SDP ? WEA : WEBWE)) $display("the other port of %m writes");
 endmodule
 
-// Spartan-7, 36 kbit.
+// The 36 kbit block RAM of the Spartan-7.
 module RAMB36E1 #(
     INITS(128, 16)
     parameter DOA_REG = 0, DOB_REG = 0, INIT_A = 0, INIT_B = 0, RAM_MODE = "TDP",

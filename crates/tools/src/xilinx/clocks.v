@@ -1,6 +1,6 @@
-// Models of the clock cells of Spartans, for which yosys has none. A DCM and an MMCM pass their
-// reference through and are always locked, at every stage. A BUFGCE samples CE while its clock is
-// low.
+// Simulation models of the clock cells of Spartan FPGAs, for which yosys has none. A DCM and an
+// MMCM output their reference clock unchanged and are always locked. A BUFGCE samples CE while its
+// input clock is low.
 
 module DCM #(
     parameter CLKFX_MULTIPLY = 4, CLKFX_DIVIDE = 1, CLKIN_PERIOD = 0, CLK_FEEDBACK = "1X", DFS_FREQUENCY_MODE = "LOW"

@@ -46,13 +46,19 @@ fn parsed(edif: &str) -> Result<Node<'_>, SynthesisError> {
             }
             '"' => {
                 let end = rest[1..].find('"').ok_or_else(|| unread("the end of a string"))?;
-                open.last_mut().ok_or_else(|| unread("a bracket too many"))?.push(Node::Text(&rest[1..=end]));
+                open.last_mut()
+                    .ok_or_else(|| unread("a bracket too many"))?
+                    .push(Node::Text(&rest[1..=end]));
                 end + 2
             }
             space if space.is_whitespace() => space.len_utf8(),
             _ => {
-                let end = rest.find(|c: char| c.is_whitespace() || "()\"".contains(c)).unwrap_or(rest.len());
-                open.last_mut().ok_or_else(|| unread("a bracket too many"))?.push(Node::Word(&rest[..end]));
+                let end = rest
+                    .find(|c: char| c.is_whitespace() || "()\"".contains(c))
+                    .unwrap_or(rest.len());
+                open.last_mut()
+                    .ok_or_else(|| unread("a bracket too many"))?
+                    .push(Node::Word(&rest[..end]));
                 end
             }
         };
@@ -123,13 +129,19 @@ impl Port {
         }
         let (name, before) = what.second()?.name()?;
         let count: Option<u32> = what.list().get(2).and_then(|count| count.word()?.parse().ok());
-        let range = before.strip_suffix(']').and_then(|text| text.rsplit_once('[')?.1.split_once(':'));
-        let range: Option<(u32, u32)> = range.and_then(|(left, right)| Some((left.parse().ok()?, right.parse().ok()?)));
+        let range =
+            before.strip_suffix(']').and_then(|text| text.rsplit_once('[')?.1.split_once(':'));
+        let range: Option<(u32, u32)> =
+            range.and_then(|(left, right)| Some((left.parse().ok()?, right.parse().ok()?)));
         match range {
-            Some((left, right)) if left.abs_diff(right) < WIDEST && Some(left.abs_diff(right) + 1) == count => {
+            Some((left, right))
+                if left.abs_diff(right) < WIDEST && Some(left.abs_diff(right) + 1) == count =>
+            {
                 Ok((name, Self { is_input, range: Some((left, right)) }))
             }
-            _ => Err(unread(format!("which bits {before} has: it was not written with -pvector bra"))),
+            _ => Err(unread(format!(
+                "which bits {before} has: it was not written with -pvector bra"
+            ))),
         }
     }
 
@@ -158,7 +170,9 @@ fn parameter(property: &Node<'_>) -> Result<String, SynthesisError> {
     match value {
         Some((Some("integer"), Some(Node::Word(number)))) => Ok(format!(".{name}(64'd{number})")),
         // ISE interprets a string by the type of the parameter: as a Verilog number, or as text.
-        Some((Some("string"), Some(Node::Text(text)))) if text.contains("'h") => Ok(format!(".{name}({text})")),
+        Some((Some("string"), Some(Node::Text(text)))) if text.contains("'h") => {
+            Ok(format!(".{name}({text})"))
+        }
         Some((Some("string"), Some(Node::Text(text)))) => Ok(format!(".{name}(\"{text}\")")),
         _ => Err(unread(format!("the property {name}"))),
     }
@@ -177,7 +191,12 @@ impl<'a> Nets<'a> {
         let mut nets = Self { places: HashMap::new(), count: 0 };
         for net in contents.all("net") {
             for joined in net.one("joined")?.all("portRef") {
-                let of = joined.one("instanceRef").and_then(Node::second).ok().and_then(Node::word).unwrap_or_default();
+                let of = joined
+                    .one("instanceRef")
+                    .and_then(Node::second)
+                    .ok()
+                    .and_then(Node::word)
+                    .unwrap_or_default();
                 let port = joined.second()?;
                 let (port, bit) = match port.list() {
                     [Node::Word("member"), Node::Word(port), Node::Word(bit)] => {
@@ -224,8 +243,10 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
     let mut body = String::new();
     for (name, port) in &own {
         for bit in 0..port.bits() {
-            let number = port.range.map(|(left, right)| if left >= right { left - bit } else { left + bit });
-            let pin = number.map_or_else(|| (*name).to_owned(), |number| format!("{name}[{number}]"));
+            let number =
+                port.range.map(|(left, right)| if left >= right { left - bit } else { left + bit });
+            let pin =
+                number.map_or_else(|| (*name).to_owned(), |number| format!("{name}[{number}]"));
             let wire = nets.take("", name, bit);
             // Writing to a string cannot fail.
             let _ = if port.is_input {
@@ -239,11 +260,13 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
         let name = instance.second()?.name()?.0;
         let cell = instance.one("viewRef")?.one("cellRef")?.second()?.name()?.0;
         let ports = cells.get(cell).ok_or_else(|| unread(format!("the cell {cell}")))?;
-        let parameters = instance.all("property").map(parameter).collect::<Result<Vec<_>, _>>()?.join(", ");
+        let parameters =
+            instance.all("property").map(parameter).collect::<Result<Vec<_>, _>>()?.join(", ");
         let pins: Vec<String> = ports
             .iter()
             .map(|(port, what)| {
-                let bits: Vec<String> = (0..what.bits()).map(|bit| nets.take(name, port, bit)).collect();
+                let bits: Vec<String> =
+                    (0..what.bits()).map(|bit| nets.take(name, port, bit)).collect();
                 format!(".{port}({{{}}})", bits.join(", "))
             })
             .collect();
@@ -262,7 +285,11 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
     // Each net is a wire of its own. With one vector of all nets, a simulator would propagate the
     // whole vector whenever one bit changes.
     let wires: Vec<String> = (0..nets.count).map(|net| format!("n{net}")).collect();
-    Ok(format!("module {top} (\n{}\n);\nwire {};\n{body}endmodule\n", heads.join(",\n"), wires.join(", ")))
+    Ok(format!(
+        "module {top} (\n{}\n);\nwire {};\n{body}endmodule\n",
+        heads.join(",\n"),
+        wires.join(", ")
+    ))
 }
 
 #[cfg(test)]

@@ -34,12 +34,14 @@ fn with_inits(models: &str) -> String {
 }
 
 fn declared(prefix: &str, count: u32) -> String {
-    let names: Vec<String> = (0..count).map(|number| format!("{prefix}_{number:02X} = 0")).collect();
+    let names: Vec<String> =
+        (0..count).map(|number| format!("{prefix}_{number:02X} = 0")).collect();
     format!("parameter [255:0] {}, ", names.join(", "))
 }
 
 fn together(prefix: &str, count: u32) -> String {
-    let names: Vec<String> = (0..count).rev().map(|number| format!("{prefix}_{number:02X}")).collect();
+    let names: Vec<String> =
+        (0..count).rev().map(|number| format!("{prefix}_{number:02X}")).collect();
     format!("{{{}}}", names.join(", "))
 }
 

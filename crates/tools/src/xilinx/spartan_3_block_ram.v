@@ -1,5 +1,5 @@
-// A Spartan-3's block RAM called NAME, with words of WIDTH_A and WIDTH_B bits. Parity ports that
-// the cell does not have are left open.
+// Simulation model of the Spartan-3 block RAM NAME, whose ports have words of WIDTH_A and WIDTH_B
+// bits. The model also has the parity ports that this cell does not have; they stay unconnected.
 module NAME #(
     INITS(64, 8)
     parameter INIT_A = 0, INIT_B = 0, SRVAL_A = 0, SRVAL_B = 0, WRITE_MODE_A = "WRITE_FIRST", WRITE_MODE_B = "WRITE_FIRST"

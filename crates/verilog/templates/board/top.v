@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for {{ title }}: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: {{ title }}.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -29,7 +31,8 @@ module {{ top }} (
     output wire {{ axes }}step,
     output wire {{ axes }}dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     {{ clock }} clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -40,7 +43,7 @@ module {{ top }} (
 {% for wire in line_pins if wire.held %}
     wire {{ wire.pin }}_out;
 {% endfor %}
-    {{ line }} line (
+    {{ line }}{{ line_parameters }}line (
 {% for wire in bytes %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
@@ -52,8 +55,8 @@ module {{ top }} (
 
 {% if gate %}
     // {{ gate.port }}: {{ gate.why }}.
-    // {{ gate.port }} has been 1 for {{ gate.clocks }} clocks before the lines to the host are driven, and they have high
-    // impedance again as soon as it is 0.
+    // The outputs to the host are driven only after {{ gate.port }} has been 1 for this number of
+    // clocks: {{ gate.clocks }}. They have high impedance again as soon as it is 0.
     reg [1:0] {{ gate.port }}_seen = 2'd0;
     reg [{{ gate.bits - 1 }}:0] {{ gate.port }}_waited = {{ gate.bits }}'d0;
     always @(posedge clock) begin
@@ -67,7 +70,7 @@ module {{ top }} (
 {% endfor %}
 
 {% endif %}
-    {{ link }} link (
+    {{ link }}{{ link_parameters }}link (
 {% for wire in bytes + between %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
@@ -76,7 +79,7 @@ module {{ top }} (
 
     wire enabled;
     assign enable_n = !enabled;
-    {{ engine }} engine (
+    {{ engine }}{{ engine_parameters }}engine (
 {% for wire in between %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
@@ -85,7 +88,7 @@ module {{ top }} (
 {% if low is none %}
         .limit_min({{ count }}'d0),
 {% elif one_for_all %}
-        .limit_min({ {{- others }}'d0, limit_min}), // one for all axes
+        .limit_min({ {{- others }}'d0, limit_min}), // one switch for all axes
 {% else %}
         .limit_min(limit_min),
 {% endif %}
@@ -93,11 +96,13 @@ module {{ top }} (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 {% if led %}
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = {{ "fault" if led_low else "!fault" }};
 {% endif %}
 {% for tie in ties %}

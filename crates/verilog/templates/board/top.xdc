@@ -1,4 +1,5 @@
-# {{ board.title }}. Generated: change the generator, not this file.
+# Pins and clock of this board: {{ board.title }}.
+# This file is generated: change the generator instead.
 set_property CFGBVS VCCO [current_design]
 set_property CONFIG_VOLTAGE 3.3 [current_design]
 set_property -dict { PACKAGE_PIN {{ oscillator.pin }} IOSTANDARD {{ oscillator.io }} } [get_ports { {{- oscillator.port -}} }]

@@ -1,5 +1,8 @@
-# {{ board.title }}: Verilog to bitstream with Vivado: vivado -mode batch -source build.tcl. Generated: change the generator,
-# not this file. This script was never run: Vivado was not at hand.
+# Makes the bitstream with Vivado for this board: {{ board.title }}.
+# Run it with: vivado -mode batch -source build.tcl
+# This file is generated: change the generator instead.
+#
+# This script has not been tested, because Vivado was not available.
 cd [file dirname [file normalize [info script]]]
 create_project -in_memory -part {{ part.ordered }}
 read_verilog [list {{ sources | join(" ") }}]

@@ -1,6 +1,6 @@
 //! Converts a machine file that homes to the parameters of homing, as the command does.
 
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
 use carrystep_link::{AxisHoming, Homing, Wiring};
@@ -33,11 +33,15 @@ pub fn homing_of(machine: &Machine) -> Owned {
         });
     }
     let wiring = match machine.guard.limits {
-        Limits::Each => Wiring::Each,
-        Limits::One => Wiring::One,
-        Limits::Pair | Limits::None => Wiring::Pair,
+        LimitWiring::Each => Wiring::Each,
+        LimitWiring::One => Wiring::One,
+        LimitWiring::Pair | LimitWiring::None => Wiring::Pair,
     };
-    let groups = machine.home_order.iter().map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis)).collect();
+    let groups = machine
+        .home_order
+        .iter()
+        .map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis))
+        .collect();
     let (round, debounce) = (machine.guard.round, machine.guard.debounce);
     Owned { homing: Homing { wiring, axes, groups: &[], others: 0, round, debounce }, groups }
 }

@@ -3,19 +3,19 @@
 
 use super::random::Random;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::Uart;
 use carrystep_files::machine::End;
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_link::{Clock, Exchanged, Host, Line, Patience, Timing};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, Edges, Gateware, Switches, VerilatedBoard};
+use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, Switches, VerilatedBoard};
 use std::cell::{Ref, RefCell};
 use std::rc::Rc;
 
 /// Reads a machine file.
 pub fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 /// Reads a valid machine file.
@@ -24,13 +24,13 @@ pub fn machine(text: &str) -> Machine {
 }
 
 /// A kind of board.
-pub trait Make: Gateware + Sized {
+pub trait Make: SimulatedBoard + Sized {
     fn make(build: &EngineBuild, uart: Uart) -> Self;
     /// Ticks between two updates of the switches.
     fn slice(round: u32) -> u32;
 }
 
-impl Make for Board {
+impl Make for ModelBoard {
     fn make(build: &EngineBuild, uart: Uart) -> Self {
         Self::new(build, uart)
     }
@@ -85,7 +85,7 @@ impl Switched {
 pub struct World<B> {
     board: B,
     axes: Vec<Switched>,
-    limits: Limits,
+    limits: LimitWiring,
     estop: bool,
     /// Cycles between two updates of the switches.
     slice: u64,
@@ -109,7 +109,8 @@ impl<B: Make> World<B> {
     fn press(&mut self) {
         let (mut min, mut max) = (0_u8, 0_u8);
         if self.bounce.0 < self.slice {
-            self.bounce = (self.shortest_bounce + self.random.below(self.bounce_range), !self.bounce.1);
+            self.bounce =
+                (self.shortest_bounce + self.random.below(self.bounce_range), !self.bounce.1);
         }
         self.bounce.0 = self.bounce.0.saturating_sub(self.slice);
         for (number, axis) in self.axes.iter_mut().enumerate() {
@@ -125,9 +126,9 @@ impl<B: Make> World<B> {
             max |= u8::from(high) << number;
         }
         let (limit_min, limit_max) = match self.limits {
-            Limits::Pair | Limits::None => (min, max),
-            Limits::Each => (min | max, 0),
-            Limits::One => (u8::from(min | max != 0), 0),
+            LimitWiring::Pair | LimitWiring::None => (min, max),
+            LimitWiring::Each => (min | max, 0),
+            LimitWiring::One => (u8::from(min | max != 0), 0),
         };
         self.board.press(Switches { estop: self.estop, limit_min, limit_max });
     }
@@ -139,7 +140,9 @@ impl<B: Make> World<B> {
             // Speeds are below 10 steps per millisecond.
             let near = |(number, axis): (usize, &Switched)| {
                 let position = self.board.position(number);
-                axis.bounces || axis.edge.abs_diff(position) < 20 || axis.far.abs_diff(position) < 20
+                axis.bounces
+                    || axis.edge.abs_diff(position) < 20
+                    || axis.far.abs_diff(position) < 20
             };
             let still = self.board.rests() && !self.axes.iter().any(|axis| axis.bounces);
             let still = still || !self.axes.iter().enumerate().any(near);
@@ -186,7 +189,16 @@ impl<B: Make> Bench<B> {
             // A bounce is shorter than the debounce, at whatever time the samples fall.
             let bounces = *start != Start::Open && guard.debounce > 4;
             let stood = depth.max(0);
-            axes.push(Switched { sign, edge, far, there: true, stuck: false, bounces, stood, deepest: depth });
+            axes.push(Switched {
+                sign,
+                edge,
+                far,
+                there: true,
+                stuck: false,
+                bounces,
+                stood,
+                deepest: depth,
+            });
         }
         let round = u64::from(guard.round) * tick;
         let slice = u64::from(B::slice(guard.round)) * tick;
@@ -200,7 +212,9 @@ impl<B: Make> Bench<B> {
             random,
             bounce: (0, false),
             shortest_bounce: round + slice,
-            bounce_range: (u64::from(guard.debounce.saturating_sub(3)) * round).saturating_sub(2 * slice).max(1),
+            bounce_range: (u64::from(guard.debounce.saturating_sub(3)) * round)
+                .saturating_sub(2 * slice)
+                .max(1),
         };
         world.press();
         Self(Rc::new(RefCell::new(world)))
@@ -208,8 +222,13 @@ impl<B: Make> Bench<B> {
 
     /// Connects a host to the board.
     pub fn connect(&self, machine: &Machine) -> Host<Self, Self> {
-        let patience =
-            Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 500, look: 5 };
+        let patience = Patience {
+            timing: Timing { resend: 12, pause: 2 },
+            silence: 500,
+            lost: 500,
+            change: 500,
+            status_period: 5,
+        };
         let id = uart(machine).build_id(&machine.engine());
         Host::connect(self.clone(), self.clone(), Some(id.0), patience).unwrap()
     }

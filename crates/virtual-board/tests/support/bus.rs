@@ -3,7 +3,7 @@
 
 use super::wire::{Faults, Wire};
 use super::{CLOCK_HZ, Kind, MS, Seen, build};
-use carrystep_core::link::Line;
+use carrystep_core::link::LineKind;
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Clock, Host, Patience, Timing};
 use carrystep_model::fast::Edge;
@@ -70,7 +70,7 @@ impl<B: Kind> Bus<B> {
 
     /// Connects a host that refuses any other build.
     pub fn connect(&self) -> BusHost<B> {
-        let id = Line::Spi.build_id(&build());
+        let id = LineKind::Spi.build_id(&build());
         // No USB bridge delays an answer here.
         let patience = Patience { timing: Timing { resend: 5, pause: 1 }, ..Patience::default() };
         Host::connect(SpiLine::new(self.clone()), self.clone(), Some(id.0), patience).unwrap()

@@ -8,12 +8,12 @@ pub mod words;
 
 pub use link::{random, wire};
 
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{BuildId, END, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience, Segment};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_virtual_board::{Board, Edges, Gateware, VerilatedBoard};
+use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, VerilatedBoard};
 use random::Random;
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -34,7 +34,7 @@ pub const FASTEST: i64 = 1 << 58;
 pub type BoardHost<B> = Host<End<B>, End<B>>;
 
 /// A kind of board; all kinds must behave the same.
-pub trait Kind: Gateware + Sized {
+pub trait Kind: SimulatedBoard + Sized {
     fn new(uart: Uart) -> Self;
 
     /// A board with an SPI of this rate, Hz.
@@ -52,7 +52,7 @@ pub trait Kind: Gateware + Sized {
     }
 }
 
-impl Kind for Board {
+impl Kind for ModelBoard {
     fn new(uart: Uart) -> Self {
         Self::new(&build(), uart)
     }
@@ -63,7 +63,10 @@ impl Kind for Board {
 
     fn least_waiting(&self) -> Option<usize> {
         let core = self.engine().core();
-        (0..AXES).filter(|axis| core.in_a_move() >> axis & 1 == 1).map(|axis| core.waiting(axis)).min()
+        (0..AXES)
+            .filter(|axis| core.in_a_move() >> axis & 1 == 1)
+            .map(|axis| core.waiting(axis))
+            .min()
     }
 }
 
@@ -89,7 +92,7 @@ pub fn build() -> EngineBuild {
     let mut build = EngineBuild::minimal(&build, STOP);
     build.guard.round = 1024;
     build.guard.watchdog = 49;
-    build.guard.limits = Limits::Pair;
+    build.guard.limits = LimitWiring::Pair;
     build.guard.stop[1] = 1 << 54;
     build
 }
@@ -238,7 +241,11 @@ impl<B: Kind> End<B> {
     }
 
     /// Connects a host that refuses any other build than `id`.
-    pub fn connect_to(&self, id: BuildId, patience: Patience) -> Result<BoardHost<B>, HostError<Died>> {
+    pub fn connect_to(
+        &self,
+        id: BuildId,
+        patience: Patience,
+    ) -> Result<BoardHost<B>, HostError<Died>> {
         Host::connect(self.clone(), self.clone(), Some(id.0), patience)
     }
 

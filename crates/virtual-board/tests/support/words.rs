@@ -4,7 +4,8 @@
 use super::link::client::Client;
 use super::link::{hex, unhex};
 use carrystep_link::registers::{
-    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLEAR, CONTROL, CONTROL_ENABLE, CONTROL_STOP, IDENTITY, POSITION, PROTOCOL,
+    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLEAR, CONTROL, CONTROL_ENABLE, CONTROL_STOP, IDENTITY,
+    POSITION, PROTOCOL,
 };
 use carrystep_link::{Clock, Command, Line, frame};
 use std::fmt::Debug;
@@ -26,7 +27,9 @@ pub struct Heard {
 impl Heard {
     fn of(words: &str) -> Self {
         let parts: Vec<&str> = words.split(':').collect();
-        let [_, address, next, flags, cause, .., data] = parts.as_slice() else { panic!("the client said {words:?}") };
+        let [_, address, next, flags, cause, .., data] = parts.as_slice() else {
+            panic!("the client said {words:?}")
+        };
         let number = |text, radix| u32::from_str_radix(text, radix).expect("a number");
         let (address, next) = (number(address, 16) as u8, number(next, 16) as u8);
         let flags = flags.replace('.', "");
@@ -62,14 +65,29 @@ pub struct Refused {
 
 impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
     /// Reads the facts of the board, and refuses any build but `wanted`.
-    pub fn connect(client: &'a mut dyn Client, line: L, clock: C, resend: u32, wanted: u64) -> Result<Self, Refused> {
+    pub fn connect(
+        client: &'a mut dyn Client,
+        line: L,
+        clock: C,
+        resend: u32,
+        wanted: u64,
+    ) -> Result<Self, Refused> {
         client.say(&format!("begin {resend} 2"));
-        let mut host =
-            Self { client, line, clock, out: Vec::new(), came: Vec::new(), feeds: false, last: Heard::default() };
+        let mut host = Self {
+            client,
+            line,
+            clock,
+            out: Vec::new(),
+            came: Vec::new(),
+            feeds: false,
+            last: Heard::default(),
+        };
         let [identity, protocol, low, high, axes] =
-            [IDENTITY, PROTOCOL, BUILD_LOW, BUILD_HIGH, AXIS_COUNT].map(|address| host.register(address));
+            [IDENTITY, PROTOCOL, BUILD_LOW, BUILD_HIGH, AXIS_COUNT]
+                .map(|address| host.register(address));
         let build = u64::from(high) << 32 | u64::from(low);
-        let verdict = host.client.say(&format!("check {identity:x} {protocol:x} {build:x} {wanted:x}"));
+        let verdict =
+            host.client.say(&format!("check {identity:x} {protocol:x} {build:x} {wanted:x}"));
         if verdict != "fine" {
             return Err(Refused { verdict, build });
         }
@@ -86,7 +104,9 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         let answers = if self.feeds {
             let said = self.client.say(&format!("step {now} {came}"));
             let parts: Vec<&str> = said.split(" | ").collect();
-            let [answers, feeding, bytes] = parts.as_slice() else { panic!("the client said {said:?}") };
+            let [answers, feeding, bytes] = parts.as_slice() else {
+                panic!("the client said {said:?}")
+            };
             assert_ne!(*feeding, "bad");
             fed = *feeding == "fed";
             self.out.extend(unhex(bytes));
@@ -137,7 +157,9 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
 
     /// Writes a register, and waits until the write was executed.
     pub fn write(&mut self, address: u8, word: u32) {
-        self.until("room", |host| host.client.say(&format!("write {address:02x} {word:x}")) == "yes");
+        self.until("room", |host| {
+            host.client.say(&format!("write {address:02x} {word:x}")) == "yes"
+        });
         self.until("the write", |host| {
             host.pump();
             !host.waits()
@@ -163,7 +185,14 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         for command in commands {
             self.client.say(&match command {
                 Command::Segment { axis, segment: s } => {
-                    format!("segment {axis} {} {} {} {} {}", s.ticks, s.v, s.a, s.j, u8::from(s.last))
+                    format!(
+                        "segment {axis} {} {} {} {} {}",
+                        s.ticks,
+                        s.v,
+                        s.a,
+                        s.j,
+                        u8::from(s.last)
+                    )
                 }
                 Command::Start { mask } => format!("start {mask:02x}"),
             });

@@ -14,17 +14,18 @@ const BUDGET: f64 = 0.3;
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Consumer {
     pub pulses: u64,
-    pub turns: u64,
+    pub dir_changes: u64,
     pub hash: u64,
 }
 
 impl Edges for Consumer {
     #[inline]
     fn edge(&mut self, Edge { clock, axis, change, backward }: Edge) {
-        let turn = change == Change::Turn;
-        self.pulses += u64::from(!turn);
-        self.turns += u64::from(turn);
-        let word = clock << 5 | u64::from(axis) << 2 | u64::from(turn) << 1 | u64::from(backward);
+        let dir_change = change == Change::DirChange;
+        self.pulses += u64::from(!dir_change);
+        self.dir_changes += u64::from(dir_change);
+        let word =
+            clock << 5 | u64::from(axis) << 2 | u64::from(dir_change) << 1 | u64::from(backward);
         self.hash = (self.hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
     }
 }
@@ -48,8 +49,13 @@ pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
         job.run_fast(&mut listener).map(|outcome| (outcome, listener.0))
     });
     let (outcome, consumer) = result.map_err(|error| error.to_string())?;
-    if outcome.fault.is_some() || (consumer.pulses, consumer.turns) != (heard.pulses, heard.turns) {
-        return Err(format!("the engine makes other pulses: {consumer:?}, fault {:?}", outcome.fault));
+    if outcome.fault.is_some()
+        || (consumer.pulses, consumer.dir_changes) != (heard.pulses, heard.dir_changes)
+    {
+        return Err(format!(
+            "the engine makes other pulses: {consumer:?}, fault {:?}",
+            outcome.fault
+        ));
     }
     Ok(outcome.clocks as f64 / moves.engine.timebase.clock_hz() as f64 / seconds)
 }

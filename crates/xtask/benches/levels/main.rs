@@ -14,7 +14,7 @@ mod writers;
 use carrystep_simulators::Level;
 use clap::Parser;
 use moves::{DENSITIES, Density, Moves, STEADY};
-use report::{Report, Row};
+use report::{BenchReport, BenchRow};
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -48,10 +48,11 @@ fn main() -> ExitCode {
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn measure() -> Result<Report, String> {
+fn measure() -> Result<BenchReport, String> {
     let moves = DENSITIES.iter().map(Moves::load).collect::<Result<Vec<_>, _>>()?;
-    let verilog = carrystep_verilog::six_axis_verilog(&moves[0].plan.build, "sim/bench/machine.toml")
-        .map_err(|error| error.to_string())?;
+    let verilog =
+        carrystep_verilog::six_axis_verilog(&moves[0].plan.build, "sim/bench/machine.toml")
+            .map_err(|error| error.to_string())?;
     let toggling = Verilated::compile(&verilog, false)?;
     let tracing = Verilated::compile(&verilog, true)?;
 
@@ -63,9 +64,9 @@ fn measure() -> Result<Report, String> {
     }
     let steady = Moves::load(&STEADY)?;
     let (steady_seconds, heard) = levels::fast(&steady)?;
-    let edge = steady_seconds / (heard.pulses + heard.turns).max(1) as f64;
+    let edge = steady_seconds / (heard.pulses + heard.dir_changes).max(1) as f64;
     let (typical_seconds, heard) = levels::fast(&moves[1])?;
-    let loading = typical_seconds - edge * (heard.pulses + heard.turns) as f64;
+    let loading = typical_seconds - edge * (heard.pulses + heard.dir_changes) as f64;
     let engine_times_real_time = levels::engine(&moves[0], &levels::fast(&moves[0])?.1)?;
     let [ticked_ns_one_after_the_other, ticked_ns_side_by_side] = ticking::measure()?;
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
@@ -82,8 +83,10 @@ fn measure() -> Result<Report, String> {
     if busy_ns > NS_PER_EDGE_AT_MOST {
         failures.push(format!("busy: {busy_ns:.1} ns an edge, {NS_PER_EDGE_AT_MOST} wanted"));
     }
-    let ratio = |name: &str| rows.iter().find(|row: &&Row| row.name == name).map_or(0.0, |row| row.ratio);
-    Ok(Report {
+    let ratio = |name: &str| {
+        rows.iter().find(|row: &&BenchRow| row.name == name).map_or(0.0, |row| row.ratio)
+    };
+    Ok(BenchReport {
         passed: failures.is_empty(),
         machine: machine(),
         ratio_busy: ratio("busy"),
@@ -103,27 +106,43 @@ fn measure() -> Result<Report, String> {
     })
 }
 
-fn row(density: &Density, moves: &Moves, toggling: &Verilated, failures: &mut Vec<String>) -> Result<Row, String> {
+fn row(
+    density: &Density,
+    moves: &Moves,
+    toggling: &Verilated,
+    failures: &mut Vec<String>,
+) -> Result<BenchRow, String> {
     let clocks = moves.outcome.clocks;
     let (seconds, heard) = levels::fast(moves)?;
     let run = toggling.run(&moves.feed(), clocks, None)?;
     if run.positions != moves.outcome.last.position {
-        failures.push(format!("{}: Verilator's positions are not those of the fast model", density.name));
+        failures.push(format!(
+            "{}: Verilator's positions are not those of the fast model",
+            density.name
+        ));
     }
     let (fast, verilator) = (clocks as f64 / seconds, clocks as f64 / run.seconds);
     if verilator < VERILATOR_AT_LEAST {
-        failures.push(format!("{}: invalid, Verilator runs at only {verilator:.2e} clocks/s", density.name));
+        failures.push(format!(
+            "{}: invalid, Verilator runs at only {verilator:.2e} clocks/s",
+            density.name
+        ));
     }
     if fast < density.wanted * verilator {
-        failures.push(format!("{}: {:.0} times Verilator, {} wanted", density.name, fast / verilator, density.wanted));
+        failures.push(format!(
+            "{}: {:.0} times Verilator, {} wanted",
+            density.name,
+            fast / verilator,
+            density.wanted
+        ));
     }
-    Ok(Row {
+    Ok(BenchRow {
         name: density.name,
         what: density.what,
         clocks,
         pulses: heard.pulses,
         hash: format!("{:016x}", heard.hash),
-        fast_ns_per_edge: seconds * 1e9 / (heard.pulses + heard.turns).max(1) as f64,
+        fast_ns_per_edge: seconds * 1e9 / (heard.pulses + heard.dir_changes).max(1) as f64,
         fast,
         model: levels::clocks_per_second(Level::Model, moves, 2_000_000)?,
         rust_hdl: levels::clocks_per_second(Level::RustHdl, moves, 4_000)?,

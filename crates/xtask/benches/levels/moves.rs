@@ -29,7 +29,8 @@ pub const DENSITIES: [Density; 3] = [
 
 /// A move with edges as dense as those of the typical move, but with few loads of segments. The
 /// difference of the two gives the cost of an edge and that of a load.
-pub const STEADY: Density = Density { name: "steady", what: "all axes at 10 000 steps/s, few loads", wanted: 0.0 };
+pub const STEADY: Density =
+    Density { name: "steady", what: "all axes at 10 000 steps/s, few loads", wanted: 0.0 };
 
 /// A clock, Hz, at which an engine of six axes finishes the time slots of all axes within a tick of
 /// 1 us.
@@ -48,17 +49,22 @@ pub struct Moves {
 impl Moves {
     /// Reads and plans one of the move files.
     pub fn load(density: &Density) -> Result<Self, String> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
+        let root =
+            Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
         let path = root.join("sim/bench").join(density.name).with_extension("toml");
         let file = MoveFile::load(&path).map_err(|error| error.to_string())?;
         let plan = plan::<f64>(&file).map_err(|error| format!("{}: {error}", path.display()))?;
         let program = plan.program();
         let (tick_ns, phases) = (plan.build.timebase.tick_ns(), plan.build.timebase.phases());
-        let timebase = Timebase::new(ENGINE_HZ, tick_ns, phases).map_err(|error| error.to_string())?;
+        let timebase =
+            Timebase::new(ENGINE_HZ, tick_ns, phases).map_err(|error| error.to_string())?;
         let engine = EngineBuild { timebase, ..file.machine.engine() };
         engine.check().map_err(|error| error.to_string())?;
-        let outcome = fast::run(&Job::new(&plan.build, &program, plan.total_ticks()), &mut fast::EdgesOnly(()))
-            .map_err(|error| error.to_string())?;
+        let outcome = fast::run(
+            &Job::new(&plan.build, &program, plan.total_ticks()),
+            &mut fast::EdgesOnly(()),
+        )
+        .map_err(|error| error.to_string())?;
         Ok(Self { plan, engine, program, outcome })
     }
 
@@ -79,17 +85,26 @@ impl Moves {
         for command in &self.program {
             let (inputs, line) = match *command {
                 Command::Segment { axis, segment: s } => {
-                    let line = format!("0 {axis:x} {:x} {:x} {:x} {:x} {}", s.ticks, s.v, s.a, s.j, u8::from(s.last));
+                    let line = format!(
+                        "0 {axis:x} {:x} {:x} {:x} {:x} {}",
+                        s.ticks,
+                        s.v,
+                        s.a,
+                        s.j,
+                        u8::from(s.last)
+                    );
                     (Inputs { segment: Some((axis, s)), ..Inputs::default() }, line)
                 }
-                Command::Start { mask } => {
-                    (Inputs { start: Some(mask), ..Inputs::default() }, format!("1 {mask:x} 0 0 0 0 0"))
-                }
+                Command::Start { mask } => (
+                    Inputs { start: Some(mask), ..Inputs::default() },
+                    format!("1 {mask:x} 0 0 0 0 0"),
+                ),
                 Command::Wait { .. } | Command::Clear => continue,
             };
             loop {
                 let outputs = core.outputs(&inputs);
-                let taken = if inputs.start.is_some() { outputs.start_ready } else { outputs.seg_ready };
+                let taken =
+                    if inputs.start.is_some() { outputs.start_ready } else { outputs.seg_ready };
                 if taken || core.leap(&inputs, u64::MAX, &mut ()) == 0 {
                     if taken {
                         // Writing to a string cannot fail.

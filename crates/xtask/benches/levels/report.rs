@@ -7,14 +7,14 @@ use std::fmt;
 
 /// All measurements, with one row per move.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct BenchReport {
     pub passed: bool,
     pub machine: String,
     /// Clock cycles per second of the fast model divided by those of Verilator, in the same run.
     pub ratio_busy: f64,
     pub ratio_typical: f64,
     pub ratio_rest: f64,
-    pub rows: Vec<Row>,
+    pub rows: Vec<BenchRow>,
     /// Time per edge on the steady move, which has the density of the typical move but few loads,
     /// ns.
     pub steady_ns_per_edge: f64,
@@ -39,7 +39,7 @@ pub struct Report {
 
 /// One move on every level.
 #[derive(Debug, Serialize)]
-pub struct Row {
+pub struct BenchRow {
     pub name: &'static str,
     pub what: &'static str,
     pub clocks: u64,
@@ -57,7 +57,7 @@ pub struct Row {
     pub ratio_wanted: f64,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for BenchReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.machine)?;
         writeln!(f, "clock cycles a second, six axes at 48 MHz, 1 us ticks, the same pulses:\n")?;
@@ -88,7 +88,11 @@ impl fmt::Display for Report {
             "\nan edge at 10 000 steps/s without loads: {:.1} ns; a load of the typical move: {:.0} ns",
             self.steady_ns_per_edge, self.typical_ns_per_load
         )?;
-        writeln!(f, "the engine at 80 MHz, busy: {:.0} times real time", self.engine_times_real_time)?;
+        writeln!(
+            f,
+            "the engine at 80 MHz, busy: {:.0} times real time",
+            self.engine_times_real_time
+        )?;
         writeln!(
             f,
             "a tick of six axes, added: {:.1} ns one axis after the other, {:.1} ns side by side",

@@ -30,8 +30,14 @@ struct Found {
 pub fn measure() -> Result<[f64; 2], String> {
     // Each axis steps in about one tick of four, at a speed of its own that rises slowly.
     let speed = |axis: usize| (1 << 62) + ((axis as u64) << 57);
-    let axes = Axes { p: [1 << 63; AXES], v: std::array::from_fn(speed), a: [1 << 44; AXES], j: [1 << 20; AXES] };
-    let mut found = [(); 2].map(|()| Found { steps: vec![[(0, 0, 0); TICKS + 1]; AXES], count: [0; AXES] });
+    let axes = Axes {
+        p: [1 << 63; AXES],
+        v: std::array::from_fn(speed),
+        a: [1 << 44; AXES],
+        j: [1 << 20; AXES],
+    };
+    let mut found =
+        [(); 2].map(|()| Found { steps: vec![[(0, 0, 0); TICKS + 1]; AXES], count: [0; AXES] });
     let ns = |seconds: f64| seconds * 1e9 / TICKS as f64;
     let [after, beside] = &mut found;
     let times = [
@@ -39,8 +45,14 @@ pub fn measure() -> Result<[f64; 2], String> {
         ns(stopwatch::least_of(BUDGET, 50, || beside.side_by_side(axes))),
     ];
     let same = after.count == beside.count
-        && (0..AXES).all(|axis| after.steps[axis][..after.count[axis]] == beside.steps[axis][..beside.count[axis]]);
-    if same { Ok(times) } else { Err("axes side by side do not step as they do one after the other".to_owned()) }
+        && (0..AXES).all(|axis| {
+            after.steps[axis][..after.count[axis]] == beside.steps[axis][..beside.count[axis]]
+        });
+    if same {
+        Ok(times)
+    } else {
+        Err("axes side by side do not step as they do one after the other".to_owned())
+    }
 }
 
 impl Found {

@@ -28,20 +28,41 @@ impl Verilated {
     pub fn compile(verilog: &str, trace: bool) -> Result<Self, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let write = |name: &str, text: &str| {
-            std::fs::write(folder.path().join(name), text).map_err(|error| format!("{name}: {error}"))
+            std::fs::write(folder.path().join(name), text)
+                .map_err(|error| format!("{name}: {error}"))
         };
         write("core.v", verilog)?;
         write("toggle.cpp", HARNESS)?;
         let flags = format!("-O3 -march=native {NO_SLP}");
         let mut command = Command::new(VERILATOR.name);
-        command.args(["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]);
+        command.args([
+            "--cc",
+            "--exe",
+            "--build",
+            "-O3",
+            "--x-assign",
+            "fast",
+            "--x-initial",
+            "fast",
+            "--noassert",
+        ]);
         command.args(["-Wno-fatal", "--top-module", "carrystep_six_axis", "-o", "toggle"]);
-        command.args(["-MAKEFLAGS", &format!("OPT_FAST='{flags}' OPT_SLOW='{flags}' OPT_GLOBAL='{flags}'")]);
-        command.args(trace.then_some("--trace")).args(["core.v", "toggle.cpp"]).current_dir(folder.path());
-        let missing = |_| format!("{} is not installed: {} installs it", VERILATOR.name, VERILATOR.ways());
+        command.args([
+            "-MAKEFLAGS",
+            &format!("OPT_FAST='{flags}' OPT_SLOW='{flags}' OPT_GLOBAL='{flags}'"),
+        ]);
+        command
+            .args(trace.then_some("--trace"))
+            .args(["core.v", "toggle.cpp"])
+            .current_dir(folder.path());
+        let missing =
+            |_| format!("{} is not installed: {} installs it", VERILATOR.name, VERILATOR.ways());
         let output = command.output().map_err(missing)?;
         if !output.status.success() {
-            return Err(format!("verilator failed: {}", String::from_utf8_lossy(&output.stderr).trim()));
+            return Err(format!(
+                "verilator failed: {}",
+                String::from_utf8_lossy(&output.stderr).trim()
+            ));
         }
         let binary = folder.path().join("obj_dir/toggle");
         Ok(Self { folder, binary })
@@ -59,7 +80,9 @@ impl Verilated {
         let seconds = numbers.next().and_then(|number| number.parse().ok());
         let positions: Vec<i32> = numbers.filter_map(|number| number.parse().ok()).collect();
         match (seconds, positions.try_into()) {
-            (Some(seconds), Ok(positions)) if output.status.success() => Ok(Run { seconds, positions }),
+            (Some(seconds), Ok(positions)) if output.status.success() => {
+                Ok(Run { seconds, positions })
+            }
             _ => Err(format!("the Verilator harness failed ({}): {text}", output.status)),
         }
     }

@@ -58,7 +58,8 @@ pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
     let path = folder.join("waveform.vcd");
     let simulate = |sink: &mut dyn PinSink| {
         let mut feed = PinFeed::new(moves.plan.build.timebase, AXES, sink);
-        let outcome = run(Level::Fast, &moves.job(), &mut |cycle, outputs| feed.observe(cycle, outputs));
+        let outcome =
+            run(Level::Fast, &moves.job(), &mut |cycle, outputs| feed.observe(cycle, outputs));
         let outcome = outcome.map_err(|error| error.to_string())?;
         feed.end(outcome.clocks).map_err(|error| error.to_string())
     };
@@ -119,7 +120,8 @@ struct PortDump {
 }
 
 /// Name and width of each port.
-const PORTS: [(&str, u32); 5] = [("step", 6), ("dir", 6), ("idle", 1), ("position", 192), ("discarded", 192)];
+const PORTS: [(&str, u32); 5] =
+    [("step", 6), ("dir", 6), ("idle", 1), ("position", 192), ("discarded", 192)];
 
 impl PortDump {
     fn create(path: &Path) -> std::io::Result<Self> {
@@ -156,7 +158,12 @@ impl PortDump {
 
 /// Writes a vector of words, the highest word first, in one piece, because the library formats each
 /// bit by itself.
-fn vector(out: &mut vcd::Writer<BufWriter<File>>, id: vcd::IdCode, words: &[u32], bits: u32) -> std::io::Result<()> {
+fn vector(
+    out: &mut vcd::Writer<BufWriter<File>>,
+    id: vcd::IdCode,
+    words: &[u32],
+    bits: u32,
+) -> std::io::Result<()> {
     let mut text = vec![b'b'];
     for word in words {
         text.extend((0..bits.min(32)).rev().map(|bit| b'0' + (word >> bit & 1) as u8));

@@ -23,7 +23,8 @@ const LOCKSTEP: &[&str] = &[
 ];
 
 /// A board of models, and what talks with it.
-const BOARD: &[&str] = &["crates/core/", "crates/model/", "crates/link/", "crates/plan/", "crates/virtual-board/"];
+const BOARD: &[&str] =
+    &["crates/core/", "crates/model/", "crates/link/", "crates/plan/", "crates/virtual-board/"];
 
 /// What is synthesised, and by which tools.
 const GATEWARE: &[&str] = &[
@@ -120,7 +121,11 @@ fn runs_of(changed: &[&str]) -> Vec<String> {
         let mut all = ALL.iter().chain(inputs);
         all.any(|input| changed.iter().any(|path| path.starts_with(input)))
     };
-    INPUTS.iter().filter(|(_, inputs)| depends(inputs)).map(|(name, _)| (*name).to_owned()).collect()
+    INPUTS
+        .iter()
+        .filter(|(_, inputs)| depends(inputs))
+        .map(|(name, _)| (*name).to_owned())
+        .collect()
 }
 
 #[cfg(test)]
@@ -131,7 +136,10 @@ mod tests {
     #[test]
     fn a_change_makes_the_runs_that_it_can_break() {
         assert!(runs_of(&["README.md", "crates/cli/src/main.rs"]).is_empty());
-        assert_eq!(runs_of(&["crates/link/src/lib.rs"]), ["bad-line", "garbage", "dead-host", "verilog-board"]);
+        assert_eq!(
+            runs_of(&["crates/link/src/lib.rs"]),
+            ["bad-line", "garbage", "dead-host", "verilog-board"]
+        );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
         assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());
     }

@@ -39,8 +39,15 @@ pub struct Workspace {
 /// Something does not compile.
 pub fn build() -> Result<Workspace, String> {
     let metadata = shell::read("cargo", &["metadata", "--no-deps", "--format-version", "1"])?;
-    let metadata: Value = serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
-    let build = ["test", "--release", "--workspace", "--no-run", "--message-format=json-render-diagnostics"];
+    let metadata: Value =
+        serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
+    let build = [
+        "test",
+        "--release",
+        "--workspace",
+        "--no-run",
+        "--message-format=json-render-diagnostics",
+    ];
     shell::say(&format!("$ cargo {}", build.join(" ")));
     let messages = shell::read_stdout("cargo", &build)?;
     let mut binaries = binaries(&messages, &packages(&metadata))?;
@@ -49,15 +56,17 @@ pub fn build() -> Result<Workspace, String> {
         return Err("cargo built no test binary".to_owned());
     }
     binaries.push(documentation());
-    let target = metadata["target_directory"].as_str().ok_or("cargo metadata names no target folder")?;
+    let target =
+        metadata["target_directory"].as_str().ok_or("cargo metadata names no target folder")?;
     Ok(Workspace { binaries, target: target.into() })
 }
 
 /// The command that was built for the tests of the command line.
 fn command(messages: &str) -> Option<PathBuf> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let mut commands =
-        messages.filter(|message| message["target"]["name"] == "carrystep" && message["profile"]["test"] == false);
+    let mut commands = messages.filter(|message| {
+        message["target"]["name"] == "carrystep" && message["profile"]["test"] == false
+    });
     commands.find_map(|message| message["executable"].as_str().map(PathBuf::from))
 }
 
@@ -88,7 +97,8 @@ fn variables(package: &Value) -> Vec<(String, String)> {
     let mut numbers = numbers.split('+').next().unwrap_or_default().split('.');
     let mut number = || numbers.next().unwrap_or_default().to_owned();
     let (major, minor, patch) = (number(), number(), number());
-    let authors: Vec<String> = package["authors"].as_array().into_iter().flatten().map(text).collect();
+    let authors: Vec<String> =
+        package["authors"].as_array().into_iter().flatten().map(text).collect();
     let mut all = vec![
         ("CARGO_MANIFEST_DIR", folder),
         ("CARGO_MANIFEST_PATH", manifest),
@@ -114,12 +124,18 @@ fn variables(package: &Value) -> Vec<(String, String)> {
 }
 
 /// The binaries in cargo's messages, one JSON document a line.
-fn binaries(messages: &str, packages: &BTreeMap<String, Vec<(String, String)>>) -> Result<Vec<Binary>, String> {
-    let parse = |line: &str| serde_json::from_str(line).map_err(|error| format!("cargo's messages: {error}"));
+fn binaries(
+    messages: &str,
+    packages: &BTreeMap<String, Vec<(String, String)>>,
+) -> Result<Vec<Binary>, String> {
+    let parse = |line: &str| {
+        serde_json::from_str(line).map_err(|error| format!("cargo's messages: {error}"))
+    };
     // Other lines are printed by build scripts and compilers of other languages.
     let lines = messages.lines().filter(|line| line.starts_with('{'));
     let messages: Vec<Value> = lines.map(parse).collect::<Result<_, _>>()?;
-    let of = |reason: &'static str| messages.iter().filter(move |message| message["reason"] == reason);
+    let of =
+        |reason: &'static str| messages.iter().filter(move |message| message["reason"] == reason);
     let mut scripts: BTreeMap<String, Vec<(String, String)>> = BTreeMap::new();
     for script in of("build-script-executed") {
         let variables = scripts.entry(text(&script["package_id"])).or_default();
@@ -129,12 +145,18 @@ fn binaries(messages: &str, packages: &BTreeMap<String, Vec<(String, String)>>) 
     }
     let mut binaries = Vec::new();
     for message in of("compiler-artifact") {
-        let (Some(program), Some(true)) = (message["executable"].as_str(), message["profile"]["test"].as_bool()) else {
+        let (Some(program), Some(true)) =
+            (message["executable"].as_str(), message["profile"]["test"].as_bool())
+        else {
             continue;
         };
         let package = text(&message["package_id"]);
-        let variables = packages.get(&package).ok_or_else(|| format!("cargo metadata has no package {package}"))?;
-        let value = |name: &str| variables.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone());
+        let variables = packages
+            .get(&package)
+            .ok_or_else(|| format!("cargo metadata has no package {package}"))?;
+        let value = |name: &str| {
+            variables.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone())
+        };
         let more = scripts.get(&package).into_iter().flatten().cloned();
         binaries.push(Binary {
             id: id(&value("CARGO_PKG_NAME").unwrap_or_default(), &message["target"]),
@@ -202,7 +224,10 @@ mod tests {
             let variable = found[0].environment.iter().find(|(key, _)| key == name);
             variable.map(|(_, value)| value.as_str()).unwrap()
         };
-        assert_eq!([value("CARGO_PKG_VERSION_PATCH"), value("CARGO_PKG_VERSION_PRE")], ["2", "rc.1"]);
+        assert_eq!(
+            [value("CARGO_PKG_VERSION_PATCH"), value("CARGO_PKG_VERSION_PRE")],
+            ["2", "rc.1"]
+        );
         assert_eq!([value("CARGO_PKG_AUTHORS"), value("CARGO_PKG_HOMEPAGE")], ["A:B", ""]);
         assert_eq!([value("OUT_DIR"), value("MADE")], ["/w/target/out", "1"]);
     }
@@ -211,6 +236,10 @@ mod tests {
     fn an_unknown_package_is_an_error() {
         let artifact = json!({"reason": "compiler-artifact", "package_id": "b", "target": {"name": "b"},
             "profile": {"test": true}, "executable": "/b"});
-        assert!(binaries(&artifact.to_string(), &packages(&json!({}))).unwrap_err().contains("no package b"));
+        assert!(
+            binaries(&artifact.to_string(), &packages(&json!({})))
+                .unwrap_err()
+                .contains("no package b")
+        );
     }
 }

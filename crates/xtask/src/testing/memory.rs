@@ -1,6 +1,6 @@
 //! How many seconds each test took when it ran last.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,9 +28,9 @@ const UNKNOWN: f64 = 2.0;
 
 /// Seconds of each test, by binary.
 #[derive(Debug, Default)]
-pub struct Memory(BTreeMap<String, BTreeMap<String, f64>>);
+pub struct TestTimes(BTreeMap<String, BTreeMap<String, f64>>);
 
-impl Memory {
+impl TestTimes {
     /// What the last runs left behind. A file that is not there or not understood is no memory.
     pub fn read(path: &Path) -> Self {
         let text = fs::read_to_string(path).unwrap_or_default();
@@ -40,7 +40,11 @@ impl Memory {
     fn parse(text: &str) -> Option<Self> {
         let all: Map<String, Value> = serde_json::from_str(text).ok()?;
         let tests = |tests: &Value| -> Option<BTreeMap<String, f64>> {
-            tests.as_object()?.iter().map(|(test, seconds)| Some((test.clone(), seconds.as_f64()?))).collect()
+            tests
+                .as_object()?
+                .iter()
+                .map(|(test, seconds)| Some((test.clone(), seconds.as_f64()?)))
+                .collect()
         };
         all.iter().map(|(id, all)| Some((id.clone(), tests(all)?))).collect::<Option<_>>().map(Self)
     }
@@ -55,7 +59,7 @@ impl Memory {
     ///
     /// # Errors
     /// The system's.
-    pub fn write(&self, path: &Path) -> Done {
+    pub fn write(&self, path: &Path) -> TaskResult {
         let next = path.with_extension("new");
         fs::write(&next, format!("{:#}\n", json!(self.0)))
             .and_then(|()| fs::rename(&next, path))
@@ -65,17 +69,21 @@ impl Memory {
     /// The expected seconds of some tests of a binary, one for each.
     pub fn expect(&self, id: &str, tests: &[String]) -> Vec<f64> {
         let known = self.0.get(id);
-        let of_binary = KNOWN.iter().find(|(name, _)| *name == id).map_or(UNKNOWN, |(_, seconds)| *seconds);
+        let of_binary =
+            KNOWN.iter().find(|(name, _)| *name == id).map_or(UNKNOWN, |(_, seconds)| *seconds);
         let each = of_binary / tests.len().max(1) as f64;
         // A test that is new among known ones is taken for a short one.
         let new = if known.is_some() { each.min(UNKNOWN) } else { each };
-        tests.iter().map(|test| known.and_then(|known| known.get(test)).copied().unwrap_or(new)).collect()
+        tests
+            .iter()
+            .map(|test| known.and_then(|known| known.get(test)).copied().unwrap_or(new))
+            .collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Memory, UNKNOWN};
+    use super::{TestTimes, UNKNOWN};
 
     fn tests(names: &[&str]) -> Vec<String> {
         names.iter().map(|&name| name.to_owned()).collect()
@@ -83,25 +91,28 @@ mod tests {
 
     #[test]
     fn what_is_learned_is_expected() {
-        let mut memory = Memory::default();
+        let mut memory = TestTimes::default();
         memory.learn("a", &[("x".to_owned(), 7.5)]);
         let text = serde_json::json!(memory.0).to_string();
-        let memory = Memory::parse(&text).unwrap();
+        let memory = TestTimes::parse(&text).unwrap();
         assert_eq!(memory.expect("a", &tests(&["x"])), [7.5]);
         assert_eq!(memory.expect("a", &tests(&["x", "y"])), [7.5, UNKNOWN / 2.0]);
     }
 
     #[test]
     fn known_binaries_are_long_without_memory() {
-        let memory = Memory::default();
-        assert_eq!(memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])), [100.0; 2]);
+        let memory = TestTimes::default();
+        assert_eq!(
+            memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])),
+            [100.0; 2]
+        );
         assert_eq!(memory.expect("unheard of", &tests(&["x"])), [UNKNOWN]);
     }
 
     #[test]
     fn a_damaged_memory_is_none() {
         for text in ["", "{", "[]", r#"{"a": 1}"#, r#"{"a": {"x": "long"}}"#] {
-            assert!(Memory::parse(text).is_none(), "{text}");
+            assert!(TestTimes::parse(text).is_none(), "{text}");
         }
     }
 }

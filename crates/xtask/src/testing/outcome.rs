@@ -7,7 +7,7 @@ pub struct Counts {
     pub passed: usize,
     /// Tests that failed, and those that did not come to an end.
     pub failed: usize,
-    /// Tests that libtest counts as ignored. The runner prints their number.
+    /// Tests that are marked `#[ignore]`.
     pub ignored: usize,
 }
 
@@ -29,7 +29,11 @@ impl Counts {
                 let part = line.split([';', '.']).find_map(|part| part.trim().strip_suffix(what));
                 part.and_then(|number| number.trim().parse().ok()).unwrap_or(0)
             };
-            sum.and(Self { passed: number("passed"), failed: number("failed"), ignored: number("ignored") })
+            sum.and(Self {
+                passed: number("passed"),
+                failed: number("failed"),
+                ignored: number("ignored"),
+            })
         })
     }
 

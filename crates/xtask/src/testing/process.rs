@@ -22,7 +22,7 @@ pub struct Running {
 }
 
 /// A binary that has ended.
-pub struct Ended {
+pub struct EndedProcess {
     /// Its tests.
     pub counts: Counts,
     /// From its start to its end.
@@ -56,7 +56,10 @@ fn listed(text: &str) -> Vec<String> {
 
 fn command(binary: &Binary) -> Command {
     let mut command = Command::new(&binary.program);
-    command.args(&binary.arguments).current_dir(&binary.folder).envs(binary.environment.iter().cloned());
+    command
+        .args(&binary.arguments)
+        .current_dir(&binary.folder)
+        .envs(binary.environment.iter().cloned());
     command
 }
 
@@ -65,7 +68,12 @@ impl Running {
     ///
     /// # Errors
     /// The system's.
-    pub fn start(binary: &Binary, slice: &Slice, place: usize, path: &Path) -> Result<Self, String> {
+    pub fn start(
+        binary: &Binary,
+        slice: &Slice,
+        place: usize,
+        path: &Path,
+    ) -> Result<Self, String> {
         let wrong = |error| shell::cannot("write", path, &error);
         let file = File::options().create(true).append(true).open(path).map_err(wrong)?;
         let mut command = command(binary);
@@ -85,19 +93,23 @@ impl Running {
     ///
     /// # Errors
     /// The system's.
-    pub fn poll(&mut self) -> Result<Option<Ended>, String> {
-        let status = self.child.try_wait().map_err(|error| format!("cannot wait for a test: {error}"))?;
+    pub fn poll(&mut self) -> Result<Option<EndedProcess>, String> {
+        let status =
+            self.child.try_wait().map_err(|error| format!("cannot wait for a test: {error}"))?;
         let now = self.begun.elapsed();
-        self.seen.read(&self.path, now).map_err(|error| shell::cannot("read", &self.path, &error))?;
+        self.seen
+            .read(&self.path, now)
+            .map_err(|error| shell::cannot("read", &self.path, &error))?;
         let Some(status) = status else { return Ok(None) };
-        let output = fs::read(&self.path).map_err(|error| shell::cannot("read", &self.path, &error))?;
+        let output =
+            fs::read(&self.path).map_err(|error| shell::cannot("read", &self.path, &error))?;
         let output = String::from_utf8_lossy(&output).into_owned();
         let counts = Counts::of(&output, status.success(), self.count);
         let mut seconds = self.seen.seconds(now);
         if self.count.is_none() {
             seconds = vec![(String::new(), now.as_secs_f64())];
         }
-        Ok(Some(Ended { counts, took: now, seconds, output }))
+        Ok(Some(EndedProcess { counts, took: now, seconds, output }))
     }
 }
 
@@ -126,7 +138,9 @@ impl Seen {
     fn take(&mut self, bytes: &[u8], now: Duration) {
         for line in bytes.split(|byte| *byte == b'\n') {
             let line = String::from_utf8_lossy(line);
-            let Some((name, _)) = line.strip_prefix("test ").and_then(|rest| rest.split_once(" ... ")) else {
+            let Some((name, _)) =
+                line.strip_prefix("test ").and_then(|rest| rest.split_once(" ... "))
+            else {
                 continue;
             };
             // What libtest adds to a name: `test name - should panic ... ok`.
@@ -182,20 +196,36 @@ mod tests {
         let program = std::env::current_exe().unwrap();
         let folder = std::env::temp_dir();
         let (id, arguments) = ("xtask".to_owned(), Vec::new());
-        let binary = Binary { id, program, arguments, folder, environment: Vec::new(), lists: true };
+        let binary =
+            Binary { id, program, arguments, folder, environment: Vec::new(), lists: true };
         let own = "testing::process::tests::tests_are_listed".to_owned();
         assert!(tests(&binary).unwrap().contains(&own));
         let path = std::env::temp_dir().join(format!("carrystep-xtask-{}.txt", std::process::id()));
-        let slice = |names: Vec<String>, count| Slice { binary: 0, names, count, is_wide: false, seconds: 0.0 };
-        for (name, count, passed, failed) in [(&*own, 1, 1, 0), (&*own, 2, 1, 1), ("no such test", 1, 0, 1)] {
+        let slice = |names: Vec<String>, count| Slice {
+            binary: 0,
+            names,
+            count,
+            is_wide: false,
+            seconds: 0.0,
+        };
+        for (name, count, passed, failed) in
+            [(&*own, 1, 1, 0), (&*own, 2, 1, 1), ("no such test", 1, 0, 1)]
+        {
             let _ = std::fs::remove_file(&path);
-            let mut running = Running::start(&binary, &slice(vec![name.to_owned()], Some(count)), 0, &path).unwrap();
+            let mut running =
+                Running::start(&binary, &slice(vec![name.to_owned()], Some(count)), 0, &path)
+                    .unwrap();
             let ended = loop {
                 if let Some(ended) = running.poll().unwrap() {
                     break ended;
                 }
             };
-            assert_eq!((ended.counts.passed, ended.counts.failed), (passed, failed), "{}", ended.output);
+            assert_eq!(
+                (ended.counts.passed, ended.counts.failed),
+                (passed, failed),
+                "{}",
+                ended.output
+            );
             assert_eq!(ended.seconds.len(), passed);
         }
         std::fs::remove_file(&path).unwrap();

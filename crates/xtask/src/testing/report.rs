@@ -3,19 +3,19 @@
 
 use super::binaries::Binary;
 use super::outcome::{Answers, Counts};
-use super::process::Ended;
+use super::process::EndedProcess;
 use super::slices::Slice;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// All that has ended so far.
-pub struct Report<'a> {
+pub struct TestReport<'a> {
     binaries: &'a [Binary],
     slices: &'a [Slice],
     outputs: &'a Path,
     /// What each slice came to.
-    ended: Vec<Option<Ended>>,
+    ended: Vec<Option<EndedProcess>>,
 }
 
 /// A line on the standard output.
@@ -34,18 +34,19 @@ fn file_name(id: &str) -> String {
     id.replace("::", ".").replace('/', ".")
 }
 
-impl<'a> Report<'a> {
+impl<'a> TestReport<'a> {
     /// Of nothing that has ended yet.
     pub fn new(binaries: &'a [Binary], slices: &'a [Slice], outputs: &'a Path) -> Self {
         Self { binaries, slices, outputs, ended: slices.iter().map(|_| None).collect() }
     }
 
     /// A slice has ended; the last one of a binary has its line printed.
-    pub fn add(&mut self, slice: usize, ended: Ended) {
+    pub fn add(&mut self, slice: usize, ended: EndedProcess) {
         self.ended[slice] = Some(ended);
         let place = self.slices[slice].binary;
         let own = || (0..self.slices.len()).filter(|&other| self.slices[other].binary == place);
-        let parts: Option<Vec<&Ended>> = own().map(|slice| self.ended[slice].as_ref()).collect();
+        let parts: Option<Vec<&EndedProcess>> =
+            own().map(|slice| self.ended[slice].as_ref()).collect();
         let Some(parts) = parts else { return };
         let binary = &self.binaries[place];
         line(&summary(&binary.id, &parts));
@@ -65,7 +66,7 @@ impl<'a> Report<'a> {
 
     /// The tests of all binaries. A slice that has not ended was not run: that is a failure.
     pub fn counts(&self) -> Counts {
-        let of = |(ended, slice): (&Option<Ended>, &Slice)| match ended {
+        let of = |(ended, slice): (&Option<EndedProcess>, &Slice)| match ended {
             Some(ended) => ended.counts,
             None => Counts { failed: slice.count.unwrap_or(1), ..Counts::default() },
         };
@@ -74,11 +75,12 @@ impl<'a> Report<'a> {
 }
 
 /// `  12.3 s  5 passed, 0 failed, 0 ignored  carrystep-tests::rung_3`
-fn summary(id: &str, parts: &[&Ended]) -> String {
+fn summary(id: &str, parts: &[&EndedProcess]) -> String {
     let seconds: f64 = parts.iter().map(|part| part.took.as_secs_f64()).sum();
     let counts = parts.iter().map(|part| part.counts).fold(Counts::default(), Counts::and);
     let Counts { passed, failed, ignored } = counts;
-    let mut text = format!("{seconds:>7.1} s  {passed} passed, {failed} failed, {ignored} ignored  {id}");
+    let mut text =
+        format!("{seconds:>7.1} s  {passed} passed, {failed} failed, {ignored} ignored  {id}");
     if parts.len() > 1 {
         text += &format!(", in {} slices", parts.len());
     }
@@ -93,13 +95,13 @@ fn summary(id: &str, parts: &[&Ended]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Ended, file_name, summary};
+    use super::{EndedProcess, file_name, summary};
     use crate::testing::outcome::Counts;
     use std::time::Duration;
 
     #[test]
     fn a_line_says_all_of_a_binary() {
-        let ended = |output: &str| Ended {
+        let ended = |output: &str| EndedProcess {
             counts: Counts { passed: 2, failed: 0, ignored: 1 },
             took: Duration::from_millis(1500),
             seconds: Vec::new(),
@@ -109,8 +111,14 @@ mod tests {
         assert_eq!(summary("a::b", &[&plain]), "    1.5 s  2 passed, 0 failed, 1 ignored  a::b");
         let with_answers = ended("9 answers of tools, 4 of them kept from an earlier run\n");
         let line = summary("a::b", &[&with_answers, &with_answers]);
-        assert!(line.contains("    3.0 s  4 passed, 0 failed, 2 ignored  a::b, in 2 slices"), "{line}");
-        assert!(line.ends_with("; 18 answers of tools, 8 of them kept from an earlier run"), "{line}");
+        assert!(
+            line.contains("    3.0 s  4 passed, 0 failed, 2 ignored  a::b, in 2 slices"),
+            "{line}"
+        );
+        assert!(
+            line.ends_with("; 18 answers of tools, 8 of them kept from an earlier run"),
+            "{line}"
+        );
     }
 
     #[test]

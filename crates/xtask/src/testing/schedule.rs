@@ -49,7 +49,10 @@ mod tests {
         assert_eq!(schedule.next(1), None);
         assert_eq!(schedule.next(2), Some(2));
         assert_eq!(schedule.next(0), None);
-        assert_eq!([schedule.next(2), schedule.next(1), schedule.next(1)], [Some(1), Some(3), Some(0)]);
+        assert_eq!(
+            [schedule.next(2), schedule.next(1), schedule.next(1)],
+            [Some(1), Some(3), Some(0)]
+        );
         assert_eq!(schedule.next(2), None);
     }
 

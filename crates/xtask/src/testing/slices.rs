@@ -1,7 +1,7 @@
 //! Splits the tests of long binaries, so that none of them keeps one core busy at the end.
 
 use super::binaries::Binary;
-use super::memory::Memory;
+use super::memory::TestTimes;
 
 /// A slice is split where it is expected to take more seconds than this.
 const LONGEST: f64 = 40.0;
@@ -10,7 +10,8 @@ const LONGEST: f64 = 40.0;
 const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equal_verilog"];
 
 /// Binaries whose tests start a worker for each core by themselves. They have all cores.
-const WIDE: [&str; 2] = ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
+const WIDE: [&str; 2] =
+    ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
 
 /// Tests of a binary that run in one process, one after the other.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +29,7 @@ pub struct Slice {
 }
 
 /// The slices of a binary; none where it has no tests.
-pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &Memory) -> Vec<Slice> {
+pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -> Vec<Slice> {
     let id = binary.id.as_str();
     let is_wide = WIDE.contains(&id);
     if !binary.lists {
@@ -37,12 +38,17 @@ pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &Memory) -> V
     }
     let expected = memory.expect(id, tests);
     let seconds: f64 = expected.iter().sum();
-    let parts = if TOGETHER.contains(&id) || is_wide { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
+    let parts =
+        if TOGETHER.contains(&id) || is_wide { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
     let parts = split(&expected, (parts as usize).min(tests.len()));
     let is_whole = parts.len() == 1;
     let slice = |part: Vec<usize>| Slice {
         binary: place,
-        names: if is_whole { Vec::new() } else { part.iter().map(|&test| tests[test].clone()).collect() },
+        names: if is_whole {
+            Vec::new()
+        } else {
+            part.iter().map(|&test| tests[test].clone()).collect()
+        },
         count: Some(part.len()),
         is_wide,
         seconds: part.iter().map(|&test| expected[test]).sum(),
@@ -69,16 +75,24 @@ fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Binary, LONGEST, Memory, TOGETHER, of, split};
+    use super::{Binary, LONGEST, TOGETHER, TestTimes, of, split};
 
     fn binary(id: &str) -> Binary {
         let (program, folder) = (id.into(), ".".into());
-        Binary { id: id.to_owned(), program, arguments: vec![], folder, environment: vec![], lists: true }
+        Binary {
+            id: id.to_owned(),
+            program,
+            arguments: vec![],
+            folder,
+            environment: vec![],
+            lists: true,
+        }
     }
 
-    fn memory(id: &str, tests: &[(&str, f64)]) -> (Memory, Vec<String>) {
-        let mut memory = Memory::default();
-        let tests: Vec<(String, f64)> = tests.iter().map(|(name, seconds)| ((*name).to_owned(), *seconds)).collect();
+    fn memory(id: &str, tests: &[(&str, f64)]) -> (TestTimes, Vec<String>) {
+        let mut memory = TestTimes::default();
+        let tests: Vec<(String, f64)> =
+            tests.iter().map(|(name, seconds)| ((*name).to_owned(), *seconds)).collect();
         memory.learn(id, &tests);
         (memory, tests.into_iter().map(|(name, _)| name).collect())
     }
@@ -87,14 +101,17 @@ mod tests {
     fn a_long_binary_is_split_and_no_test_is_lost() {
         let seconds = [0.0, LONGEST, 1.0, 2.0, LONGEST, 30.0];
         let named: Vec<(String, f64)> = (0..).map(|n: u32| format!("t{n}")).zip(seconds).collect();
-        let named: Vec<(&str, f64)> = named.iter().map(|(name, seconds)| (name.as_str(), *seconds)).collect();
+        let named: Vec<(&str, f64)> =
+            named.iter().map(|(name, seconds)| (name.as_str(), *seconds)).collect();
         let (memory, tests) = memory("a", &named);
         let slices = of(3, &binary("a"), &tests, &memory);
         assert_eq!(slices.len(), 3);
         let mut names: Vec<String> = slices.iter().flat_map(|slice| slice.names.clone()).collect();
         names.sort();
         assert_eq!(names, tests);
-        assert!(slices.iter().all(|slice| slice.binary == 3 && slice.count == Some(slice.names.len())));
+        assert!(
+            slices.iter().all(|slice| slice.binary == 3 && slice.count == Some(slice.names.len()))
+        );
         assert!(slices.iter().all(|slice| slice.seconds <= LONGEST + 2.0));
     }
 
@@ -110,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_binary_without_tests_has_no_slice() {
-        assert!(of(0, &binary("a"), &[], &Memory::default()).is_empty());
+        assert!(of(0, &binary("a"), &[], &TestTimes::default()).is_empty());
     }
 
     #[test]

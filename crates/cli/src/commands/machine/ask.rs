@@ -1,8 +1,8 @@
 //! The questions of `carrystep machine new`: each is one line on standard error, and the answer is
 //! read from standard input.
 
-use super::axis::Axis;
-use super::{Clock, Wishes};
+use super::axis::AxisKeys;
+use super::{ClockSource, Wishes};
 use crate::commands::boards;
 use crate::failure::Failure;
 use carrystep_files::BigDecimal;
@@ -11,42 +11,59 @@ use std::io::{BufRead as _, Write as _};
 /// Asks for everything that the options leave open.
 pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
     if wishes.clock.is_none() {
-        let answer = ask("Board (see `carrystep boards`), or the FPGA's clock in MHz", Some("80"), |text| {
-            clock(text).map(|_| ())
-        })?;
+        let answer = ask(
+            "Board (see `carrystep boards`), or the FPGA's clock in MHz",
+            Some("80"),
+            |text| clock(text).map(|_| ()),
+        )?;
         wishes.clock = clock(&answer).ok();
     }
     if wishes.limits.is_none() {
         let known = ["pair", "each", "one", "none"];
-        let limits =
-            ask("Limit switches: pair (two an axis), each (one an axis), one (for all), none", Some("each"), |text| {
-                if known.contains(&text) { Ok(()) } else { Err(format!("one of {} is expected", known.join(", "))) }
-            })?;
+        let limits = ask(
+            "Limit switches: pair (two an axis), each (one an axis), one (for all), none",
+            Some("each"),
+            |text| {
+                if known.contains(&text) {
+                    Ok(())
+                } else {
+                    Err(format!("one of {} is expected", known.join(", ")))
+                }
+            },
+        )?;
         wishes.limits = Some(limits);
     }
     let new = wishes.axes.is_empty();
     if new {
         let names = ask("Names of the axes, with blanks between", Some("x y z"), |text| {
-            if text.split_whitespace().count() > 0 { Ok(()) } else { Err("a name is expected".to_owned()) }
+            if text.split_whitespace().count() > 0 {
+                Ok(())
+            } else {
+                Err("a name is expected".to_owned())
+            }
         })?;
-        wishes.axes = names.split_whitespace().map(Axis::named).collect();
+        wishes.axes = names.split_whitespace().map(AxisKeys::named).collect();
     }
     wishes.axes.iter_mut().try_for_each(|axis| of_axis(axis, new))
 }
 
 /// Parses a board's name or a clock in MHz.
-fn clock(text: &str) -> Result<Clock, String> {
+fn clock(text: &str) -> Result<ClockSource, String> {
     let hz = |mhz: BigDecimal| {
         let hz = mhz * BigDecimal::from(1_000_000);
         hz.is_integer().then(|| hz.normalized().to_plain_string().parse().ok()).flatten()
     };
     match carrystep_files::decimal::parse(text) {
-        Some(mhz) => hz(mhz).map(Clock::Hz).ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
-        None => boards::find(text).map(|board| Clock::Board(Box::new(board))).map_err(|failure| failure.message()),
+        Some(mhz) => hz(mhz)
+            .map(ClockSource::Hz)
+            .ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
+        None => boards::find(text)
+            .map(|board| ClockSource::Board(Box::new(board)))
+            .map_err(|failure| failure.message()),
     }
 }
 
-fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
+fn of_axis(axis: &mut AxisKeys, new: bool) -> Result<(), Failure> {
     let name = axis.name.clone();
     if new {
         put(axis, "unit", &format!("Axis {name}: unit of length"), Some("mm"))?;
@@ -55,12 +72,20 @@ fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
         for key in keys {
             let unit = axis.unit().to_owned();
             let (question, default) = match key {
-                "lead" => (format!("{unit} that one turn of the motor moves (belt: teeth x pitch; screw: lead)"), None),
+                "lead" => (
+                    format!(
+                        "{unit} that one turn of the motor moves (belt: teeth x pitch; screw: lead)"
+                    ),
+                    None,
+                ),
                 "steps_per_rev" => ("full steps of a turn".to_owned(), Some("200")),
                 "microsteps" => ("microsteps of the driver".to_owned(), Some("16")),
                 "speed_limit" => (format!("greatest speed in {unit}/s, or as in 900/min"), None),
                 "accel_limit" => (format!("greatest acceleration in {unit}/s^2"), None),
-                _ => ("driver (a4988, dm542, drv8825, tb6600, tmc2209, ...)".to_owned(), Some("a4988")),
+                _ => (
+                    "driver (a4988, dm542, drv8825, tb6600, tmc2209, ...)".to_owned(),
+                    Some("a4988"),
+                ),
             };
             put(axis, key, &format!("Axis {name}: {question}"), default)?;
         }
@@ -69,7 +94,12 @@ fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
 }
 
 /// Asks until the answer is valid for this key.
-fn put(axis: &mut Axis, key: &str, question: &str, default: Option<&str>) -> Result<(), Failure> {
+fn put(
+    axis: &mut AxisKeys,
+    key: &str,
+    question: &str,
+    default: Option<&str>,
+) -> Result<(), Failure> {
     let mut done = axis.clone();
     ask(question, default, |text| {
         let mut trial = axis.clone();
@@ -99,7 +129,9 @@ fn ask(
         let read = std::io::stdin().lock().read_line(&mut line);
         if !matches!(read, Ok(1..)) {
             let _ = writeln!(out);
-            return Err(Failure::input("the answers ended before the questions: nothing is written"));
+            return Err(Failure::input(
+                "the answers ended before the questions: nothing is written",
+            ));
         }
         let answer = match (line.trim(), default) {
             ("", Some(default)) => default,

@@ -28,10 +28,10 @@ const KEYS: [(&str, Kind, &str); 16] = [
     ("accel_limit", Kind::Number, "UNIT/s^2"),
     ("jerk_limit", Kind::Number, "UNIT/s^3, for the profile scurve"),
     ("driver", Kind::Text, "its pulse widths, set-up and hold times are built in"),
-    ("step_ns", Kind::Number, "ns that STEP is high, at least"),
-    ("gap_ns", Kind::Number, "ns that STEP is low, at least"),
-    ("setup_ns", Kind::Number, "ns that DIR is stable before STEP rises"),
-    ("hold_ns", Kind::Number, "ns that DIR is stable after STEP has risen"),
+    ("step_high_ns", Kind::Number, "ns that STEP is high, at least"),
+    ("step_low_ns", Kind::Number, "ns that STEP is low, at least"),
+    ("dir_setup_ns", Kind::Number, "ns that DIR is stable before STEP rises"),
+    ("dir_hold_ns", Kind::Number, "ns that DIR is stable after STEP has risen"),
 ];
 
 /// The required keys. Each entry lists alternatives; all keys of one alternative must be given.
@@ -39,17 +39,17 @@ const NEEDED: [&[&[&str]]; 4] = [
     &[&["lead", "steps_per_rev", "microsteps"], &["steps_per_unit"]],
     &[&["speed_limit"], &["speed_limit_per_min"]],
     &[&["accel_limit"]],
-    &[&["driver"], &["step_ns", "gap_ns", "setup_ns", "hold_ns"]],
+    &[&["driver"], &["step_high_ns", "step_low_ns", "dir_setup_ns", "dir_hold_ns"]],
 ];
 
 /// The keys of one axis.
 #[derive(Debug, Clone, Default)]
-pub struct Axis {
+pub struct AxisKeys {
     pub name: String,
     keys: BTreeMap<&'static str, String>,
 }
 
-impl Axis {
+impl AxisKeys {
     /// An axis of which only the name is known.
     pub fn named(name: &str) -> Self {
         Self { name: name.to_owned(), keys: BTreeMap::new() }
@@ -94,7 +94,8 @@ impl Axis {
         let has = |set: &&[&str]| set.iter().all(|key| self.keys.contains_key(key));
         let lacks = |ways: &&&[&[&'static str]]| !ways.iter().any(has);
         let told = |ways: &&[&[&'static str]]| {
-            let first = ways[0].iter().copied().filter(|key| !self.keys.contains_key(key)).collect();
+            let first =
+                ways[0].iter().copied().filter(|key| !self.keys.contains_key(key)).collect();
             (first, ways.iter().map(|set| set.join(", ")).collect::<Vec<_>>().join("; or "))
         };
         NEEDED.iter().filter(lacks).map(told).collect()
@@ -108,11 +109,16 @@ impl Axis {
     /// The text of the axis' table.
     pub fn text(&self) -> String {
         let quoted = |text: &str| format!("{text:?}");
-        let mut lines = vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
+        let mut lines =
+            vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
         for (key, kind, comment) in KEYS {
             let Some(value) = self.keys.get(key) else { continue };
             let value = if kind == Kind::Text { quoted(value) } else { value.clone() };
-            lines.push(format!("{:<28} # {}", format!("{key} = {value}"), comment.replace("UNIT", self.unit())));
+            lines.push(format!(
+                "{:<28} # {}",
+                format!("{key} = {value}"),
+                comment.replace("UNIT", self.unit())
+            ));
         }
         lines.join("\n") + "\n"
     }

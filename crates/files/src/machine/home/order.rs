@@ -1,7 +1,7 @@
 //! `home_order`: the groups of axes that home one after the other; the axes of a group home
 //! together.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::machine::Axis;
 use toml::Spanned;
 
@@ -9,7 +9,11 @@ use toml::Spanned;
 pub(in crate::machine) type RawOrder = Spanned<Vec<Vec<Spanned<String>>>>;
 
 /// The order of a file. It must name every axis that homes exactly once.
-pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<Vec<usize>>, InputError> {
+pub(super) fn of(
+    source: &SourceText,
+    axes: &[Axis],
+    order: RawOrder,
+) -> Result<Vec<Vec<usize>>, InputError> {
     let span = order.span();
     let mut seen = vec![false; axes.len()];
     let mut groups = Vec::new();
@@ -23,7 +27,10 @@ pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<
                 return Err(at(message).help(format!("the axes are {}", known.join(", "))));
             };
             if axes[axis].home.is_none() {
-                return Err(at(format!("home_order names axis '{}', which has no home table", name.as_ref())));
+                return Err(at(format!(
+                    "home_order names axis '{}', which has no home table",
+                    name.as_ref()
+                )));
             }
             if std::mem::replace(&mut seen[axis], true) {
                 return Err(at(format!("home_order names axis '{}' twice", name.as_ref())));
@@ -34,7 +41,8 @@ pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<
             groups.push(group);
         }
     }
-    if let Some((axis, _)) = axes.iter().zip(seen).find(|(axis, seen)| axis.home.is_some() && !seen) {
+    if let Some((axis, _)) = axes.iter().zip(seen).find(|(axis, seen)| axis.home.is_some() && !seen)
+    {
         let message = format!("home_order leaves out axis '{}', which has a home table", axis.name);
         return Err(InputError::at(source, span, message).help("name every axis that homes"));
     }
@@ -45,6 +53,7 @@ pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<
 /// then all other axes together.
 pub(super) fn usual(axes: &[Axis]) -> Vec<Vec<usize>> {
     let homes = (0..axes.len()).filter(|&axis| axes[axis].home.is_some());
-    let (first, rest): (Vec<usize>, Vec<usize>) = homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));
+    let (first, rest): (Vec<usize>, Vec<usize>) =
+        homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));
     [first, rest].into_iter().filter(|group| !group.is_empty()).collect()
 }

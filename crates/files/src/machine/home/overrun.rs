@@ -17,7 +17,8 @@ impl Axis {
     /// Distance in steps by which this axis must move away from a closed switch until the switch is
     /// open: `move_off` if the axis homes, otherwise the overrun of a limit stop from full speed.
     pub fn move_off(&self, machine: &Machine) -> u32 {
-        let full = || overrun(per_tick(&self.speed_limit, &machine.timebase), self.stop, &machine.guard);
+        let full =
+            || overrun(per_tick(&self.speed_limit, &machine.timebase), self.stop, &machine.guard);
         self.home.map_or_else(|| u32::try_from(full()).unwrap_or(u32::MAX), |home| home.move_off)
     }
 }

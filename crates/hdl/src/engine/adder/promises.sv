@@ -1,9 +1,12 @@
-// The one adder: what a turn makes of its words: promises 6, 7, 11 and 13. Without bound.
+// Proves promises 6, 7, 10, 11 and 13 of the adder, without a bound on time: the sums of a time
+// slot are those of the words that the memory delivers in this time slot.
 //
-//   from outside   `DUT, the exported adder
-//   assumed        what turn/promises.sv proves: beats in a row; and in a turn what is counted stands still
+//   parameters   `DUT: the name of the exported adder
+//   assumptions  The beats of a time slot follow one another (proved in time_slot/promises.sv). From
+//                beat 6 on, counts, lost, up, down, wipe and forgets do not change within a time slot.
 //
-// The memory gives the halves of A, J, V and P in two rows; here they are put together and summed in 64 bits.
+// The memory delivers the low halves of A, J, V and P first and their high halves later. This file
+// joins the halves and computes the expected sums in 64 bits.
 
 module promises (
     input wire clock,
@@ -14,24 +17,25 @@ module promises (
     input wire lost,
     input wire up,
     input wire down,
-    input wire wipe
+    input wire wipe,
+    input wire forgets
 );
     wire [31:0] sum;
     wire ended, overflow, turned, crosses, back, still, least;
     wire [3:0] q;
     `DUT dut (.*);
 
-    // ---- A turn: a beat after the other; the words that came in each.
+    // ---- The beats of a time slot, one after the other, and the words that arrive in them.
 
     reg first_clock = 1;
     reg [16:0] was_beat = 0;
     reg [31:0] low_a = 0, low_j = 0, low_v = 0, low_p = 0, n = 0, pos = 0, high_j = 0, high_a = 0, high_v = 0, high_p = 0;
     reg [31:0] was_put = 0;
-    reg was_counts = 0, was_lost = 0, was_up = 0, was_down = 0, was_wipe = 0;
+    reg was_counts = 0, was_lost = 0, was_up = 0, was_down = 0, was_wipe = 0, was_forgets = 0;
     always @(posedge clock) begin
         first_clock <= 0;
         was_beat <= beat;
-        {was_counts, was_lost, was_up, was_down, was_wipe} <= {counts, lost, up, down, wipe};
+        {was_counts, was_lost, was_up, was_down, was_wipe, was_forgets} <= {counts, lost, up, down, wipe, forgets};
         if (beat[1]) low_a <= word;
         if (beat[2]) low_j <= word;
         if (beat[3]) low_v <= word;
@@ -45,7 +49,7 @@ module promises (
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[16:1] == was_beat[15:0]);
-        assume (was_beat[11:5] == 0 || {counts, lost, up, down, wipe} == {was_counts, was_lost, was_up, was_down, was_wipe});
+        assume (was_beat[11:5] == 0 || {counts, lost, up, down, wipe, forgets} == {was_counts, was_lost, was_up, was_down, was_wipe, was_forgets});
         assume (!(lost && counts) && !(up && down));
     end
 
@@ -66,7 +70,7 @@ module promises (
         promise_6_carry_is_a_step: assert (!beat[12] || crosses == (v[63] ? !further[64] : further[64]));
         promise_6_overspeed: assert (!beat[12] || overflow == (faster[64] != faster[63]));
         promise_6_least: assert (!beat[12] || least == (v == 64'h8000_0000_0000_0000));
-        promise_6_ticks_and_discarded: assert (!beat[7] || sum == counted);
+        promise_6_ticks_and_discarded: assert (!beat[7] || sum == (was_forgets ? 0 : counted));
         promise_6_over_after_the_last_tick: assert (!beat[12] || !counts || ended == (n == 0));
         promise_6_put_as_it_is: assert (!beat[9] || sum == was_put);
         promise_7_position: assert (!beat[8] || sum == pos + up - down);
@@ -81,7 +85,7 @@ module promises (
     reg [3:0] was_q = 0;
     always @(posedge clock) {was_back, was_q} <= {back, q};
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_carry_between_the_halves: cover (beat[12] && crosses && low_p + low_v < low_p && high_v == 0);

@@ -1,15 +1,19 @@
-// Who stops the axes: promises 5, 10, 12 and 13 of the guard, for any inputs. Without bound.
+// Proves promises 5, 10, 12 and 13 of the module that stops the axes, for any inputs and without a
+// bound on time.
 //
-//   from outside   AXES; LIMIT_FREEZES, 1 where a limit freezes; `DUT, the exported stops
-//   assumed        what engine/promises.sv proves: no turn ends at a strobe; no axis runs where all are halted
+//   parameters   AXES: number of axes
+//                LIMIT_FREEZES: 1 if a limit freezes the axes, 0 if it ramps them down
+//                `DUT: the name of the exported module `stops`
+//   assumptions  No time slot ends at a strobe, and no axis runs while `halted` is 1 (proved in
+//                engine/promises.sv).
 //
-// A stop is one bit for all axes: what is said here of it is said of each of them.
+// The signals of a stop are single bits for all axes, so every statement here holds for each axis.
 
 module promises (
     input wire clock,
     input wire strobe,
-    input wire turn_ends,
-    input wire [`AXES-1:0] lane,
+    input wire time_slot_ends,
+    input wire [`AXES-1:0] axis_one_hot,
     input wire runs,
     input wire too_fast,
     input wire limit,
@@ -20,66 +24,74 @@ module promises (
     input wire missed,
     input wire asked,
     input wire clear,
-    input wire pins_busy
+    input wire pins_busy,
+    input wire ending,
+    input wire stage_2,
+    input wire completes
 );
     localparam [2:0] E_STOP = 0, OVERRUN = 1, PROTOCOL = 2, WATCHDOG = 3, OVERSPEED = 4, LIMITED = 5, UNDERRUN = 6,
         HOST = 7;
 
-    wire fault, finds, frozen, ramp, halted, clearing;
+    wire fault, finds, frozen, ramp, halted, settles, clearing;
     wire [2:0] cause;
     wire [`AXES-1:0] culprits;
     `DUT dut (.*);
 
     always_comb begin
-        assume (!strobe || !turn_ends);
+        assume (!strobe || !time_slot_ends);
         assume (!halted || !runs);
+        assume (!completes || strobe && ending && stage_2);
     end
 
-    // ---- What this tick has found so far: of several axes the first.
+    // ---- What this tick has found so far. If several axes have found a cause, that of the first
+    // of them counts.
 
     reg tick_found = 0, tick_freezes = 0, tick_ran = 0;
     reg [2:0] tick_cause = 0;
     reg [`AXES-1:0] tick_axis = 0;
-    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire finds_now = time_slot_ends & (too_fast | limit | dry);
     always @(posedge clock) begin
         if (strobe) {tick_found, tick_freezes, tick_ran} <= 0;
-        if (turn_ends && runs) tick_ran <= 1;
-        if (turn_ends && (too_fast || limit && `LIMIT_FREEZES)) tick_freezes <= 1;
+        if (time_slot_ends && runs) tick_ran <= 1;
+        if (time_slot_ends && (too_fast || limit && `LIMIT_FREEZES)) tick_freezes <= 1;
         if (finds_now && !tick_found) begin
             tick_found <= 1;
             tick_cause <= too_fast ? OVERSPEED : limit ? LIMITED : UNDERRUN;
-            tick_axis <= lane;
+            tick_axis <= axis_one_hot;
         end
     end
 
-    // ---- Calls for a stop, the weightiest first, and what they should do.
+    // ---- The calls for a stop, in the order of their priority, and their expected effect.
 
     wire overrun = late != 0;
     wire e_stop = strobe & pressed;
     wire found = strobe & tick_found;
     wire watchdog = strobe & missed;
-    wire called = overrun | e_stop | breaks | found | watchdog | asked;
-    wire freezes = overrun | e_stop | breaks | strobe & tick_freezes;
+    wire called = overrun | e_stop | breaks | found | watchdog | asked | ending;
+    wire freezes = overrun | e_stop | breaks | strobe & tick_freezes | ending;
     wire [2:0] call = overrun ? OVERRUN : e_stop ? E_STOP : breaks ? PROTOCOL : found ? tick_cause
         : watchdog ? WATCHDOG : HOST;
     wire [`AXES-1:0] caller = overrun ? late : !e_stop & !breaks & found ? tick_axis : 0;
-    wire cleared = strobe & clearing;
+    // `clear` clears the stop in this tick.
+    (* inside = "dut.wiping" *) wire wiping;
+    wire cleared = strobe & wiping | completes;
 
-    // ---- What the last clock was, and the clocks since the last strobe.
+    // ---- Values of the clock before, and of the last strobe.
 
     reg first_clock = 1, was_called = 0, was_freezes = 0, was_cleared = 0, was_strobe = 0;
-    reg was_fault = 0, was_frozen = 0, was_ramp = 0, was_halted = 0, was_clearing = 0;
-    reg was_watchdog = 0, was_asked = 0;
+    reg was_fault = 0, was_frozen = 0, was_ramp = 0, was_halted = 0, was_wiping = 0;
+    reg was_watchdog = 0, was_asked = 0, was_ending = 0;
     reg [2:0] was_call = 0, was_cause = 0;
     reg [`AXES-1:0] was_caller = 0, was_culprits = 0;
     reg ran = 0, found_before = 0, found_freezing = 0, told = 0, quiet = 0;
-    reg halted_at_strobe = 0;        // the last one
-    reg was_at_rest = 0;             // halted in this clock and at the last strobe
+    reg halted_at_strobe = 0;        // `halted` was 1 at the last strobe
+    // `halted` was 1 in the clock before, and at the strobe before that clock.
+    reg was_at_rest = 0;
     always @(posedge clock) begin
         first_clock <= 0;
         {was_called, was_freezes, was_cleared, was_strobe} <= {called, freezes, cleared, strobe};
-        {was_fault, was_frozen, was_ramp, was_halted, was_clearing} <= {fault, frozen, ramp, halted, clearing};
-        {was_watchdog, was_asked} <= {watchdog, asked};
+        {was_fault, was_frozen, was_ramp, was_halted, was_wiping} <= {fault, frozen, ramp, halted, wiping};
+        {was_watchdog, was_asked, was_ending} <= {watchdog, asked, ending};
         {was_call, was_cause, was_caller, was_culprits} <= {call, cause, caller, culprits};
         {ran, found_before, found_freezing} <= {tick_ran, tick_found, tick_freezes};
         told <= clear;
@@ -109,19 +121,20 @@ module promises (
         promise_10_halts_then: assert (halted || !was_strobe || was_cleared
             || !(was_frozen | found_freezing | was_ramp & !ran));
         promise_10_halted_until_clear: assert (!was_halted || halted || was_cleared);
-        promise_10_clear_is_asked_for: assert (was_clearing || !clearing || was_strobe && told && quiet);
-        promise_10_clear_after_a_tick_at_rest: assert (was_clearing || !clearing || was_at_rest && was_fault);
-        promise_10_clear_ends: assert (!was_strobe || !was_clearing || !clearing);
+        promise_10_clear_is_asked_for: assert (was_wiping || !wiping || was_strobe && told && quiet && !was_ending);
+        promise_10_clear_after_a_tick_at_rest: assert (was_wiping || !wiping || was_at_rest && was_fault);
+        promise_10_clear_ends: assert (!was_strobe || !was_wiping || !wiping);
+        promise_13_reset_clears_too: assert (clearing == (wiping | stage_2) && (!settles || halted && !wiping));
 
         promise_12_any_call_stops_all: assert (!was_called || fault || was_cleared);
         promise_12_no_stop_without_a_call: assert (!fault || was_fault || was_called);
         promise_12_found_before_the_strobe: assert (finds == tick_found);
-        promise_12_clear_is_whole: assert (!was_cleared || {fault, frozen, ramp, halted, clearing, finds} == 0);
+        promise_12_clear_is_whole: assert (!was_cleared || {fault, frozen, ramp, halted, wiping, finds} == 0);
 
-        promise_13_inactive: assert (!first_clock || {fault, finds, frozen, ramp, halted, clearing} == 0);
+        promise_13_inactive: assert (!first_clock || {fault, finds, frozen, ramp, halted, wiping} == 0);
     end
 
-    // ---- Why they hold.
+    // ---- The invariants that make the promises inductive.
 
     (* inside = "dut.kind" *) wire [2:0] kind;
     (* inside = "dut.settled" *) wire settled;
@@ -139,7 +152,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_5_frozen_in_a_ramp: cover (frozen && !was_frozen && cause == WATCHDOG);

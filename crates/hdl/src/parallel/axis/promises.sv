@@ -1,10 +1,14 @@
-// The axis: P, V, A and J as design section 1 has them; every carry is a step: promises 5, 6, 8, 13. Without bound.
+// Proves promises 5, 6, 8 and 13 of the axis, without a bound on time: P, V, A and J are those that
+// docs/clock-by-clock.md specifies, and every carry is a step.
 //
-//   from outside   `DUT, the exported axis, its sequencer and its edge inside; START, the start value of P
-//   assumed        what six_axis/promises.sv proves: a segment has ticks and is pushed only where none waits;
-//                  frozen: no push, no go; only who is frozen, with no step on its way, is cleared
+//   parameters   `DUT: the name of the exported axis, which includes its sequencer and its edge
+//                START: the start value of P
+//   assumptions  A pushed segment has at least one tick, and it is pushed only while none waits. A
+//                frozen axis receives neither `push` nor `go`. An axis is cleared only while it is
+//                frozen and has no step in flight (proved in six_axis/promises.sv).
 //
-// The travelled way is summed here without a carry in 96 bits: its whole steps are the carries, its fraction is P.
+// This file sums the distance in 96 bits, so that no carry is lost: its upper 32 bits are the
+// number of steps, and its lower 64 bits are P.
 
 module promises (
     input wire clock,
@@ -43,7 +47,7 @@ module promises (
     (* inside = "dut.sequencer_a" *) wire [63:0] load_a;
     (* inside = "dut.sequencer_j" *) wire [63:0] load_j;
 
-    // ---- The way, and the steps that were told.
+    // ---- The distance, and the steps that the axis has reported.
 
     wire tick = strobe & !frozen;
     reg first_clock = 1, ticked = 0;
@@ -58,7 +62,7 @@ module promises (
         if (clear) way <= {steps_now, `START};
     end
 
-    // ---- What V, A and J are to be, of the old values.
+    // ---- The values that V, A and J should have, computed from their old values.
 
     wire signed [64:0] faster = $signed({v[63], v}) + $signed({a[63], a});
     wire signed [64:0] next_v = load ? $signed({load_v[63], load_v}) : advance ? faster : 0;
@@ -89,7 +93,7 @@ module promises (
         promise_13_inactive: assert (!first_clock || drained && {request, want_fwd, want_back, v} == 0 && p == `START);
     end
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_forward: cover (steps_now == 1);

@@ -1,10 +1,13 @@
-// The sequencer: no segment is lost, doubled, shortened or late: promise 6 before the accumulator. Without bound.
+// Proves the part of promise 6 that the sequencer keeps, without a bound on time: no segment is
+// lost, executed twice, shortened or late.
 //
-//   from outside   `DUT, the exported sequencer
-//   assumed        what six_axis/promises.sv proves: a segment has ticks and is pushed only where none waits, not
-//                  by a frozen core, and only who is frozen is cleared; and axis/promises.sv: frozen, no strobe
+//   parameters   `DUT: the name of the exported sequencer
+//   assumptions  A pushed segment has at least one tick, it is pushed only while none waits and the
+//                core is not frozen, and only a frozen sequencer is cleared (proved in
+//                six_axis/promises.sv). A frozen sequencer receives no strobe (proved in
+//                axis/promises.sv).
 //
-// A segment is followed from push to load by its own copy, and counted out tick by tick.
+// This file keeps a copy of each segment from its push to its load, and counts its ticks.
 
 module promises (
     input wire clock,
@@ -30,7 +33,7 @@ module promises (
         assume (frozen || !clear);
     end
 
-    // ---- The segment that waits and the one that runs, as pushed.
+    // ---- The waiting segment, as it was pushed.
 
     reg full = 0;
     reg [31:0] ticks;
@@ -45,7 +48,7 @@ module promises (
         end
     end
 
-    // ---- Ticks that the running segment has had, the one of this strobe included.
+    // ---- The running segment, and the number of its ticks before this strobe (`had`).
 
     reg runs = 0, run_last = 0, was_dry = 0;
     reg [31:0] run_ticks = 0, had = 0;
@@ -61,7 +64,8 @@ module promises (
         end
         if (frozen || stop) runs <= 0;
     end
-    reg was_starved = 0;             // the last clock ended a segment not marked last, with none behind it
+    // The clock before ended a segment that is not the last of its move, and no segment waited.
+    reg was_starved = 0;
     always @(posedge clock) was_starved <= runs & over & !run_last & !waiting;
 
     // ---- The promises.
@@ -78,7 +82,8 @@ module promises (
         promise_6_dry_is_dry: assert (!underrun || was_dry || was_starved);
     end
 
-    // ---- Why they hold: what is left and what was had are the segment's ticks.
+    // ---- The invariants that make the promises inductive: the remaining ticks and the executed
+    // ones add up to the ticks of the segment.
 
     (* inside = "dut.left" *) wire [31:0] left;
     (* inside = "dut.last" *) wire last;
@@ -93,7 +98,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_joined: cover (load && runs && run_ticks == 2 && !run_last);

@@ -1,10 +1,12 @@
-// The core: what the parts may count on, and promises 5, 6, 8, 12 and 13 on the core's own ports. Without bound.
+// Proves promises 5, 6, 8, 12 and 13 on the ports of the parallel core, and what the proofs of its
+// modules assume, without a bound on time.
 //
-//   from outside   `DUT, the exported core, whole
-//   assumed        nothing
+//   parameters   `DUT: the name of the exported core, which is proved as a whole
+//   assumptions  none
 //
-// Here stands all that an axis or a shaper is told from outside itself. None of it comes from another axis but the
-// freeze, the clear behind it and the common start: in motion no axis changes another's edges.
+// This file names every input of an axis and of a shaper that comes from outside of them. None of
+// these inputs comes from another axis, except the freeze, the clear that follows it and the common
+// start. So in motion no axis changes the edges of another one.
 
 module promises (
     input wire clock,
@@ -24,14 +26,14 @@ module promises (
     wire [191:0] position, discarded;
     `DUT dut (.*);
 
-    // ---- Bit i is axis i's.
+    // ---- Signals inside the core, for all axes. Axis 0 has the lowest bits.
 
     (* inside = "dut.axis_*.waiting" *) wire [5:0] waiting;
     (* inside = "dut.axis_*.drained" *) wire [5:0] drained;
     (* inside = "dut.axis_*.in_flight" *) wire [5:0] in_flight;
     (* inside = "dut.axis_*.startable" *) wire [5:0] startable;
     (* inside = "dut.axis_*.sequencer_load" *) wire [5:0] load;
-    (* inside = "dut.shaper_*.owed" *) wire [5:0] owed;
+    (* inside = "dut.shaper_*.held_back" *) wire [5:0] held_back;
 
     (* inside = "dut.axis_*.strobe" *) wire [5:0] strobes;
     (* inside = "dut.axis_*.phase_start" *) wire [5:0] phase_starts;
@@ -62,7 +64,7 @@ module promises (
     (* inside = "dut.tick.phase" *) wire [3:0] phase;
     (* inside = "dut.armed" *) wire armed;
 
-    // ---- What the host was promised and what it did.
+    // ---- What the core has taken from the host, and whether the host has kept the protocol.
 
     wire seg_taken = seg_valid & seg_ready;
     wire seg_fine = seg_axis < 6 && seg_ticks != 0;
@@ -95,7 +97,7 @@ module promises (
         promise_6_start_on_one_tick: assert (!started || strobe && (mask & ~load) == 0);
         promise_6_no_start_is_missed: assert (started == (expected && !fault && strobe && (mask & ~startable) == 0));
 
-        promise_8_idle: assert (idle == (!armed && drained == 6'h3f && owed == 0 && step == 0));
+        promise_8_idle: assert (idle == (!armed && drained == 6'h3f && held_back == 0 && step == 0));
 
         promise_12_any_fault_stops_all: assert (fault == (protocol || {overrun, overspeed, underrun} != 0));
         promise_12_all_at_once: assert (axis_frozen == {6{fault}} && shaper_frozen == {6{fault}});
@@ -112,7 +114,7 @@ module promises (
         promise_13_inactive: assert (!first_clock || {step, dir, position, discarded, fault, started} == 0 && idle);
     end
 
-    // ---- What the parts assume of the core, in their words.
+    // ---- What the proofs of the modules assume about the core.
 
     always_comb begin
         assumed_by_axis_push: assert ((push & waiting) == 0 && (push == 0 || !fault && seg_ticks != 0));
@@ -121,7 +123,8 @@ module promises (
         assumed_by_shaper: assert ((overrun == 0 || shaper_frozen == 6'h3f) && (shaper_clear == 0 || fault));
     end
 
-    // ---- Why they hold: the start that is armed is the one that was taken.
+    // ---- The invariant that makes the promises inductive: the start that is armed is the one that
+    // was taken.
 
     (* inside = "dut.mask" *) wire [5:0] armed_mask;
 
@@ -131,7 +134,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_two_start_as_one: cover (started && mask == 6'h21);

@@ -1,9 +1,13 @@
-// The edge: a carry becomes one request, in the phase in which it falls: promises 6, 11 and 13. Without bound.
+// Proves promises 6, 11 and 13 of the edge, without a bound on time: each carry becomes one
+// request, in the phase in which the carry occurs.
 //
-//   from outside   CLOCKS in a tick, PHASES in a tick; `DUT, the exported edge; carrystep_tick, which gives the beat
-//   assumed        what six_axis/promises.sv proves: only who is frozen, with no step on its way, is cleared
+//   parameters   CLOCKS, PHASES: clocks and phases in a tick
+//                `DUT: the name of the exported edge
+//                The exported module carrystep_tick generates the strobe and the phases.
+//   assumptions  The module is cleared only while it is frozen and no step is in flight (proved in
+//                six_axis/promises.sv).
 //
-// The phase is defined here as docs/clock-by-clock.md defines it, but as one expression of P and V.
+// The phase is that of docs/clock-by-clock.md, written here as one function of P and V.
 
 module promises (
     input wire clock,
@@ -29,7 +33,7 @@ module promises (
         assume (!clear || frozen && !in_flight);
     end
 
-    // ---- The clock in its tick, counted from configuration.
+    // ---- The clock within the tick, counted from configuration.
 
     reg first_clock = 1;
     reg [16:0] clock_of_tick = 0;
@@ -38,7 +42,8 @@ module promises (
         clock_of_tick <= clock_of_tick == CLOCKS - 1 ? 0 : clock_of_tick + 1;
     end
 
-    // ---- The definition: after some rounds of trial sums, where p is and which phase bits are set.
+    // ---- The definition of the phase: the value of p and the bits of the phase after a number of
+    // bisection steps.
 
     function [35:0] bisected(input [31:0] from, input [31:0] speed, input [2:0] rounds);
         integer k;
@@ -59,10 +64,11 @@ module promises (
         end
     endfunction
 
-    // ---- The last tick that was added, and the one before it, which is emitted now.
+    // ---- The last tick that was added (`new_*`), and the tick before it, which is emitted now
+    // (`due_*`).
 
     reg new_crossed = 0, new_back = 0, new_fwd = 0, new_sign_back = 0;
-    reg [31:0] new_p = 32'hffffffff, new_v = 32'h7fffffff;   // of phase 0
+    reg [31:0] new_p = 32'hffffffff, new_v = 32'h7fffffff;   // values that give phase 0
     reg [2:0] rounds = ROUNDS;
     wire [31:0] new_at;
     wire [3:0] new_q;
@@ -82,7 +88,7 @@ module promises (
         if (clear) {new_fwd, new_sign_back, due_fwd, due_sign_back} <= 0;
     end
 
-    // ---- Carries and requests, counted.
+    // ---- The numbers of carries and of requests.
 
     reg [31:0] carries = 0, requests = 0;
     always @(posedge clock) begin
@@ -104,7 +110,8 @@ module promises (
         promise_13_inactive: assert (!first_clock || {request, want_fwd, want_back, in_flight} == 0);
     end
 
-    // ---- Why they hold: each round of the bisection is the definition's.
+    // ---- The invariants that make the promises inductive: each step of the bisection is that of
+    // the definition.
 
     (* inside = "beat.sub" *) wire [15:0] sub;
     (* inside = "dut.bisect_p" *) wire [31:0] bisect_p;
@@ -131,7 +138,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_two_in_flight: cover (new_crossed && due && !done);

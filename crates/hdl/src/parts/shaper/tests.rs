@@ -4,8 +4,8 @@
 use super::*;
 use crate::sim::{assert_synthesizes, rising_edge, settle};
 
-fn shaper(width: u32, gap: u32, setup: u32, hold: u32) -> Shaper {
-    let mut shaper = Shaper::new(&PinTiming { width, gap, setup, hold }).unwrap();
+fn shaper(step_high: u32, step_low: u32, dir_setup: u32, dir_hold: u32) -> Shaper {
+    let mut shaper = Shaper::new(&PinTiming { step_high, step_low, dir_setup, dir_hold }).unwrap();
     shaper.connect_all();
     shaper
 }
@@ -29,11 +29,15 @@ fn clock(shaper: &mut Shaper, what: char) -> (bool, bool) {
 /// Runs one clock for each character of `requests`. Returns drawings of STEP and DIR.
 fn draw(shaper: &mut Shaper, requests: &str) -> (String, String) {
     let level = |high| if high { '^' } else { '_' };
-    requests.chars().map(|what| clock(shaper, what)).map(|(step, dir)| (level(step), level(dir))).unzip()
+    requests
+        .chars()
+        .map(|what| clock(shaper, what))
+        .map(|(step, dir)| (level(step), level(dir)))
+        .unzip()
 }
 
 #[test]
-fn shaper_keeps_the_pulse_width_and_the_gap() {
+fn shaper_keeps_the_step_high_and_the_gap() {
     let (step, dir) = draw(&mut shaper(3, 2, 1, 1), "...>.>.........");
     assert_eq!(step, "____^^^__^^^___");
     assert_eq!(dir, "_______________");
@@ -56,7 +60,7 @@ fn reversal_keeps_hold_and_set_up_times() {
 fn second_step_held_back_is_an_overrun_and_counts_as_discarded() {
     let mut late = shaper(5, 5, 1, 1);
     draw(&mut late, ">.>");
-    assert!(late.owed.val() && !late.overrun.val());
+    assert!(late.held_back.val() && !late.overrun.val());
     draw(&mut late, ">");
     assert!(late.overrun.val());
     assert_eq!(late.discarded.val().value(), 1);
@@ -82,9 +86,9 @@ fn position_counts_steps_in_both_directions() {
 
 #[test]
 fn shaper_rejects_pin_timings_out_of_range() {
-    let pins = PinTiming { gap: 0, ..PinTiming::SHORTEST };
-    assert_eq!(Shaper::new(&pins).err(), Some(HdlError::PinTiming { name: "gap", clocks: 0 }));
-    let pins = PinTiming { hold: MAX_CLOCKS + 1, ..PinTiming::SHORTEST };
+    let pins = PinTiming { step_low: 0, ..PinTiming::SHORTEST };
+    assert_eq!(Shaper::new(&pins).err(), Some(HdlError::PinTiming { name: "step_low", clocks: 0 }));
+    let pins = PinTiming { dir_hold: MAX_CLOCKS + 1, ..PinTiming::SHORTEST };
     assert!(Shaper::new(&pins).is_err());
 }
 

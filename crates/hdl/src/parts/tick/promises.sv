@@ -1,9 +1,12 @@
-// The tick: the beat that promise 11 counts in, and promise 13. Without bound.
+// Proves promise 13 of the tick counter, and the ticks and phases in which promise 11 is expressed,
+// without a bound on time.
 //
-//   from outside   CLOCKS in a tick, PHASES in a tick; `DUT, the exported tick with these numbers
-//   assumed        nothing
+//   parameters   CLOCKS, PHASES: clocks and phases in a tick
+//                `DUT: the name of the exported tick counter, built with these values
+//   assumptions  none
 //
-// A strobe in the last clock of each tick, Q equal phases between, for ever.
+// The strobe is asserted in the last clock of each tick, and each tick has PHASES phases of equal
+// length.
 
 module promises (
     input wire clock
@@ -14,7 +17,7 @@ module promises (
     wire [3:0] phase;
     `DUT dut (.*);
 
-    // ---- The clock in its tick, counted from configuration.
+    // ---- The clock within the tick, counted from configuration.
 
     reg first_clock = 1;
     reg [16:0] clock_of_tick = 0;
@@ -32,7 +35,8 @@ module promises (
         promise_13_inactive: assert (!first_clock || !strobe && phase == 0);
     end
 
-    // ---- Why they hold: phase and clock of the phase are the clock of the tick.
+    // ---- The invariants that make the promises inductive: the phase and the clock within the
+    // phase give the clock within the tick.
 
     (* inside = "dut.sub" *) wire [15:0] sub;
 
@@ -43,7 +47,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     reg ticked = 0;
     always @(posedge clock) ticked <= ticked | strobe;

@@ -64,7 +64,7 @@ pub struct Homing<'a> {
 
 /// The stage of homing that an axis is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum HomingStage {
     /// It moves away from its switch first.
     MoveOff,
     /// It searches the switch at the seek speed.
@@ -77,7 +77,7 @@ pub enum Stage {
     PullOff,
 }
 
-impl fmt::Display for Stage {
+impl fmt::Display for HomingStage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::MoveOff => "moves off",
@@ -111,7 +111,9 @@ impl Homing<'_> {
 
     /// The mask of the axes that have homing parameters.
     pub(super) fn known(&self) -> u8 {
-        (0..MOST_AXES).filter(|&axis| self.axis(axis).is_some()).fold(0, |mask, axis| mask | 1 << axis)
+        (0..MOST_AXES)
+            .filter(|&axis| self.axis(axis).is_some())
+            .fold(0, |mask, axis| mask | 1 << axis)
     }
 
     /// Number of ticks after which a level is certainly accepted.
@@ -135,7 +137,9 @@ impl Homing<'_> {
                 (homing.move_off.saturating_mul(2), homing.slow),
                 (homing.pull_off.saturating_mul(2), homing.seek),
             ] {
-                homing.travel(steps, true, speed, 0).map_err(|error| (axis, HomingFault::TooLong(error)))?;
+                homing
+                    .travel(steps, true, speed, 0)
+                    .map_err(|error| (axis, HomingFault::TooLong(error)))?;
             }
         }
         Ok(())
@@ -145,7 +149,13 @@ impl Homing<'_> {
 impl AxisHoming {
     /// The move of `steps` steps toward the switch or away from it, with `rest` ticks of rest
     /// before and behind it.
-    pub(super) fn travel(&self, steps: u32, toward: bool, speed: u64, rest: u32) -> Result<Travel, TooLong> {
+    pub(super) fn travel(
+        &self,
+        steps: u32,
+        toward: bool,
+        speed: u64,
+        rest: u32,
+    ) -> Result<Travel, TooLong> {
         let steps = i32::try_from(steps).unwrap_or(i32::MAX);
         let steps = if toward == self.toward_max { steps } else { -steps };
         Travel::new(steps, Gait { start: self.start, speed, accel: self.accel }, rest, rest)

@@ -3,7 +3,10 @@
 //! The look may change freely.
 
 use super::sampled::{Point, Sampled};
-use super::{Area, Clock, GREY, GRID, INK, PictureError, colour, failed, label, number, px, right_label, stroke};
+use super::{
+    Area, Clock, GREY, GRID, INK, PictureError, colour, failed, label, number, px, right_label,
+    stroke,
+};
 use crate::reference::length::Length;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
@@ -24,7 +27,6 @@ impl Panel {
     pub const ALL: [Self; 4] = [Self::Speed, Self::Acceleration, Self::Jerk, Self::Delay];
 
     fn caption(self, unit: Length) -> String {
-        let unit = unit.name();
         match self {
             Self::Speed => format!("speed, {unit}/s"),
             Self::Acceleration => format!("acceleration, {unit}/s\u{b2}"),
@@ -35,7 +37,9 @@ impl Panel {
 
     fn note(self, sampled: &[Sampled]) -> &'static str {
         match self {
-            Self::Speed if sampled.iter().any(|curve| curve.cruise.is_some()) => "dashed: the cruise after the ramp",
+            Self::Speed if sampled.iter().any(|curve| curve.cruise.is_some()) => {
+                "dashed: the cruise after the ramp"
+            }
             Self::Jerk if sampled.iter().any(|curve| !curve.impulses.is_empty()) => {
                 "arrows: impulses, where acceleration jumps"
             }
@@ -53,18 +57,31 @@ impl Panel {
         }
     }
 
-    pub fn draw(self, area: &Area<'_>, sampled: &[Sampled], clock: &Clock, unit: Length) -> Result<(), PictureError> {
+    pub fn draw(
+        self,
+        area: &Area<'_>,
+        sampled: &[Sampled],
+        clock: &Clock,
+        unit: Length,
+    ) -> Result<(), PictureError> {
         let (caption, body) = area.margin(px(6), px(4), px(12), px(10)).split_vertically(px(24));
-        caption.draw(&Text::new(self.caption(unit), (px(8), px(2)), label(16, INK))).map_err(failed)?;
+        caption
+            .draw(&Text::new(self.caption(unit), (px(8), px(2)), label(16, INK)))
+            .map_err(failed)?;
         let edge = caption.dim_in_pixel().0 as i32 - px(4);
-        caption.draw(&Text::new(self.note(sampled), (edge, px(4)), right_label(13, GREY))).map_err(failed)?;
-        let ends = sampled.iter().flat_map(|curve| curve.speed.last().into_iter().chain(curve.delay.last()));
+        caption
+            .draw(&Text::new(self.note(sampled), (edge, px(4)), right_label(13, GREY)))
+            .map_err(failed)?;
+        let ends = sampled
+            .iter()
+            .flat_map(|curve| curve.speed.last().into_iter().chain(curve.delay.last()));
         let span = 0.0..1.02 * clock.per_second * ends.map(|p| p.0).fold(0.0, f64::max);
         let mut builder = ChartBuilder::on(&body);
         builder.x_label_area_size(px(36)).y_label_area_size(px(84));
         let values = || sampled.iter().flat_map(|curve| self.line(curve)).map(|p| p.1);
         if self == Self::Delay {
-            let (low, high) = values().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+            let (low, high) =
+                values().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
             let range = (0.8e3 * low..1.3e3 * high).log_scale();
             let mut chart = builder.build_cartesian_2d(span, range).map_err(failed)?;
             mesh(&mut chart, clock)?;
@@ -96,10 +113,14 @@ impl Panel {
     ) -> Result<(), PictureError> {
         let style = stroke(colour(curve.kind), width);
         let scaled = |&(t, v): &Point| (t * clock.per_second, v);
-        chart.draw_series(LineSeries::new(self.line(curve).iter().map(scaled), style)).map_err(failed)?;
+        chart
+            .draw_series(LineSeries::new(self.line(curve).iter().map(scaled), style))
+            .map_err(failed)?;
         if let Some(cruise) = curve.cruise.filter(|_| self == Self::Speed) {
             let thin = stroke(colour(curve.kind), 10);
-            chart.draw_series(DashedLineSeries::new(cruise.iter().map(scaled), px(4), px(4), thin)).map_err(failed)?;
+            chart
+                .draw_series(DashedLineSeries::new(cruise.iter().map(scaled), px(4), px(4), thin))
+                .map_err(failed)?;
         }
         Ok(())
     }
@@ -142,10 +163,13 @@ fn delays<Y: Ranged<ValueType = f64>>(
     clock: &Clock,
 ) -> Result<(), PictureError> {
     let colour = colour(curve.kind);
-    let points: Vec<Point> = curve.delay.iter().map(|&(t, c)| (t * clock.per_second, c * 1e3)).collect();
+    let points: Vec<Point> =
+        curve.delay.iter().map(|&(t, c)| (t * clock.per_second, c * 1e3)).collect();
     let apart: Vec<Point> = points.iter().copied().take(12).collect();
     chart.draw_series(LineSeries::new(points, stroke(colour, width))).map_err(failed)?;
-    chart.draw_series(apart.into_iter().map(|p| Circle::new(p, px(3), colour.filled()))).map_err(failed)?;
+    chart
+        .draw_series(apart.into_iter().map(|p| Circle::new(p, px(3), colour.filled())))
+        .map_err(failed)?;
     Ok(())
 }
 
@@ -156,7 +180,11 @@ fn impulses(
     clock: &Clock,
     (low, high): (f64, f64),
 ) -> Result<(), PictureError> {
-    let all = || sampled.iter().flat_map(|curve| curve.impulses.iter().map(|&(t, jump)| (curve.kind, t, jump)));
+    let all = || {
+        sampled
+            .iter()
+            .flat_map(|curve| curve.impulses.iter().map(|&(t, jump)| (curve.kind, t, jump)))
+    };
     let greatest = all().map(|(_, _, jump)| jump.abs()).fold(0.0, f64::max);
     let reach = high.max(-low);
     for (kind, t, jump) in all() {

@@ -34,9 +34,12 @@ impl Sampled {
     pub fn new(reference: &Reference, span: f64, steps_in_unit: f64) -> Self {
         let (curve, figures) = (reference.curve(), reference.figures());
         let times = times(curve);
-        let of = |value: &dyn Fn(f64) -> f64| times.iter().map(|&t| (t, value(t) / steps_in_unit)).collect();
+        let of = |value: &dyn Fn(f64) -> f64| {
+            times.iter().map(|&t| (t, value(t) / steps_in_unit)).collect()
+        };
         let end = figures.seconds;
-        let cruise = [(end, figures.end_speed / steps_in_unit), (span, figures.end_speed / steps_in_unit)];
+        let cruise =
+            [(end, figures.end_speed / steps_in_unit), (span, figures.end_speed / steps_in_unit)];
         Self {
             kind: reference.kind(),
             legend: format!("{}, {end:.3} s", reference.kind()),
@@ -44,7 +47,10 @@ impl Sampled {
             cruise: (span > end && reference.is_ramp()).then_some(cruise),
             acceleration: from_nothing(of(&|t| curve.acceleration(t)), end),
             jerk: of(&|t| curve.jerk(t)),
-            impulses: impulses(curve).into_iter().map(|(t, jump)| (t, jump / steps_in_unit)).collect(),
+            impulses: impulses(curve)
+                .into_iter()
+                .map(|(t, jump)| (t, jump / steps_in_unit))
+                .collect(),
             delay: delays(reference),
         }
     }
@@ -91,7 +97,8 @@ fn delays(reference: &Reference) -> Vec<Point> {
     let chosen: Vec<f64> = if steps <= f64::from(DELAYS) {
         (0..steps as u32).map(f64::from).collect()
     } else {
-        let even = (0..DELAYS).map(|k| curve.position(curve.duration() * f64::from(k) / f64::from(DELAYS)).floor());
+        let even = (0..DELAYS)
+            .map(|k| curve.position(curve.duration() * f64::from(k) / f64::from(DELAYS)).floor());
         // The delays of the first and the last steps differ much, so these steps are all included.
         let ends = (0..40).flat_map(|n| [f64::from(n), steps - 1.0 - f64::from(n)]);
         let mut chosen: Vec<f64> = even.chain(ends).collect();

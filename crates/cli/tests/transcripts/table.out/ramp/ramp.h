@@ -89,7 +89,8 @@ static const carrystep_table ramp_table = {
     ramp_compare, ramp_groups, RAMP_PULSES, RAMP_CRUISE
 };
 
-/* If the compiler rejects a line below, the array lacks values or uint16_t is not 16 bits wide. */
+/* The compiler rejects a line below if the declared length of the array is not RAMP_ENTRIES,
+ * or if uint16_t is not 16 bits wide. It does not notice missing values: C sets these to 0. */
 typedef char ramp_check_length[sizeof ramp_compare / sizeof ramp_compare[0] == RAMP_ENTRIES ? 1 : -1];
 typedef char ramp_check_width[(uint16_t)-1 == 65535u ? 1 : -1];
 

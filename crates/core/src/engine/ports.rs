@@ -1,0 +1,187 @@
+//! The ports of the engine, and which field of [`EngineInputs`] or [`EngineOutputs`] is at each.
+
+use super::{EngineInputs, EngineOutputs};
+use crate::ports::{CLOCK, Direction, Peer, Port, Width, input, output};
+
+const BIT: Width = Width::Bits(1);
+const AXIS: Width = Width::Bits(3);
+const WORD: Width = Width::Bits(32);
+
+/// The ports of `carrystep_engine`, in order.
+pub const ENGINE_PORTS: &[Port] = &[
+    CLOCK,
+    input("put_valid", BIT, Peer::Host, "the host offers a word of a segment"),
+    input("put_axis", AXIS, Peer::Host, "the axis of that word, and of `room`"),
+    input("put_word", Width::Bits(3), Peer::Host, "the number of the word; 7 commits the segment"),
+    input("put_data", WORD, Peer::Host, "the word; in a commit, bit 0 is `last`"),
+    output("put_ready", BIT, Peer::Host, "the engine accepts an offered word in this clock"),
+    input("start_valid", BIT, Peer::Host, "the host offers a start"),
+    input("start_mask", Width::Axes, Peer::Host, "the axes to start on one tick"),
+    output("start_ready", BIT, Peer::Host, "the engine accepts an offered start in this clock"),
+    input("clear", BIT, Peer::Host, "resume after a stop"),
+    input("reset", BIT, Peer::Nobody, "return to the state at configuration; tie to 0 if unused"),
+    input("stop", BIT, Peer::Host, "the host requests a controlled stop"),
+    input("broken", BIT, Peer::Host, "the host has broken the segment protocol"),
+    input("home_valid", BIT, Peer::Host, "the host replaces the mask of the axes that home"),
+    input("home_mask", Width::Axes, Peer::Host, "the axes that wait for their limit from now on"),
+    input("kick", BIT, Peer::Host, "a valid request has arrived: the watchdog restarts"),
+    input("enable", BIT, Peer::Host, "the host requests power for the drivers"),
+    input("estop", BIT, Peer::Pins, "the e-stop pin, asynchronous"),
+    input("limit_min", Width::Axes, Peer::Pins, "the limit pins at the low ends, asynchronous"),
+    input("limit_max", Width::Axes, Peer::Pins, "the limit pins at the high ends, asynchronous"),
+    input("get_axis", AXIS, Peer::Host, "the axis that the host reads"),
+    input("get_item", Width::Bits(2), Peer::Host, "0 1 P, low and high; 2 position; 3 discarded"),
+    output("get_data", WORD, Peer::Host, "the item requested in the clock before"),
+    output("get_valid", BIT, Peer::Host, "`get_data` is that item"),
+    output("latch", BIT, Peer::Host, "`get_data` is the position at which an axis met its limit"),
+    output("latch_axis", AXIS, Peer::Host, "that axis").valid_with("latch"),
+    output(
+        "room",
+        Width::Bits(3),
+        Peer::Host,
+        "segments for which the queue of `put_axis` has room",
+    )
+    .valid_with("room_valid"),
+    output("room_valid", BIT, Peer::Host, "`room` is valid, once in a time slot of that axis"),
+    output("step", Width::Axes, Peer::Pins, "the STEP pins"),
+    output("dir", Width::Axes, Peer::Pins, "the DIR pins; 1 is backward"),
+    output("enabled", BIT, Peer::Pins, "the drivers are to have power"),
+    output("idle", BIT, Peer::Host, "all axes are at rest and no start is armed"),
+    output("fault", BIT, Peer::Host, "a stop is in force"),
+    output("halted", BIT, Peer::Host, "a stop is in force and no axis moves any more"),
+    output("resetting", BIT, Peer::Nobody, "the engine is returning to that state"),
+    output("cause", Width::Bits(3), Peer::Host, "the number of its cause").valid_with("fault"),
+    output("culprits", Width::Axes, Peer::Host, "the axes that it came from").valid_with("fault"),
+    output("armed", BIT, Peer::Host, "a start is armed"),
+    output("ready", BIT, Peer::Host, "the drivers have had power for long enough"),
+    output("homing", Width::Axes, Peer::Host, "the axes that wait for their limit"),
+    output("started", BIT, Peer::Nobody, "axes start at the end of this clock"),
+];
+
+/// The ports of this direction that [`EngineInputs::at_ports`] and [`EngineOutputs::at_ports`] list,
+/// in their order: all but the clock and those by which a host reads one item (`get`).
+pub fn recorded_ports(direction: Direction) -> impl Iterator<Item = &'static Port> {
+    ENGINE_PORTS.iter().filter(move |port| {
+        port.direction == direction && port.peer != Peer::Clock && !port.name.starts_with("get_")
+    })
+}
+
+impl EngineInputs {
+    /// Name and value of each input in the order of [`recorded_ports`]. `None` is a value that is
+    /// not offered and has no effect; it is driven as 0.
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 17] {
+        let Self {
+            put,
+            room_of,
+            start,
+            clear,
+            reset,
+            stop,
+            broken,
+            home,
+            kick,
+            enable,
+            estop,
+            limit_min,
+            limit_max,
+        } = *self;
+        [
+            ("put_valid", Some(put.is_some().into())),
+            ("put_axis", Some(put.map_or(room_of, |put| put.axis).into())),
+            ("put_word", put.map(|put| put.word.into())),
+            ("put_data", put.map(|put| put.data.into())),
+            ("start_valid", Some(start.is_some().into())),
+            ("start_mask", start.map(u64::from)),
+            ("clear", Some(clear.into())),
+            ("reset", Some(reset.into())),
+            ("stop", Some(stop.into())),
+            ("broken", Some(broken.into())),
+            ("home_valid", Some(home.is_some().into())),
+            ("home_mask", home.map(u64::from)),
+            ("kick", Some(kick.into())),
+            ("enable", Some(enable.into())),
+            ("estop", Some(estop.into())),
+            ("limit_min", Some(limit_min.into())),
+            ("limit_max", Some(limit_max.into())),
+        ]
+    }
+}
+
+impl EngineOutputs {
+    /// Name and value of each output in the order of [`recorded_ports`]. `None` is a value that is
+    /// not valid in this cycle.
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 19] {
+        let Self {
+            put_ready,
+            start_ready,
+            step,
+            dir,
+            enabled,
+            idle,
+            fault,
+            halted,
+            resetting,
+            armed,
+            ready,
+            homing,
+            latch,
+            room,
+            started,
+        } = *self;
+        [
+            ("put_ready", Some(put_ready.into())),
+            ("start_ready", Some(start_ready.into())),
+            ("latch", Some(latch.is_some().into())),
+            ("latch_axis", latch.map(u64::from)),
+            ("room", room.map(u64::from)),
+            ("room_valid", Some(room.is_some().into())),
+            ("step", Some(step.into())),
+            ("dir", Some(dir.into())),
+            ("enabled", Some(enabled.into())),
+            ("idle", Some(idle.into())),
+            ("fault", Some(fault.is_some().into())),
+            ("halted", Some(halted.into())),
+            ("resetting", Some(resetting.into())),
+            ("cause", fault.map(|(cause, _)| cause as u64)),
+            ("culprits", fault.map(|(_, culprits)| culprits.into())),
+            ("armed", Some(armed.into())),
+            ("ready", Some(ready.into())),
+            ("homing", Some(homing.into())),
+            ("started", Some(started.into())),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{CAUSES, MAX_AXES, SEGMENT_WORDS};
+    use alloc::vec::Vec;
+
+    fn names(direction: Direction) -> Vec<&'static str> {
+        recorded_ports(direction).map(|port| port.name).collect()
+    }
+
+    #[test]
+    fn values_are_those_of_the_table_in_its_order() {
+        let inputs = EngineInputs::default().at_ports();
+        let outputs = EngineOutputs::default().at_ports();
+        assert_eq!(inputs.map(|(name, _)| name).to_vec(), names(Direction::Input));
+        assert_eq!(outputs.map(|(name, _)| name).to_vec(), names(Direction::Output));
+        // Without a fault, a latch or room, exactly those outputs are not valid that say so.
+        for (port, (name, value)) in recorded_ports(Direction::Output).zip(outputs) {
+            assert_eq!(port.valid_with.is_some(), value.is_none(), "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_fit_their_ports() {
+        let most = |name| {
+            let port = ENGINE_PORTS.iter().find(|port| port.name == name).unwrap();
+            (1_usize << port.width.of(1)) - 1
+        };
+        assert!(most("cause") >= CAUSES.len() - 1);
+        assert!(most("put_axis") >= MAX_AXES - 1 && most("latch_axis") >= MAX_AXES - 1);
+        assert!(most("put_word") >= SEGMENT_WORDS.into());
+    }
+}

@@ -1,0 +1,132 @@
+//! The link processor, a small processor in the gateware: its instructions, as they are encoded in
+//! its program memory.
+//!
+//! At usual baud rates a byte arrives about every hundred clocks, which is time enough for a
+//! program. The program needs one block RAM; the same protocol in gates would need hundreds of
+//! cells. The machine has an accumulator A and an index X. Its only operations are exclusive or and
+//! X + 1.
+//!
+//! ```text
+//! clock     | fetch | address | execute |   three clocks per instruction; a wait and a CRC step
+//!                                           extend the third
+//!
+//! bit    15     14     13     12     11       10 9 8       7 .. 0
+//!        sets                        xor      source       operand      A <= value, or A xor value
+//!               stores                              X   operand      data[operand or X] <= A
+//!                      jumps         invert   condition    target       pc <= target
+//!                             acts   put      start go br  wait .. tax  the actions of these bits
+//! ```
+//!
+//! The two `acts` bits that change X (TAX and INX) can be combined with a value or a store that
+//! does not use its operand.
+
+/// One instruction, encoded.
+pub type Code = u16;
+
+/// The instruction writes a value to A.
+pub const SETS: Code = 1 << 15;
+/// The instruction stores A.
+pub const STORES: Code = 1 << 14;
+/// The instruction jumps if its condition holds.
+pub const JUMPS: Code = 1 << 13;
+/// The instruction performs the actions whose bits are set.
+pub const ACTS: Code = 1 << 12;
+
+/// With [`SETS`]: A receives the exclusive or of A and the value.
+pub const XOR: Code = 1 << 11;
+/// With [`STORES`]: the address is X and not the operand.
+pub const INDEXED: Code = 1 << 8;
+/// With [`JUMPS`]: jump if the condition does not hold.
+pub const UNLESS: Code = 1 << 11;
+
+/// Source of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ValueSource {
+    /// The data memory, at the operand's address.
+    Data = 0,
+    /// The data memory, at address X.
+    DataAtX = 1,
+    /// The received byte; reading it releases the buffer for the next one.
+    Received = 2,
+    /// X.
+    X = 3,
+    /// The low byte of the CRC.
+    Crc = 4,
+    /// The item of the engine that the operand selects ([`STATE`] and the following).
+    Engine = 5,
+}
+
+/// Item of [`ValueSource::Engine`]: byte 3 of an answer.
+pub const STATE: u8 = 0;
+/// Item: the free queue space that the axis of A reported in its last time slot.
+pub const ROOM: u8 = 1;
+/// Item: the mask of the axes that caused a stop; 0 without a fault.
+pub const CULPRITS: u8 = 2;
+/// Item: the mask of the axes that wait for their limit.
+pub const HOMING: u8 = 3;
+
+/// Condition of a jump.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Condition {
+    /// Always true.
+    Always = 0,
+    /// A is 0.
+    Zero = 1,
+    /// Bit 7 of X is 1.
+    X7 = 2,
+    /// Bit 6 of X is 1.
+    X6 = 3,
+    /// No received byte is waiting.
+    Nothing = 4,
+    /// The engine has a fault.
+    Fault = 5,
+    /// The engine accepts a start.
+    Startable = 6,
+    /// A is 0xc0 or more, as END and ESC are.
+    Special = 7,
+}
+
+/// X <= A.
+pub const TAX: Code = 1 << 0;
+/// X <= X + 1, at the end of the instruction.
+pub const INX: Code = 1 << 1;
+/// The CRC advances by eight bits.
+pub const CRC_STEP: Code = 1 << 2;
+/// With [`CRC_STEP`]: A enters the CRC. Without: the CRC register shifts down by a byte, and A
+/// enters it at the top.
+pub const CRC_FEED: Code = 1 << 3;
+/// The CRC register is initialised. With [`CRC_FEED`] it is instead loaded with the fact at address
+/// X.
+pub const CRC_BEGIN: Code = 1 << 4;
+/// The instruction lasts until the engine accepts what it offers, or has a fault. If it offers
+/// nothing, it lasts until the scan of all axes' items ends ([`SCAN`] time slots).
+pub const WAIT: Code = 1 << 5;
+/// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
+/// or the scan ends.
+pub const FOR_ROOM: Code = 1 << 3;
+/// A is written to the control register. With [`KICK`] it is written to the mask of the axes that
+/// wait for their limit instead.
+pub const CONTROL: Code = 1 << 6;
+/// The host has sent a valid request; this restarts the watchdog.
+pub const KICK: Code = 1 << 7;
+/// The host has violated the segment protocol.
+pub const BROKEN: Code = 1 << 8;
+/// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
+pub const CLEARING: Code = 1 << 9;
+/// With [`WAIT`]: sends A to the host.
+pub const GOES: Code = 1 << 9;
+/// Offers a start of the axes in A.
+pub const STARTS: Code = 1 << 10;
+/// Offers the CRC register as a word of a segment. Bits 5..3 of A are the axis, bits 4..2 of X the
+/// number of the word.
+pub const PUTS: Code = 1 << 11;
+
+/// Number of time slots in which every item of every axis is read once.
+pub const SCAN: u32 = 32;
+
+/// Address of a request in the data memory: its sequence number, followed by its address byte.
+pub const REQUEST: u8 = 0x1e;
+/// Address of the request's words. The words of a segment end where bit 6 of X becomes 1.
+pub const WORDS: u8 = 0x20;
+/// The first address behind the area that a request can fill.
+pub const REQUEST_END: u8 = 0x80;

@@ -1,0 +1,236 @@
+//! Names for the beats of a time slot, and for the words and the bits in the memories of the engine.
+//!
+//! ```text
+//! beat        0    1    2    3    4    5    6    7    8    9    10   11   12   13-15   16
+//! READ        A    J    V    P    n    pos  J'   A'   V'   P'   get
+//! LOAD             A    J    V    P    n    pos  J'   A'   V'   P'
+//! SUM                        A    V    P    n    pos  put  A'   V'   P'   bisection    phase
+//! WRITE                           A    V    P    n    pos  put  A'   V'   P'
+//!             ': high halves      n: remaining ticks, or at rest the discarded steps
+//! ```
+//!
+//! A word is read in its `READ` beat and is loaded into an operand of the adder in the next one.
+//! The sum that replaces it is computed in its `SUM` beat and written in the next one. A beat that
+//! has a role of another kind has another name too.
+//!
+//! Kernels name these constants as indices of bits: `beat.val().get_bit(BEAT_READ_V_LOW)`. Rust-HDL
+//! passes such a name on as text. [`index`] gives its value, so that the Verilog contains the
+//! number.
+
+use carrystep_core::engine::{COMMIT, PUT_BEAT, TIME_SLOT_CLOCKS};
+
+/// Defines the constants and the table of their names.
+macro_rules! indices {
+    ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: usize = $value;)*
+        /// The constants of this module that kernels use as indices, with their names.
+        pub const INDICES: &[(&str, usize)] = &[$((stringify!($name), $name)),*];
+    };
+}
+
+indices! {
+    /// First beat of a time slot.
+    BEAT_FIRST = 0;
+    /// Last beat of a time slot. The four beats after it overlap the next time slot.
+    BEAT_LAST = TIME_SLOT_CLOCKS as usize - 1;
+
+    /// A or the stop acceleration is read, low half.
+    BEAT_READ_A_LOW = 0;
+    /// J is read, low half.
+    BEAT_READ_J_LOW = 1;
+    /// V is read, low half.
+    BEAT_READ_V_LOW = 2;
+    /// P is read, low half.
+    BEAT_READ_P_LOW = 3;
+    /// The remaining ticks are read, or at rest the discarded steps.
+    BEAT_READ_TICKS = 4;
+    /// The position is read.
+    BEAT_READ_POSITION = 5;
+    /// J is read, high half.
+    BEAT_READ_J_HIGH = 6;
+    /// A or the stop acceleration is read, high half.
+    BEAT_READ_A_HIGH = 7;
+    /// V is read, high half.
+    BEAT_READ_V_HIGH = 8;
+    /// P is read, high half.
+    BEAT_READ_P_HIGH = 9;
+    /// The word that the host asks for is read.
+    BEAT_READ_GET = 10;
+
+    /// A is loaded into operand A, low half.
+    BEAT_LOAD_A_LOW = BEAT_READ_A_LOW + 1;
+    /// J is loaded into operand B, low half.
+    BEAT_LOAD_J_LOW = BEAT_READ_J_LOW + 1;
+    /// V is loaded into operand B, low half.
+    BEAT_LOAD_V_LOW = BEAT_READ_V_LOW + 1;
+    /// P is loaded into operand A, low half.
+    BEAT_LOAD_P_LOW = BEAT_READ_P_LOW + 1;
+    /// The remaining ticks are loaded into operand A, and -1 or 0 into operand B.
+    BEAT_LOAD_TICKS = BEAT_READ_TICKS + 1;
+    /// The position is loaded into operand A, and -1 or 0 into operand B.
+    BEAT_LOAD_POSITION = BEAT_READ_POSITION + 1;
+    /// J is loaded into operand B, high half.
+    BEAT_LOAD_J_HIGH = BEAT_READ_J_HIGH + 1;
+    /// A is loaded into operand A, high half.
+    BEAT_LOAD_A_HIGH = BEAT_READ_A_HIGH + 1;
+    /// V is loaded into operand B, high half.
+    BEAT_LOAD_V_HIGH = BEAT_READ_V_HIGH + 1;
+    /// P is loaded into operand A, high half.
+    BEAT_LOAD_P_HIGH = BEAT_READ_P_HIGH + 1;
+
+    /// The sum is P + V, low half.
+    BEAT_SUM_P_LOW = 5;
+    /// The sum is the remaining ticks - 1, or at rest the discarded steps.
+    BEAT_SUM_TICKS = 6;
+    /// The sum is the word of the host, unchanged.
+    BEAT_SUM_PUT = 8;
+    /// The sum is P + V, high half.
+    BEAT_SUM_P_HIGH = 11;
+    /// First sum of the bisection: P + V / 2.
+    BEAT_BISECT_1 = 12;
+    /// Second sum of the bisection: the last one + or - V / 4.
+    BEAT_BISECT_2 = 13;
+    /// Third sum of the bisection: the last one + or - V / 8.
+    BEAT_BISECT_3 = 14;
+    /// The last bit of the phase is found; the phase is valid from the next clock on.
+    BEAT_PHASE = 16;
+
+    /// A + J is written, low half.
+    BEAT_WRITE_A_LOW = 4;
+    /// V + A is written, low half.
+    BEAT_WRITE_V_LOW = 5;
+    /// P + V is written, low half.
+    BEAT_WRITE_P_LOW = BEAT_SUM_P_LOW + 1;
+    /// The remaining ticks are written, or at rest the discarded steps.
+    BEAT_WRITE_TICKS = BEAT_SUM_TICKS + 1;
+    /// The position is written.
+    BEAT_WRITE_POSITION = 8;
+    /// The word of the host is written.
+    BEAT_WRITE_PUT = BEAT_SUM_PUT + 1;
+    /// A + J is written, high half.
+    BEAT_WRITE_A_HIGH = 10;
+    /// V + A is written, high half.
+    BEAT_WRITE_V_HIGH = 11;
+    /// P + V is written, high half.
+    BEAT_WRITE_P_HIGH = BEAT_SUM_P_HIGH + 1;
+
+    /// The queue compares the counts of the pulser with those in memory.
+    BEAT_COMPARE = 4;
+    /// The position of the axis is on `get_data`, for an axis that homes.
+    BEAT_LATCH = BEAT_READ_POSITION + 1;
+    /// A word of the host for this axis is accepted.
+    BEAT_PUT = PUT_BEAT as usize;
+    /// The word that the host asked for is on `get_data`.
+    BEAT_GOT = BEAT_READ_GET + 1;
+
+    /// Sign of a high half.
+    WORD_SIGN = 31;
+    /// Lowest bit of a word, which halving drops.
+    WORD_LOWEST = 0;
+    /// Lowest bit of the sum in `wide`, above the bit by which the carry enters.
+    WIDE_SUM = 1;
+    /// Bit 32 of the sum in `wide`.
+    WIDE_TOP = 33;
+
+    /// Control word: slot of the running segment, 3 bits.
+    CONTROL_LIVE = 0;
+    /// Control word: slot of the newest segment, 3 bits.
+    CONTROL_NEWEST = 3;
+    /// Control word: the axis runs.
+    CONTROL_RUNNING = 6;
+    /// Control word: the next V does not fit in 64 bits.
+    CONTROL_UNFIT = 7;
+    /// Control word: position modulo 8, 3 bits.
+    CONTROL_POSITION = 8;
+    /// Control word: discarded steps modulo 8, 3 bits.
+    CONTROL_DISCARDED = 11;
+    /// Control word: the ramp began with V < 0.
+    CONTROL_BACK = 14;
+    /// Control word: the ramp has begun.
+    CONTROL_KNOWN = 15;
+    /// The number of the word that the host must put next, 3 bits.
+    CONTROL_DUE = 16;
+    /// Sign of the difference between the pulser's count and the control word's.
+    MISSING_SIGN = 2;
+
+    /// Word of a limit switch: number of consecutive samples that differ, 7 bits.
+    SWITCH_COUNT = 0;
+    /// Word of a limit switch: debounced state.
+    SWITCH_STATE = 7;
+
+    /// Address of an event word: the tick modulo 4, 2 bits.
+    EVENT_TICK = 5;
+    /// Event word: one bit for each axis that has an event.
+    EVENT_AXES = 0;
+    /// Event word: one bit for each axis whose event is backward.
+    EVENT_BACKWARD = 8;
+
+    /// Counts of the pulser: pulses forward less pulses backward modulo 8, 3 bits.
+    COUNTS_PULSES = 0;
+    /// Counts of the pulser: discarded steps modulo 8, 3 bits.
+    COUNTS_LOSSES = 3;
+
+    /// Data of a commit: the segment is the last of its move.
+    COMMIT_LAST = 0;
+    /// The ring of the start's mask: the axis of this time slot.
+    MASK_OF_SLOT = 0;
+}
+
+/// Word of a segment: ticks - 1.
+pub const WORD_TICKS: u64 = 0;
+/// Word of a segment: V, low half.
+pub const WORD_V_LOW: u64 = 1;
+/// Word of a segment: V, high half.
+pub const WORD_V_HIGH: u64 = 2;
+/// Word of a segment: A, low half.
+pub const WORD_A_LOW: u64 = 3;
+/// Word of a segment: A, high half.
+pub const WORD_A_HIGH: u64 = 4;
+/// Word of a segment: J, low half.
+pub const WORD_J_LOW: u64 = 5;
+/// Word of a segment: J, high half.
+pub const WORD_J_HIGH: u64 = 6;
+/// Word of each slot that no segment uses. These eight words hold the state of the axis.
+pub const WORD_STATE: u64 = COMMIT as u64;
+
+/// Slot of [`WORD_STATE`]: P, low half.
+pub const SLOT_P_LOW: u64 = 0;
+/// Slot of [`WORD_STATE`]: P, high half.
+pub const SLOT_P_HIGH: u64 = 1;
+/// Slot of [`WORD_STATE`]: position.
+pub const SLOT_POSITION: u64 = 2;
+/// Slot of [`WORD_STATE`]: discarded steps.
+pub const SLOT_DISCARDED: u64 = 3;
+/// Slot of [`WORD_STATE`]: -s of the stop acceleration s, low half.
+pub const SLOT_DOWN_LOW: u64 = 4;
+/// Slot of [`WORD_STATE`]: -s, high half.
+pub const SLOT_DOWN_HIGH: u64 = 5;
+/// Slot of [`WORD_STATE`]: s, low half.
+pub const SLOT_UP_LOW: u64 = 6;
+/// Slot of [`WORD_STATE`]: s, high half.
+pub const SLOT_UP_HIGH: u64 = 7;
+
+/// Address of a word of the state of an axis.
+pub const fn state_address(axis: usize, slot: u64) -> usize {
+    axis << 6 | (slot as usize) << 3 | WORD_STATE as usize
+}
+
+/// The value of an index that a kernel names.
+pub fn index(name: &str) -> Option<usize> {
+    INDICES.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_index_is_known_by_its_name_only() {
+        assert_eq!(index("BEAT_WRITE_P_HIGH"), Some(12));
+        assert_eq!(index("BEAT_LAST"), Some(12));
+        assert_eq!(index("BEAT"), None);
+        let names: std::collections::BTreeSet<&str> =
+            INDICES.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names.len(), INDICES.len());
+    }
+}

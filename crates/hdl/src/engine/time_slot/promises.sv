@@ -1,0 +1,82 @@
+// Proves promises 11, 12 and 13 of the schedule of time slots, without a bound on time.
+//
+//   parameters   AXES: number of axes
+//                CLOCKS: the least number of clocks from one strobe to the next
+//                `DUT: the name of the exported module `time_slot`
+//   assumptions  A tick is never shorter than CLOCKS (proved in event_wheel/promises.sv).
+//
+// In every tick each axis has one time slot of 13 beats. That of axis 0 begins in the clock after
+// the strobe, and the time slots do not overlap.
+
+module promises (
+    input wire clock,
+    input wire strobe
+);
+    localparam [16:0] AXES = `AXES, CLOCKS = `CLOCKS, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * AXES;
+
+    wire [16:0] beat;
+    wire [2:0] axis, axis_next;
+    wire [`AXES-1:0] axis_one_hot;
+    `DUT dut (.*);
+
+    // ---- The clocks since the strobe, and the time slot and the beat that follow from them.
+
+    reg [16:0] at = ALL_TIME_SLOTS;           // ALL_TIME_SLOTS means that all time slots are over
+    reg [16:0] since = CLOCKS;
+    wire in_time_slot = at < ALL_TIME_SLOTS;
+    wire [16:0] number = at / TIME_SLOT_CLOCKS, clock_of_time_slot = at % TIME_SLOT_CLOCKS;
+    always @(posedge clock) begin
+        at <= strobe ? 0 : at == ALL_TIME_SLOTS ? at : at + 1;
+        since <= strobe ? 1 : since == CLOCKS ? since : since + 1;
+    end
+    // Beats 13 to 16 of a time slot, which overlap the next time slot or follow the last one.
+    reg [3:0] tail = 0;
+    always @(posedge clock) tail <= {tail[2:0], in_time_slot & clock_of_time_slot == TIME_SLOT_CLOCKS - 1};
+    always_comb begin
+        assume (!strobe || since == CLOCKS);
+    end
+
+    // ---- Values of the clock before, for promises that the proofs of other modules assume.
+
+    reg first_clock = 1;
+    reg [12:0] was_beat = 0;
+    reg [2:0] was_next = 0, was_axis = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        {was_beat, was_next, was_axis} <= {beat[12:0], axis_next, axis};
+    end
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_11_every_axis_once_a_tick: assert (beat[12:0] == (in_time_slot ? 13'd1 << clock_of_time_slot : 0));
+        promise_11_tail: assert (beat[16:13] == tail);
+        promise_12_whose_time_slot: assert (axis == (in_time_slot ? number : 0));
+        promise_12_one_hot_is_the_axis: assert (axis_one_hot == 32'd1 << axis);
+        promise_12_one_after_the_other: assert ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[12:1] == was_beat[11:0]
+            && (first_clock ? axis == 0 : axis == was_next));
+        promise_12_nothing_else_in_a_time_slot: assert ((beat[11:0] == 0 || axis_next == axis)
+            && (!beat[12] || axis_next != axis || AXES == 1));
+        promise_12_no_time_slot_at_a_strobe: assert (!strobe || beat[12:0] == 0);
+        promise_12_a_time_slot_of_its_own_after_a_pause: assert (!was_beat[12] || axis != was_axis || beat[12:0] == 0);
+        promise_13_inactive: assert (!first_clock || beat == 0);
+    end
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (at <= ALL_TIME_SLOTS && since <= CLOCKS);
+        invariant_2: assert (in_time_slot ? since == at + 1 : since > ALL_TIME_SLOTS);
+        invariant_3: assert (in_time_slot ? was_beat == (clock_of_time_slot == 0 ? (at == 0 ? 0 : 13'h1000)
+            : 13'd1 << (clock_of_time_slot - 1)) : was_beat == 0 || was_beat == 13'h1000);
+        invariant_5: assert (!was_beat[12] || first_clock || was_axis == (in_time_slot ? number : AXES) - 1);
+        invariant_4: assert (was_next == axis || first_clock);
+    end
+`endif
+
+    // ---- Covers: some run reaches each of these situations.
+
+    always_comb begin
+        cover_11_second_time_slot: cover (beat[0] && beat[13] && axis == 1);
+        cover_12_tail: cover (beat[16] && axis == 1);
+    end
+endmodule

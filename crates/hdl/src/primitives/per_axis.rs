@@ -1,0 +1,61 @@
+//! `PerAxis<T, N>`: an array with one element for each of N axes. Kernels and Verilog see an array.
+//!
+//! Rust-HDL requires a `Default` of every block, and the standard library implements `Default` only
+//! for arrays of a fixed length ([`crate::primitives::constant`]). This type implements it for any
+//! N.
+
+use rust_hdl::prelude::{Block, Logic, Probe};
+use std::ops::{Deref, DerefMut};
+
+/// An array of N elements of one type; element i belongs to axis i.
+#[derive(Debug)]
+pub struct PerAxis<T, const N: usize>([T; N]);
+
+impl<T, const N: usize> PerAxis<T, N> {
+    /// Makes each element by calling `make` with the number of its axis, 0 to N - 1.
+    pub fn from_fn(make: impl FnMut(usize) -> T) -> Self {
+        Self(std::array::from_fn(make))
+    }
+}
+
+impl<T: Default, const N: usize> Default for PerAxis<T, N> {
+    fn default() -> Self {
+        Self::from_fn(|_| T::default())
+    }
+}
+
+impl<T, const N: usize> Deref for PerAxis<T, N> {
+    type Target = [T; N];
+    #[inline]
+    fn deref(&self) -> &[T; N] {
+        &self.0
+    }
+}
+
+impl<T, const N: usize> DerefMut for PerAxis<T, N> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [T; N] {
+        &mut self.0
+    }
+}
+
+impl<T: Logic, const N: usize> Logic for PerAxis<T, N> {
+    fn update(&mut self) {}
+}
+
+impl<T: Block, const N: usize> Block for PerAxis<T, N> {
+    fn connect_all(&mut self) {
+        self.0.connect_all();
+    }
+    #[inline]
+    fn update_all(&mut self) {
+        self.0.update_all();
+    }
+    #[inline]
+    fn has_changed(&self) -> bool {
+        self.0.has_changed()
+    }
+    fn accept(&self, name: &str, probe: &mut dyn Probe) {
+        self.0.accept(name, probe);
+    }
+}

@@ -1,0 +1,221 @@
+//! One axis of the engine: the calculation of one tick, and the debounced limit inputs. It must
+//! stay equal to "A tick of an axis" and "The guard's inputs" in docs/clock-by-clock.md.
+
+use crate::parts::phase::{bisect, crosses};
+use crate::parts::shaper;
+use crate::parts::stage::{Stage, Step};
+use carrystep_core::engine::{Cause, Guard, LimitWiring, QUEUE, SEGMENT_WORDS};
+use std::collections::VecDeque;
+
+/// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Queued {
+    /// Remaining ticks after the next one (`ticks` - 1 when it is loaded).
+    pub(super) left: u32,
+    pub(super) v: i64,
+    pub(super) a: i64,
+    pub(super) j: i64,
+    pub(super) last: bool,
+}
+
+impl Queued {
+    /// Assembles the segment from its seven words, low half first.
+    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
+        let [left, v, v_high, a, a_high, j, j_high] = words;
+        let long = |low: u32, high: u32| (u64::from(high) << 32 | u64::from(low)).cast_signed();
+        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), last }
+    }
+}
+
+/// A limit input: the debounced state, and the number of consecutive samples that differ from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Limit {
+    pub(super) active: bool,
+    pub(super) against: u32,
+}
+
+/// One sample of a limit input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LimitSample {
+    /// True for `limit_max`, false for `limit_min`.
+    pub(super) max: bool,
+    /// The sampled level; true is active.
+    pub(super) pin: bool,
+}
+
+/// The state of homing of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Homing {
+    /// The axis waits for its limit to become active.
+    pub(super) waits: bool,
+    /// The limit became active in this tick.
+    pub(super) meets: bool,
+    /// After that, the axis slows down in a ramp of its own.
+    pub(super) slows: bool,
+}
+
+/// One axis: its accumulator, its queue, its limits, the stages behind the accumulator and the step
+/// shaper.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct AxisModel {
+    pub(super) p: u64,
+    pub(super) running: Option<Queued>,
+    /// The sum V + A of the running segment did not fit 64 bits.
+    pub(super) unfit: bool,
+    /// In a ramp whose direction is known: true is backward.
+    pub(super) ramp: Option<bool>,
+    /// Acceleration of ramps, in 2^-64 step per tick^2.
+    pub(super) stop: i64,
+    pub(super) homing: Homing,
+    pub(super) queue: VecDeque<Queued>,
+    /// The segment that was committed in this tick; the strobe moves it into the queue.
+    pub(super) fresh: Option<Queued>,
+    pub(super) words: [u32; SEGMENT_WORDS as usize],
+    /// Number of the word of that segment that must come next.
+    pub(super) next_word: u8,
+    pub(super) limits: [Limit; 2],
+    pub(super) computed: Stage,
+    pub(super) emitted: Stage,
+    pub(super) shaper: shaper::ShaperState,
+}
+
+/// The conditions of a tick that are the same for all axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tick<'a> {
+    pub(super) guard: &'a Guard,
+    pub(super) phase_bits: u32,
+    pub(super) halted: bool,
+    pub(super) ramp: bool,
+}
+
+impl AxisModel {
+    pub(super) fn new(p: u64, stop: u64, shaper: shaper::ShaperState) -> Self {
+        Self {
+            p,
+            running: None,
+            unfit: false,
+            ramp: None,
+            stop: stop.cast_signed(),
+            homing: Homing::default(),
+            queue: VecDeque::new(),
+            fresh: None,
+            words: [0; SEGMENT_WORDS as usize],
+            next_word: 0,
+            limits: [Limit::default(); 2],
+            computed: Stage::default(),
+            emitted: Stage::default(),
+            shaper,
+        }
+    }
+
+    /// Number of segments for which the queue has room.
+    pub(super) fn room(&self) -> u8 {
+        (QUEUE - self.queue.len()) as u8
+    }
+
+    /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
+    pub(super) fn tick(
+        &self,
+        tick: Tick<'_>,
+        sample: Option<LimitSample>,
+    ) -> (Self, Option<Cause>) {
+        let mut next = self.clone();
+        next.emitted = self.computed;
+        next.computed = Stage::default();
+        next.running = None;
+        next.ramp = None;
+        next.unfit = false;
+        let mut found = None;
+        match self.running.filter(|_| !tick.halted) {
+            Some(Queued { v, .. }) if self.unfit || v == i64::MIN => found = Some(Cause::Overspeed),
+            Some(segment) => found = self.add(&mut next, segment, tick),
+            None => {}
+        }
+        if let Some(sample) = sample {
+            let sign = next.computed.sign;
+            let hit = next.limits[usize::from(sample.max)].hit(sample, tick, sign);
+            if hit && !self.homing.meets && !self.homing.slows {
+                found = Some(Cause::Limit);
+            }
+        }
+        if self.homing.slows && next.running.is_none() {
+            next.queue.clear();
+        }
+        let slows = self.homing.meets || (self.homing.slows && next.running.is_some());
+        next.homing = Homing { meets: false, slows, ..self.homing };
+        (next, found)
+    }
+
+    /// True if the limit of the axis stops it in this tick.
+    pub(super) fn hits(&self, tick: Tick<'_>, sample: LimitSample) -> bool {
+        let fits = |segment: &Queued| !tick.halted && !self.unfit && segment.v != i64::MIN;
+        let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
+        let mut limit = self.limits[usize::from(sample.max)];
+        limit.hit(sample, tick, sign)
+    }
+
+    /// Executes the additions of one tick. `next` must be at rest when the function is called.
+    fn add(&self, next: &mut Self, segment: Queued, tick: Tick<'_>) -> Option<Cause> {
+        let Queued { left, v, a, j, last } = segment;
+        let step = crosses(self.p, v)
+            .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
+        next.computed = Stage { step, sign: v.signum() as i8 };
+        next.p = self.p.wrapping_add(v.cast_unsigned());
+        if tick.ramp || self.homing.slows {
+            let Some(back) = self.ramp else {
+                next.running = Some(segment);
+                next.ramp = Some(v < 0);
+                return None;
+            };
+            let slower = if back { v + self.stop } else { v - self.stop };
+            if (slower < 0) == back {
+                next.running = Some(Queued { v: slower, ..segment });
+                next.ramp = Some(back);
+            }
+            return None;
+        }
+        let (faster, unfit) = v.overflowing_add(a);
+        let on = Queued { v: faster, a: a.wrapping_add(j), ..segment };
+        if let Some(left) = left.checked_sub(1) {
+            next.running = Some(Queued { left, ..on });
+            next.unfit = unfit;
+            return None;
+        }
+        if last {
+            return None;
+        }
+        next.running = next.queue.pop_front();
+        if next.running.is_some() {
+            return None;
+        }
+        next.running = Some(on);
+        next.unfit = unfit;
+        Some(Cause::Underrun)
+    }
+}
+
+impl Limit {
+    /// Takes one sample in a tick whose V has this sign; returns true if the limit stops the axis.
+    fn hit(&mut self, sample: LimitSample, tick: Tick<'_>, sign: i8) -> bool {
+        let became = self.sample(sample.pin, tick.guard.debounce);
+        match tick.guard.limits {
+            LimitWiring::None => false,
+            LimitWiring::Pair => self.active && sign == if sample.max { 1 } else { -1 },
+            LimitWiring::Each | LimitWiring::One => became && sign != 0,
+        }
+    }
+
+    /// Takes one sample; returns true if the debounced state becomes active with it.
+    fn sample(&mut self, pin: bool, debounce: u32) -> bool {
+        if pin == self.active {
+            self.against = 0;
+            return false;
+        }
+        self.against += 1;
+        if self.against < debounce {
+            return false;
+        }
+        *self = Self { active: pin, against: 0 };
+        pin
+    }
+}

@@ -1,0 +1,293 @@
+//! The processor of the link. It reads requests, executes them and writes answers; an instruction
+//! takes three clocks or more. It must stay equal to docs/link.md in every clock.
+//!
+//! Its memories are synchronous: the word of an address is output one clock later. A word that is
+//! written in the same clock is output with its old value.
+
+use super::crc::{CrcUnit, Told};
+use carrystep_core::engine::EngineOutputs;
+use carrystep_core::link::Image;
+use carrystep_core::link::processor::{
+    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition,
+    FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, TAX,
+    UNLESS, ValueSource, WAIT, XOR,
+};
+use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
+use std::sync::Arc;
+
+/// Number of entries in each byte memory and in the program.
+const SIZE: usize = 256;
+
+/// The clock of an instruction in which it is executed.
+const EXECUTE: u8 = 2;
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct LinkProcessor {
+    program: Arc<[Code]>,
+    data: [u8; SIZE],
+    ring: [u8; SIZE],
+    /// The outputs of the memories.
+    code: Code,
+    read: u8,
+    received: u8,
+    crc: CrcUnit,
+    stage: u8,
+    pc: u8,
+    a: u8,
+    x: u8,
+    /// Index in the ring at which the next byte is written.
+    written: u8,
+    /// Index in the ring from which the next byte is read.
+    read_from: u8,
+    /// The room that the engine last reported for an axis, in segments.
+    room: u8,
+    control: u8,
+    clear: bool,
+}
+
+/// The inputs in one clock.
+pub(super) struct Inputs<'a> {
+    /// The byte that is received in this clock.
+    pub received: Option<u8>,
+    /// The byte to the host is accepted.
+    pub taken: bool,
+    /// The word of the facts memory at address X.
+    pub fact: u32,
+    /// A complete scan of all items of all axes is over.
+    pub scanned: bool,
+    pub engine: &'a EngineOutputs,
+}
+
+/// The outputs in one clock.
+pub(super) struct Outputs {
+    pub a: u8,
+    pub x: u8,
+    /// A word of a segment.
+    pub word: u32,
+    pub puts: bool,
+    pub starts: bool,
+    /// A is offered to the transmitter.
+    pub goes: bool,
+    pub homes: bool,
+    pub kicks: bool,
+    pub broken: bool,
+    pub clear: bool,
+    pub stop: bool,
+    pub enable: bool,
+}
+
+/// The reason for which the processor waits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Waits {
+    /// It does not wait, or it waits for the engine.
+    No,
+    /// It waits for a byte.
+    ForByte,
+    /// It waits for the transmitter.
+    ToSend,
+}
+
+impl LinkProcessor {
+    pub(super) fn new(image: &Image) -> Self {
+        let mut program = vec![0; SIZE];
+        program[..image.program.len()].copy_from_slice(&image.program);
+        let mut data = [0; SIZE];
+        data[..image.data.len()].copy_from_slice(&image.data);
+        Self {
+            program: program.into(),
+            data,
+            ring: [0; SIZE],
+            code: 0,
+            read: 0,
+            received: 0,
+            crc: CrcUnit::default(),
+            stage: 0,
+            pc: 0,
+            a: 0,
+            x: 0,
+            written: 0,
+            read_from: 0,
+            room: 0,
+            control: 0,
+            clear: false,
+        }
+    }
+
+    /// True if an instruction that contains one of these bits is executed in this clock.
+    fn executes(&self, bit: Code) -> bool {
+        self.stage == EXECUTE && self.code & bit != 0
+    }
+
+    /// True if an instruction that neither sets nor stores is executed in this clock and contains
+    /// all of these bits.
+    fn does(&self, bits: Code) -> bool {
+        self.executes(ACTS) && self.code & (SETS | STORES) == 0 && self.code & bits == bits
+    }
+
+    pub(super) fn outputs(&self) -> Outputs {
+        let Self { a, x, clear, control, .. } = *self;
+        let control = u32::from(control);
+        Outputs {
+            a,
+            x,
+            word: self.crc.word(),
+            puts: self.does(PUTS),
+            starts: self.does(STARTS),
+            goes: self.does(WAIT | GOES),
+            homes: self.does(CONTROL | KICK),
+            kicks: self.does(KICK) && !self.does(CONTROL),
+            broken: self.does(BROKEN),
+            clear,
+            stop: control & CONTROL_STOP != 0,
+            enable: control & CONTROL_ENABLE != 0,
+        }
+    }
+
+    pub(super) fn clock(&mut self, inputs: &Inputs<'_>) {
+        let Self { code, a, x, .. } = *self;
+        let place = usize::from(if code & INDEXED != 0 { x } else { code as u8 });
+        let over = self.is_over(inputs);
+        let told = self.tells_check(inputs.fact);
+        let next_pc = if code & JUMPS != 0 && self.holds(inputs.engine) != (code & UNLESS != 0) {
+            code as u8
+        } else {
+            self.pc.wrapping_add(1)
+        };
+        let value = self.value(inputs.engine);
+        let [sets, stores, acts] = [SETS, STORES, ACTS].map(|bit| self.executes(bit));
+        let controls = self.does(CONTROL) && code & KICK == 0;
+
+        // The memories are read before this clock writes to them.
+        self.code = self.program[usize::from(self.pc)];
+        self.read = self.data[place];
+        self.received = self.ring[usize::from(self.read_from)];
+
+        self.crc.clock(told);
+        if self.stage != EXECUTE {
+            self.stage += 1;
+        } else if over {
+            (self.stage, self.pc) = (0, next_pc);
+        }
+        if sets {
+            self.a = if code & XOR != 0 { a ^ value } else { value };
+        }
+        if sets && code >> 8 & 7 == ValueSource::Received as Code {
+            self.read_from = self.read_from.wrapping_add(1);
+        }
+        if stores {
+            self.data[place] = a;
+        }
+        if acts && code & TAX != 0 {
+            self.x = a;
+        }
+        if acts && code & INX != 0 && over {
+            self.x = x.wrapping_add(1);
+        }
+        if controls {
+            self.control = a & 3;
+            self.clear = code & CLEARING != 0;
+        }
+        if let Some(room) = inputs.engine.room {
+            self.room = room;
+        }
+        if let Some(byte) = inputs.received {
+            self.ring[usize::from(self.written)] = byte;
+            self.written = self.written.wrapping_add(1);
+        }
+    }
+
+    /// True if the instruction that is being executed ends in this clock.
+    fn is_over(&self, inputs: &Inputs<'_>) -> bool {
+        let waited = if self.code & STARTS != 0 {
+            inputs.engine.start_ready || inputs.engine.fault.is_some()
+        } else if self.code & GOES != 0 {
+            inputs.taken
+        } else if self.code & PUTS != 0 {
+            inputs.engine.put_ready || inputs.engine.fault.is_some()
+        } else {
+            inputs.scanned || (self.code & FOR_ROOM != 0 && inputs.engine.room.is_some())
+        };
+        (!self.does(WAIT) || waited) && (!self.does(CRC_STEP) || self.crc.over())
+    }
+
+    fn tells_check(&self, fact: u32) -> Told {
+        let feed = self.code & CRC_FEED != 0;
+        match (self.does(CRC_BEGIN), self.does(CRC_STEP)) {
+            (true, _) => Told::Begin(if feed { fact } else { u32::MAX }),
+            (false, true) if feed => Told::Feed(self.a),
+            (false, true) => Told::Shift(self.a),
+            (false, false) => Told::Nothing,
+        }
+    }
+
+    /// True if the condition of a jump holds.
+    fn holds(&self, engine: &EngineOutputs) -> bool {
+        match self.code >> 8 & 7 {
+            c if c == Condition::Zero as Code => self.a == 0,
+            c if c == Condition::X7 as Code => self.x & 0x80 != 0,
+            c if c == Condition::X6 as Code => self.x & 0x40 != 0,
+            c if c == Condition::Nothing as Code => self.read_from == self.written,
+            c if c == Condition::Fault as Code => engine.fault.is_some(),
+            c if c == Condition::Startable as Code => engine.ready && !engine.armed,
+            c if c == Condition::Special as Code => self.a >= 0xc0,
+            _ => true,
+        }
+    }
+
+    /// The value that A would take.
+    fn value(&self, engine: &EngineOutputs) -> u8 {
+        match self.code >> 8 & 7 {
+            s if s == ValueSource::Data as Code || s == ValueSource::DataAtX as Code => self.read,
+            s if s == ValueSource::Received as Code => self.received,
+            s if s == ValueSource::X as Code => self.x,
+            s if s == ValueSource::Crc as Code => self.crc.word() as u8,
+            _ => match self.code as u8 & 3 {
+                ROOM => self.room,
+                CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
+                HOMING => engine.homing,
+                _ => {
+                    let cause = engine.fault.map_or(0, |(cause, _)| cause as u8);
+                    let bits = [
+                        engine.fault.is_some(),
+                        engine.halted,
+                        engine.idle,
+                        engine.ready,
+                        engine.armed,
+                    ];
+                    bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
+                }
+            },
+        }
+    }
+
+    /// True if this clock depends on the engine's outputs or changes an input of the engine.
+    pub(super) fn minds_the_engine(&self) -> bool {
+        const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
+        let acts = self.does(0) && self.code & TELLS != 0;
+        let waits = self.does(WAIT) && !self.does(GOES);
+        let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
+        let asks = self.executes(JUMPS)
+            && [Condition::Fault, Condition::Startable]
+                .iter()
+                .any(|&asked| self.code >> 8 & 7 == asked as Code);
+        acts || waits || reads || asks
+    }
+
+    pub(super) fn waits(&self) -> Waits {
+        let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
+        if self.code == polls && self.read_from == self.written {
+            Waits::ForByte
+        } else if self.does(WAIT | GOES) {
+            Waits::ToSend
+        } else {
+            Waits::No
+        }
+    }
+
+    /// Skips this many clocks in which the processor waits.
+    pub(super) fn pass(&mut self, clocks: u64) {
+        if self.waits() == Waits::ForByte {
+            self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The benches of the engine's Verilog, alone and on a board, made from the tables of their ports.
+
+use crate::LevelError;
+use carrystep_core::engine::{ENGINE_PORTS, recorded_ports};
+use carrystep_core::link::BYTE_PORTS;
+use carrystep_core::ports::{Direction, Peer, Port, Width};
+use minijinja::syntax::SyntaxConfig;
+use minijinja::{Environment, UndefinedBehavior, Value, context};
+
+const ICARUS: &str = include_str!("../bench/engine_bench.v");
+const VERILATOR: &str = include_str!("../bench/engine_bench.cpp");
+const BOARD: &str = include_str!("../bench/board_bench.v");
+
+/// The bench that replays a recording in Icarus.
+pub(crate) fn icarus() -> Result<String, LevelError> {
+    rendered(ICARUS)
+}
+
+/// The bench that replays a recording in Verilator.
+pub(crate) fn verilator() -> Result<String, LevelError> {
+    rendered(VERILATOR)
+}
+
+/// Line, link and engine of a board as one module.
+pub(crate) fn board() -> Result<String, LevelError> {
+    rendered(BOARD)
+}
+
+fn rendered(template: &str) -> Result<String, LevelError> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_syntax(
+        SyntaxConfig::builder()
+            .trim_blocks(true)
+            .keep_trailing_newline(true)
+            .build()
+            .unwrap_or_default(),
+    );
+    let rows = |direction| recorded_ports(direction).map(row).collect::<Vec<_>>();
+    let values = context! {
+        ports => ENGINE_PORTS.iter().map(row).collect::<Vec<_>>(),
+        bytes => BYTE_PORTS.iter().map(row).collect::<Vec<_>>(),
+        inputs => rows(Direction::Input),
+        outputs => rows(Direction::Output),
+    };
+    environment
+        .render_str(template, values)
+        .map_err(|error| LevelError::Gateware(format!("a bench of the engine: {error}")))
+}
+
+/// The values of a port in the templates.
+fn row(port: &Port) -> Value {
+    let (width, range) = match port.width {
+        Width::Axes => ("AXES".to_owned(), "[AXES-1:0] ".to_owned()),
+        Width::Bits(1) => ("1".to_owned(), String::new()),
+        Width::Bits(bits) => (bits.to_string(), format!("[{}:0] ", bits - 1)),
+    };
+    // Before the contents are read, the host takes back what it offers; the drivers keep their power.
+    let flag = port.peer != Peer::Pins && port.width == Width::Bits(1);
+    context! {
+        name => port.name,
+        input => port.direction == Direction::Input,
+        width,
+        range,
+        valid_with => port.valid_with,
+        shown => port.peer != Peer::Host || port.direction == Direction::Output,
+        released => flag && port.name != "enable",
+    }
+}

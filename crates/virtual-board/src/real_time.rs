@@ -1,0 +1,73 @@
+//! Connects a board to a pseudo-terminal that a host opens, and runs it at a pace.
+
+use crate::gateware::SimulatedBoard;
+use crate::pace::Pace;
+use crate::terminal::Terminal;
+use carrystep_model::fast::Edges;
+use carrystep_simulators::LevelError;
+use std::io;
+use std::time::Duration;
+use thiserror::Error;
+
+/// Number of exchanges with the host per second of the board's time.
+const EXCHANGES_PER_SECOND: u64 = 10_000;
+
+/// Number of waiting bytes from which on no more are read from the host.
+const FULL: usize = 256;
+
+/// Time to sleep before the next look at the time and at the host.
+const NAP: Duration = Duration::from_micros(300);
+
+/// Why a board cannot continue.
+#[derive(Debug, Error)]
+pub enum RealTimeError {
+    /// The simulation has failed.
+    #[error(transparent)]
+    Level(#[from] LevelError),
+    /// The pseudo-terminal has failed.
+    #[error("the pseudo-terminal is gone: {0}")]
+    Terminal(#[from] io::Error),
+}
+
+/// A board with its terminal and its pace.
+#[derive(Debug)]
+pub struct RealTimeBoard<B> {
+    /// The board.
+    pub board: B,
+    terminal: Terminal,
+    pace: Pace,
+    clock_hz: u64,
+}
+
+impl<B: SimulatedBoard> RealTimeBoard<B> {
+    /// Connects a board with this clock, Hz, to a terminal.
+    pub fn new(board: B, terminal: Terminal, pace: Pace, clock_hz: u64) -> Self {
+        Self { board, terminal, pace, clock_hz }
+    }
+
+    /// Runs the board for at most a ten-thousandth of a second. If the board is ahead of its pace,
+    /// sleeps for a short time.
+    ///
+    /// # Errors
+    /// [`RealTimeError`] if the simulation or the terminal has failed.
+    pub fn step(&mut self, to: &mut impl Edges) -> Result<(), RealTimeError> {
+        if self.board.unsaid() < FULL {
+            let bytes = self.terminal.take();
+            if !bytes.is_empty() {
+                self.pace.hear(self.board.cycle());
+            }
+            bytes.into_iter().for_each(|byte| self.board.say(byte));
+        }
+        let target = self.pace.target(self.board.cycle(), self.board.alone());
+        self.board
+            .run(target.min(self.board.cycle() + self.clock_hz / EXCHANGES_PER_SECOND), to)?;
+        let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
+        if !heard.is_empty() {
+            self.terminal.give(&heard)?;
+        }
+        if self.board.cycle() >= target {
+            std::thread::sleep(NAP);
+        }
+        Ok(())
+    }
+}

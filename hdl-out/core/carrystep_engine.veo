@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// An instance of carrystep_engine to be copied into a design. The values of the parameters are the
+// defaults, and may be left out. Ports without a comment on their width have one bit; the comments
+// in carrystep_engine.v describe the ports. An output that is not used stays empty; each input
+// needs a value. This file is generated: change the generator instead.
+carrystep_engine #(
+    .CLOCKS_PER_TICK(32'd80),
+    .START_HALF(32'd1),
+    .STEP_HIGH_0(32'd8),
+    .STEP_HIGH_1(32'd80),
+    .STEP_HIGH_2(32'd152),
+    .STEP_HIGH_3(32'd200),
+    .STEP_HIGH_4(32'd8),
+    .STEP_HIGH_5(32'd240),
+    .STEP_LOW_0(32'd8),
+    .STEP_LOW_1(32'd80),
+    .STEP_LOW_2(32'd152),
+    .STEP_LOW_3(32'd200),
+    .STEP_LOW_4(32'd8),
+    .STEP_LOW_5(32'd240),
+    .DIR_SETUP_0(32'd2),
+    .DIR_SETUP_1(32'd16),
+    .DIR_SETUP_2(32'd52),
+    .DIR_SETUP_3(32'd400),
+    .DIR_SETUP_4(32'd2),
+    .DIR_SETUP_5(32'd120),
+    .DIR_HOLD_0(32'd2),
+    .DIR_HOLD_1(32'd16),
+    .DIR_HOLD_2(32'd52),
+    .DIR_HOLD_3(32'd400),
+    .DIR_HOLD_4(32'd2),
+    .DIR_HOLD_5(32'd120),
+    .STOP_ACCEL_0(64'hd6bf94d5e57),
+    .STOP_ACCEL_1(64'habcc7711846),
+    .STOP_ACCEL_2(64'ha10fafa06c1),
+    .STOP_ACCEL_3(64'h5f71977b826),
+    .STOP_ACCEL_4(64'hee9bfab4c61),
+    .STOP_ACCEL_5(64'h2843ebe81b0),
+    .ROUND_TICKS(32'd32),
+    .WATCHDOG_ROUNDS(32'd3126),
+    .ENABLE_ROUNDS(32'd33),
+    .DEBOUNCE_SAMPLES(32'd17),
+    .LIMITS(32'd1),
+    .LIMITS_LOW(32'd0),
+    .LIMIT_FREEZES(32'd0),
+    .ESTOP_LOW(32'd0),
+    .EVENT_MEMORY("block")
+) engine (
+    .clock(),       // input
+    .put_valid(),   // input
+    .put_axis(),    // input [2:0]
+    .put_word(),    // input [2:0]
+    .put_data(),    // input [31:0]
+    .put_ready(),   // output
+    .start_valid(), // input
+    .start_mask(),  // input [5:0]
+    .start_ready(), // output
+    .clear(),       // input
+    .reset(),       // input
+    .stop(),        // input
+    .broken(),      // input
+    .home_valid(),  // input
+    .home_mask(),   // input [5:0]
+    .kick(),        // input
+    .enable(),      // input
+    .estop(),       // input
+    .limit_min(),   // input [5:0]
+    .limit_max(),   // input [5:0]
+    .get_axis(),    // input [2:0]
+    .get_item(),    // input [1:0]
+    .get_data(),    // output [31:0]
+    .get_valid(),   // output
+    .latch(),       // output
+    .latch_axis(),  // output [2:0]
+    .room(),        // output [2:0]
+    .room_valid(),  // output
+    .step(),        // output [5:0]
+    .dir(),         // output [5:0]
+    .enabled(),     // output
+    .idle(),        // output
+    .fault(),       // output
+    .halted(),      // output
+    .resetting(),   // output
+    .cause(),       // output [2:0]
+    .culprits(),    // output [5:0]
+    .armed(),       // output
+    .ready(),       // output
+    .homing(),      // output [5:0]
+    .started()      // output
+);

@@ -1,0 +1,5 @@
+carrystep_tinyfpga_bx_top.v
+carrystep_clock.v
+../core/carrystep_uart.v
+../core/carrystep_link.v
+../core/carrystep_engine.v
