@@ -402,7 +402,7 @@ module carrystep_queue (
     output wire   [2:0] live,
     // The slot that the host writes.
     output wire   [2:0] fresh,
-    // Fault: the accepted word is not the one that is due.
+    // Fault: the word accepted in the clock before was not the one that was due.
     output wire         misplaced,
     // No slot is free for the host.
     output wire         full,
@@ -453,7 +453,7 @@ module carrystep_queue (
     localparam [4:0] AT_16 = 5'd16;
 
     reg took = 1'b0;
-    reg committed = 1'b0;
+    reg wrong = 1'b0;
     reg forward = 1'b0;
     reg backward = 1'b0;
     reg gone = 1'b0;
@@ -490,11 +490,10 @@ module carrystep_queue (
     wire [2:0] unseen = losses ^ word[13:11];
     wire [2:0] due = word[18:16];
     wire fits_in = put_word == due;
-    wire commits = take & fits_in & (due == COMMIT);
 
     assign live = live_now;
     assign fresh = fresh_now;
-    assign misplaced = take & !fits_in;
+    assign misplaced = wrong;
     assign full = fresh_now == live_now;
     assign room = live_now + ~newest;
     assign empty = none;
@@ -534,7 +533,7 @@ module carrystep_queue (
 
     always @(*) begin
         lasts_write_bits = UNSET;
-        if (commits) begin
+        if (take) begin
             lasts_write_bits = SET;
         end
     end
@@ -548,7 +547,7 @@ module carrystep_queue (
             next_live = newest;
         end
         next_newest = newest;
-        if (committed) begin
+        if (took & (due == COMMIT)) begin
             next_newest = fresh_now;
         end
         next_due = due;
@@ -637,15 +636,12 @@ module carrystep_queue (
             backward <= missing[2];
             gone <= (unseen != 3'd0) & !runs;
         end
+        wrong <= take & !fits_in;
         if (beat[0]) begin
             took <= 1'b0;
-            committed <= 1'b0;
         end
-        if (take) begin
+        if (take & fits_in) begin
             took <= 1'b1;
-        end
-        if (commits) begin
-            committed <= 1'b1;
         end
     end
 endmodule
@@ -1612,7 +1608,7 @@ module carrystep_stops #(
         if (!called) begin
             if (urgent | (by_host & !ripe)) begin
                 axes <= late;
-            end else if (finds_now & !found) begin
+            end else if (!found) begin
                 axes <= axis_one_hot;
             end
         end
@@ -1681,7 +1677,7 @@ module carrystep_resets (
     output wire         resetting,
     // Asserted in the last clock of a reset.
     output wire         completes,
-    // The counter of ticks in a round restarts.
+    // At a strobe: the counter of ticks in a round restarts.
     output wire         restarts_round
 );
 
@@ -1696,7 +1692,7 @@ module carrystep_resets (
     assign stage_2 = second;
     assign resetting = first | second;
     assign completes = over;
-    assign restarts_round = asked & !first & (!second | strobe);
+    assign restarts_round = asked & strobe & !first;
 
     always @(posedge clock) begin
         if (over) begin

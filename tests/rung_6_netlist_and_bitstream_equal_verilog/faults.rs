@@ -162,15 +162,12 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     });
     let is_equal = |text: &str| {
         let text = ice40::simulated(text).expect("models of its memories");
-        let difference =
-            |recording| replay::difference(Level::Verilator, &text, recording).expect("the tools");
-        recordings.iter().all(|recording| difference(recording).is_none())
+        let mut found =
+            recordings.iter().map(|one| replay::difference(Level::Verilator, &text, one));
+        found.all(|difference| difference.expect("the tools").is_none())
     };
-    assert!(
-        recordings
-            .iter()
-            .all(|recording| recording.outputs.last().is_some_and(|(_, last)| last.halted))
-    );
+    let halts = |one: &Recording| one.outputs.last().is_some_and(|(_, last)| last.halted);
+    assert!(recordings.iter().all(halts), "the ramps end within the recordings");
     assert!(is_equal(&stages.read_back));
     assert!(!is_equal(&read_back), "the bench does not see {tile} row {row} column {column}");
 }

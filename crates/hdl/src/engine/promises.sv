@@ -155,7 +155,7 @@ module promises (
         assumed_by_queue_clear: assert (!clearing || halted);
         assumed_by_queue_starts: assert (!(mine && starts) || !halted);
         assumed_by_stops_completes: assert (!completes || strobe && ending && stage_2);
-        assumed_by_watch: assert ((ending || !resetting && !restarts_round) && (strobe || !restarts_round));
+        assumed_by_supervisor: assert ((ending || !resetting && !restarts_round) && (strobe || !restarts_round));
         assumed_by_limits: assert ((!tick_0 || !tick_1)
             && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
         assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);

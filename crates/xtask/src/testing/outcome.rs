@@ -7,7 +7,7 @@ pub struct Counts {
     pub passed: usize,
     /// Tests that failed, and those that did not come to an end.
     pub failed: usize,
-    /// Tests that are marked `#[ignore]`.
+    /// Tests that libtest counts as ignored. The runner prints their number.
     pub ignored: usize,
 }
 

@@ -3,7 +3,7 @@
 //
 //   parameters   AXES: number of axes
 //                CLOCKS, PHASES: clocks and phases in a tick
-//                `DUT: the name of the exported module `wheel`
+//                `DUT: the name of the exported module `event_wheel`
 //                The exported module carrystep_time_slot generates the time slots.
 //   assumptions  The phase `q` does not change from the beat after `phase_known` to the end of the
 //                next time slot, and the direction `back` does not change from the end of one time
@@ -89,7 +89,7 @@ module promises (
     end
 
     // ---- The invariants that make the promises inductive. `look` is an additional read port for
-    // the word in memory. The tick counter inside the wheel runs one clock ahead.
+    // the word in memory. The tick counter inside the event wheel runs one clock ahead.
 
     wire [6:0] place = {at_tick, sign, at_phase};
     wire [15:0] word;

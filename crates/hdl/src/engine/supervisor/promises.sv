@@ -4,7 +4,7 @@
 //   parameters   ESTOP_LOW: 1 if the e-stop is active when its pin is low
 //                ROUND: length of a round in ticks
 //                WATCHDOG, WARM: timeout of the watchdog and enable time of the drivers in rounds
-//                `DUT: the name of the exported module `watch`, built with these values
+//                `DUT: the name of the exported module `supervisor`, built with these values
 //   assumptions  A tick is shorter than 2^24 - 1 clocks. `resetting` and `restarts_round` occur only
 //                with `ending`, `restarts_round` only at a strobe (proved in
 //                resets/promises.sv).
