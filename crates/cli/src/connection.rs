@@ -6,7 +6,7 @@ use crate::control::{self, Control, Holder, SocketRequest};
 use crate::failure::Failure;
 use crate::found::{Known, names};
 use crate::interrupt;
-use carrystep_core::engine::CAUSES;
+use carrystep_core::engine::Cause;
 use carrystep_core::link::{BuildId, LineKind, Uart};
 use carrystep_files::{Axis, Machine, decimal};
 use carrystep_link::host::SystemClock;
@@ -199,11 +199,8 @@ pub fn broken(error: &ConnectedBoardError, axes: &[String]) -> Failure {
         }
         HostError::NotIdle => Failure::Run(format!("{error}: `carrystep stop --clear` does that")),
         HostError::Fault { cause, culprits } => {
-            let remedy = CAUSES
-                .get(usize::from(cause))
-                .map_or("`carrystep stop --clear`", |cause| cause.remedy());
-            let name =
-                CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
+            let (name, remedy) = Cause::from_number(cause)
+                .map_or(("?", "`carrystep stop --clear`"), |cause| (cause.name(), cause.remedy()));
             let from = if culprits == 0 {
                 String::new()
             } else {

@@ -2,7 +2,7 @@
 //! from the board itself or from the command that drives the board.
 
 use crate::holder::Holder;
-use carrystep_core::engine::{CAUSES, Cause};
+use carrystep_core::engine::Cause;
 use carrystep_link::{Answer, BuildFacts, Status};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -86,12 +86,7 @@ pub struct AxisFound {
 
 /// The cause of a stop, decoded from an answer; `None` if no stop was called.
 pub fn cause(answer: &Answer) -> Option<Cause> {
-    by_number(answer.cause).filter(|_| answer.fault)
-}
-
-/// The cause with this number; `None` if there is none.
-pub fn by_number(cause: u8) -> Option<Cause> {
-    CAUSES.get(usize::from(cause)).copied()
+    Cause::from_number(answer.cause).filter(|_| answer.fault)
 }
 
 /// The names of the axes in a mask of one bit per axis, separated by commas.

@@ -179,16 +179,12 @@ impl BoardMemory {
 
 /// True if a cause stops the axes at once on this machine, so that their motors may lose steps.
 pub fn freezes(cause: u8, guard: &Guard) -> bool {
-    match found::by_number(cause) {
-        Some(Cause::Limit) => guard.limit_freezes,
-        Some(Cause::Watchdog | Cause::Underrun | Cause::Stop) => false,
-        Some(Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed) | None => true,
-    }
+    Cause::from_number(cause).is_none_or(|cause| cause.freezes(guard.limit_freezes))
 }
 
 /// True if a cause stops the axes at once on every machine, whatever its setting for limits.
 pub const fn always_freezes(cause: Cause) -> bool {
-    matches!(cause, Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed)
+    cause.freezes(false)
 }
 
 /// The folder of the files.

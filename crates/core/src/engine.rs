@@ -20,7 +20,7 @@ mod figures;
 mod ports;
 
 pub use build::{EngineBuild, Guard, LimitWiring};
-pub use cause::{CAUSES, Cause};
+pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 pub use ports::{ENGINE_PORTS, recorded_ports};

@@ -29,7 +29,6 @@ pub use ports::{BYTE_PORTS, LinkInputs, LinkOutputs, line_pins, line_ports, link
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
-use crate::engine::{CAUSES, Cause};
 
 /// A number that both sides of the link use; it is generated into the clients' languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,12 +90,14 @@ pub struct Field {
     pub bit: u8,
     /// Number of bits.
     pub bits: u8,
+    /// Byte and bit of one more bit, above the others, if the field has one at another place.
+    pub top: Option<(usize, u8)>,
     /// Meaning of the field.
     pub what: &'static str,
 }
 
 const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'static str) -> Field {
-    Field { name, byte, bit, bits, what }
+    Field { name, byte, bit, bits, top: None, what }
 }
 
 /// The fields of an answer, byte by byte. The data (low byte first) and the CRC follow them.
@@ -121,7 +122,10 @@ pub const ANSWER: [Field; 13] = [
     field("idle", 3, 2, 1, "no axis moves, no queue holds a segment, and no start is armed"),
     field("ready", 3, 3, 1, "the drivers have had power for the enable time, as a start requires"),
     field("armed", 3, 4, 1, "a start is armed; another start is refused as busy"),
-    field("cause", 3, 5, 3, "the cause of the stop, if `fault` is set"),
+    Field {
+        top: Some((4, 4)),
+        ..field("cause", 3, 5, 3, "the cause of the stop, if `fault` is set; otherwise 0")
+    },
     field("free", 4, 0, 3, "number of segments for which the queue of the addressed axis has room"),
     field("refused", 4, 3, 1, "this write was not executed: out of sequence, or busy"),
     field(
@@ -133,15 +137,3 @@ pub const ANSWER: [Field; 13] = [
     ),
     field("homing", 6, 0, 8, "the axes that still wait for their limit, one bit each"),
 ];
-
-/// The names of the causes, in documentation and messages, by number.
-///
-/// ```
-/// use carrystep_core::engine::Cause;
-/// use carrystep_core::link::CAUSE_NAMES;
-/// assert_eq!(CAUSE_NAMES[Cause::Limit as usize], "limit");
-/// ```
-pub const CAUSE_NAMES: [&str; CAUSES.len()] =
-    ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
-
-const _: () = assert!(Cause::EStop as usize == 0 && Cause::Stop as usize == CAUSES.len() - 1);

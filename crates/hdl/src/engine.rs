@@ -41,7 +41,7 @@ use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::least_clocks;
+use carrystep_core::engine::{CAUSE_BITS, least_clocks};
 use rust_hdl::prelude::*;
 
 pub mod adder;
@@ -159,10 +159,10 @@ pub struct Engine<const N: usize> {
     pub halted: Signal<Out, Bit>,
     /// The engine is returning to its state at configuration, after `reset`.
     pub resetting: Signal<Out, Bit>,
-    /// The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog,
+    /// The first cause of the stop: 0 e-stop, 1 overrun, 2 protocol, 3 watchdog,
     /// 4 overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
     /// asserted.
-    pub cause: Signal<Out, Word<3>>,
+    pub cause: Signal<Out, Word<CAUSE_BITS>>,
     /// The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
     /// asserted.
     pub culprits: Signal<Out, Word<N>>,

@@ -27,6 +27,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
+use carrystep_core::engine::CAUSE_BITS;
 use carrystep_core::link::registers::{self, BUILD_HIGH, BUILD_LOW, WATCHDOG_TICKS};
 use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
@@ -114,7 +115,7 @@ pub struct Link<const N: usize> {
     /// A start is armed.
     pub armed: Input<Bit>,
     /// The first cause of the stop, numbered as at the port `cause` of the engine.
-    pub cause: Input<Word<3>>,
+    pub cause: Input<Word<CAUSE_BITS>>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.

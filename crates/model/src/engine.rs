@@ -26,7 +26,7 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
     COMMIT, Cause, EngineInputs, EngineOutputs, LimitWiring, PUT_BEAT, Put, TIME_SLOT_CLOCKS,
 };
-use guard::{Stop, Supervisor, freezes};
+use guard::{Stop, Supervisor};
 use reset::Reset;
 use std::sync::Arc;
 
@@ -389,7 +389,7 @@ impl Engine {
         }
         self.axis_models = axis_models;
         self.time_slots = true;
-        let freezes = found.iter().any(|(cause, _)| freezes(*cause, guard));
+        let freezes = found.iter().any(|(cause, _)| cause.freezes(guard.limit_freezes));
         // The engine is halted: after a freeze, from the first strobe before which `frozen` was
         // set; for a freezing cause found in a tick, from the strobe that ends this tick; in a
         // ramp, from the first strobe at which the ramp was in force and no axis ran in the tick.

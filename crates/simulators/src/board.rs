@@ -5,7 +5,7 @@ use crate::tool::{self, VERILATOR};
 use crate::verilator::Simulation;
 use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{CAUSES, Cause};
+use carrystep_core::engine::Cause;
 use carrystep_core::link::LineKind;
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
@@ -148,7 +148,7 @@ fn parsed(line: &str) -> Option<Heard> {
     let kind = words.next()?;
     let cycle = words.next()?.parse().ok()?;
     let mut hex = || u8::from_str_radix(words.next()?, 16).ok();
-    let cause = |number: u8| CAUSES.get(usize::from(number)).copied();
+    let cause = Cause::from_number;
     Some(Heard::Did(match kind {
         "t" => Did::Tx(cycle, hex()? == 1),
         "p" => Did::Pins(cycle, [hex()?, hex()?]),

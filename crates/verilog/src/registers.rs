@@ -3,7 +3,8 @@
 
 use crate::ExportError;
 use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
-use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Field, LinkConstant, WRITE};
+use carrystep_core::engine::{CAUSES, Cause};
+use carrystep_core::link::{self, ANSWER, ANSWER_DATA, Field, LinkConstant, WRITE};
 use minijinja::{Environment, Value, context};
 
 /// The generated files: path in the workspace, and template.
@@ -29,7 +30,7 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
             what => row.what,
         }).collect::<Vec<_>>(),
         fields => ANSWER.iter().map(field).collect::<Vec<_>>(),
-        causes => CAUSE_NAMES,
+        causes => CAUSES.map(Cause::name),
         data => ANSWER_DATA,
         write => format!("`{WRITE:#04x}`"),
         per_axis => PER_AXIS,
@@ -52,7 +53,7 @@ fn constant(row: &LinkConstant) -> Value {
 }
 
 fn field(row: &Field) -> Value {
-    let Field { name, byte, bit, bits, what } = *row;
+    let Field { name, byte, bit, bits, top, what } = *row;
     let mask = (1_u32 << bits) - 1;
     let rust = match (bit, bits) {
         (_, 8) => format!("answer[{byte}]"),
@@ -62,11 +63,20 @@ fn field(row: &Field) -> Value {
         _ if bit + bits == 8 => format!("answer[{byte}] >> {bit}"),
         _ => format!("answer[{byte}] >> {bit} & {mask}"),
     };
-    let c = format!("((uint8_t)((answer)[{byte}] >> {bit} & {mask}u))");
+    let c = format!("(answer)[{byte}] >> {bit} & {mask}u");
+    let (rust, c) = match top {
+        None => (rust, c),
+        Some((byte, bit)) => (
+            format!("{rust} | (answer[{byte}] >> {bit} & 1) << {bits}"),
+            format!("({c}) | ((answer)[{byte}] >> {bit} & 1u) << {bits}"),
+        ),
+    };
+    let c = format!("((uint8_t)({c}))");
     let range = match bits {
         8 => String::new(),
         1 => bit.to_string(),
         _ => format!("{}..{bit}", bit + bits - 1),
     };
-    context! { name, byte, bits, what, rust, c, range }
+    let top = top.map(|(byte, bit)| context! { byte, bit, number => bits });
+    context! { name, byte, bits, what, rust, c, range, top }
 }

@@ -75,8 +75,9 @@ impl Said {
             panic!("{frame:02x?} is not as long as an answer")
         };
         let bit = |bit: u8| state >> bit & 1 == 1;
-        let cause = CAUSES[usize::from(state >> 5)];
-        assert!(bit(0) || state >> 5 == 0, "a cause without a fault");
+        let number = state >> 5 | (room & 0x10) >> 1;
+        let cause = CAUSES[usize::from(number)];
+        assert!(bit(0) || number == 0, "a cause without a fault");
         Self {
             sequence,
             address,

@@ -4,7 +4,7 @@
 use super::Case;
 use crate::{lockstep, moves};
 use carrystep_core::build::MAX_CLOCKS;
-use carrystep_core::engine::{EngineBuild, Guard, LimitWiring};
+use carrystep_core::engine::{CAUSES, Cause, EngineBuild, Guard, LimitWiring};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
@@ -89,6 +89,15 @@ pub fn small_engine(
 /// The parameter with the number of axes for `promises.sv`.
 pub fn axes(build: &EngineBuild) -> (&'static str, String) {
     ("AXES", build.axes().to_string())
+}
+
+/// The causes of a stop and their numbers for `promises.sv`, as a list that follows `localparam`.
+pub fn causes() -> (&'static str, String) {
+    let number = |cause: Cause| {
+        let name = cause.name().replace('-', "_").to_uppercase();
+        format!("{name}={}", cause as u8)
+    };
+    ("CAUSES", CAUSES.map(number).join(","))
 }
 
 /// The parameters with clocks and phases of a tick for `promises.sv`.

@@ -1,6 +1,6 @@
 //! The proof of the whole exported engine.
 
-use super::builds::{BuiltEngine, axes, beat, beat_name, small_engine};
+use super::builds::{BuiltEngine, axes, beat, beat_name, causes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, LimitWiring};
 
@@ -97,7 +97,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         dut: "carrystep_engine".into(),
         parameters: Vec::new(),
         verilog,
-        numbers: [vec![axes(&build)], beat(&build.timebase)].concat(),
+        numbers: [vec![axes(&build), causes()], beat(&build.timebase)].concat(),
     };
     Proof {
         module: "engine",

@@ -1,6 +1,6 @@
 //! The proof of the stops: which cause stops the axes, and how.
 
-use super::builds::{BuiltEngine, axes, small_engine};
+use super::builds::{BuiltEngine, axes, causes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, LimitWiring};
 
@@ -70,6 +70,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         verilog,
         numbers: vec![
             axes(&build),
+            causes(),
             ("LIMIT_FREEZES", u8::from(build.guard.limit_freezes).to_string()),
         ],
     };

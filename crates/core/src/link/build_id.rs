@@ -46,7 +46,9 @@ fn protocol() -> String {
         });
     let answer = ANSWER
         .iter()
-        .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));
+        .map(|Field { name, byte, bit, bits, top, .. }| {
+            format!("{name} {byte} {bit} {bits} {top:?}\n")
+        });
     let version = format!("protocol {PROTOCOL_VERSION}, {} words\n", registers::PER_AXIS);
     [version].into_iter().chain(registers).chain(answer).collect()
 }

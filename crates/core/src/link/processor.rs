@@ -56,9 +56,10 @@ pub enum ValueSource {
     Engine = 5,
 }
 
-/// Item of [`ValueSource::Engine`]: byte 3 of an answer.
+/// Item of [`ValueSource::Engine`]: byte 3 of an answer, with the lower three bits of the cause.
 pub const STATE: u8 = 0;
-/// Item: the free queue space that the axis of A reported in its last time slot.
+/// Item: the free queue space that the axis of A reported in its last time slot, and in bit 4 the
+/// highest bit of the cause.
 pub const ROOM: u8 = 1;
 /// Item: the mask of the axes that caused a stop; 0 without a fault.
 pub const CULPRITS: u8 = 2;

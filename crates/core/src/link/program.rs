@@ -219,6 +219,8 @@ fn execute(a: &mut Assembler) {
     // be another axis'. An axis that does not exist never reports.
     a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
+    // If a fault has come since, this item can have the highest bit of its cause. The segment is
+    // dropped then, whatever follows.
     a.load_from(ValueSource::Engine, ROOM);
     a.jump_if(Zero, "broken");
     // A segment of 0 ticks has all ones as its first word, which is ticks minus one.

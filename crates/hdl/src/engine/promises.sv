@@ -31,12 +31,14 @@ module promises (
     input wire [1:0] get_item
 );
     localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * `AXES;
+    localparam [3:0] `CAUSES;
     (* anyconst *) reg [2:0] who;
 
     wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
     wire [31:0] get_data;
     wire [`AXES-1:0] step, dir, culprits, homing;
-    wire [2:0] latch_axis, room, cause;
+    wire [2:0] latch_axis, room;
+    wire [3:0] cause;
     `DUT dut (.*);
 
     always_comb begin
@@ -240,6 +242,6 @@ module promises (
         cover_6_started: cover (started);
         cover_14_enabled: cover (enabled && idle);
         cover_13_reset: cover (stage_2 && completes);
-        cover_12_protocol: cover (fault && was_fault && cause == 2);
+        cover_12_protocol: cover (fault && was_fault && cause == PROTOCOL);
     end
 endmodule

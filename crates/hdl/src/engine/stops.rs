@@ -17,13 +17,13 @@
 //! (`late`), from [`super::supervisor`] and from the host. Causes of a time slot take effect at the
 //! strobe.
 //!
-//! Cost: about a dozen flip-flops, two registers of 3 bits for causes, and one flip-flop per axis.
+//! Cost: about a dozen flip-flops, two registers of 4 bits for causes, and one flip-flop per axis.
 
 use crate::parameters::LIMIT_FREEZES;
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use carrystep_core::engine::Guard;
+use carrystep_core::engine::{CAUSE_BITS, Cause, Guard};
 use rust_hdl::prelude::*;
 
 /// The state of the present stop.
@@ -81,7 +81,7 @@ pub struct Stops<const N: usize> {
     /// This tick clears the state of all axes.
     pub clearing: Signal<Out, Bit>,
     /// The first cause.
-    pub cause: Signal<Out, Word<3>>,
+    pub cause: Signal<Out, Word<CAUSE_BITS>>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Signal<Out, Word<N>>,
     called: Register<Bit>, // `fault`
@@ -90,10 +90,10 @@ pub struct Stops<const N: usize> {
     still: Register<Bit>,  // `halted`
     settled: Register<Bit>,
     wiping: Register<Bit>, // `clearing`
-    first: Register<Word<3>>,
+    first: Register<Word<CAUSE_BITS>>,
     axes: Register<Word<N>>,
     found: Register<Bit>,
-    kind: Register<Word<3>>, // the cause found by a time slot
+    kind: Register<Word<CAUSE_BITS>>, // the cause found by a time slot
     found_freezing: Register<Bit>,
     ran: Register<Bit>,
     finds_now: Signal<Local, Bit>,
@@ -102,14 +102,14 @@ pub struct Stops<const N: usize> {
     by_host: Signal<Local, Bit>,
     calls: Signal<Local, Bit>,
     limits_freeze: Parameter<1>,
-    e_stop: Literal<3, 0>,
-    overrun: Literal<3, 1>,
-    protocol: Literal<3, 2>,
-    watchdog: Literal<3, 3>,
-    overspeed: Literal<3, 4>,
-    limited: Literal<3, 5>,
-    underrun: Literal<3, 6>,
-    host: Literal<3, 7>,
+    e_stop: Literal<CAUSE_BITS, { Cause::EStop as u64 }>,
+    overrun: Literal<CAUSE_BITS, { Cause::Overrun as u64 }>,
+    protocol: Literal<CAUSE_BITS, { Cause::Protocol as u64 }>,
+    watchdog: Literal<CAUSE_BITS, { Cause::Watchdog as u64 }>,
+    overspeed: Literal<CAUSE_BITS, { Cause::Overspeed as u64 }>,
+    limited: Literal<CAUSE_BITS, { Cause::Limit as u64 }>,
+    underrun: Literal<CAUSE_BITS, { Cause::Underrun as u64 }>,
+    host: Literal<CAUSE_BITS, { Cause::Stop as u64 }>,
     limit_freezes_out_of_range: ParameterRefusal,
 }
 

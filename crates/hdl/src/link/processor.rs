@@ -21,6 +21,7 @@ use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::engine::CAUSE_BITS;
 use carrystep_core::link::Image;
 use rust_hdl::prelude::*;
 
@@ -81,7 +82,7 @@ pub struct LinkProcessor<const N: usize> {
     pub armed: Input<Bit>,
     /// The first cause of the stop. Without a fault its value and that of `culprits` have no
     /// meaning.
-    pub cause: Input<Word<3>>,
+    pub cause: Input<Word<CAUSE_BITS>>,
     /// The number of segments for which the queue of the axis in A has space.
     pub room: Input<Word<3>>,
     /// `room` is valid in this clock.
@@ -197,7 +198,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         self.state.next = self.none.val();
         if self.fault.val() {
             self.state.next =
-                (bit_cast::<8, 3>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
+                (bit_cast::<8, CAUSE_BITS>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
         }
         if self.halted.val() {
             self.state.next = self.state.val() | self.bit_1.val();
@@ -265,6 +266,9 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         self.port.next = self.state.val();
         if self.code.val().get_bit(0) {
             self.port.next = bit_cast::<8, 3>(self.space.q.val());
+            if self.fault.val() & self.cause.val().get_bit(3) {
+                self.port.next = bit_cast::<8, 3>(self.space.q.val()) | self.bit_4.val();
+            }
         }
         if self.code.val().get_bit(1) {
             self.port.next = self.none.val();

@@ -48,10 +48,10 @@ impl<const N: usize> AnyLink for Link<N> {
         self.get_data.next = Word::from(u64::from(inputs.get_data));
         self.get_valid.next = inputs.get_valid;
         let engine = &inputs.engine;
-        // Without a fault these two ports keep the values of the last stop. The simulation drives 7
-        // and 0xff, so that a use of them without a fault shows.
+        // Without a fault these two ports keep the values of the last stop. The simulation drives
+        // all ones, so that a use of them without a fault shows.
         let (cause, culprits) =
-            engine.fault.map_or((7, 0xff), |(cause, culprits)| (cause as u64, culprits));
+            engine.fault.map_or((0xf, 0xff), |(cause, culprits)| (cause as u64, culprits));
         self.put_ready.next = engine.put_ready;
         self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
         self.room_valid.next = engine.room.is_some();

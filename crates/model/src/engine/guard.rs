@@ -151,15 +151,6 @@ impl Stop {
     /// Calls a stop. The first cause is latched; every freezing cause freezes the axes.
     pub(super) fn call(&mut self, cause: Cause, culprits: u8, guard: &Guard) {
         self.fault = self.fault.or(Some((cause, culprits)));
-        self.frozen |= freezes(cause, guard);
-    }
-}
-
-/// True if the cause freezes the axes at once; false if they slow down in a ramp.
-pub(super) const fn freezes(cause: Cause, guard: &Guard) -> bool {
-    match cause {
-        Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed => true,
-        Cause::Limit => guard.limit_freezes,
-        Cause::Watchdog | Cause::Underrun | Cause::Stop => false,
+        self.frozen |= cause.freezes(guard.limit_freezes);
     }
 }

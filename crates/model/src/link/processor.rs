@@ -242,11 +242,10 @@ impl LinkProcessor {
             s if s == ValueSource::X as Code => self.x,
             s if s == ValueSource::Crc as Code => self.crc.word() as u8,
             _ => match self.code as u8 & 3 {
-                ROOM => self.room,
+                ROOM => self.room | (number(engine) >> 3) << 4,
                 CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
                 HOMING => engine.homing,
                 _ => {
-                    let cause = engine.fault.map_or(0, |(cause, _)| cause as u8);
                     let bits = [
                         engine.fault.is_some(),
                         engine.halted,
@@ -254,6 +253,7 @@ impl LinkProcessor {
                         engine.ready,
                         engine.armed,
                     ];
+                    let cause = number(engine) & 7;
                     bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
                 }
             },
@@ -290,4 +290,9 @@ impl LinkProcessor {
             self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;
         }
     }
+}
+
+/// The number of the stop's cause; 0 without a fault.
+fn number(engine: &EngineOutputs) -> u8 {
+    engine.fault.map_or(0, |(cause, _)| cause as u8)
 }

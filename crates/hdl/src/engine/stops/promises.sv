@@ -3,6 +3,7 @@
 //
 //   parameters   AXES: number of axes
 //                LIMIT_FREEZES: 1 if a limit freezes the axes, 0 if it ramps them down
+//                CAUSES: the numbers of the causes, as `NAME=number,...`
 //                `DUT: the name of the exported module `stops`
 //   assumptions  No time slot ends at a strobe, and no axis runs while `halted` is 1 (proved in
 //                engine/promises.sv).
@@ -29,11 +30,10 @@ module promises (
     input wire stage_2,
     input wire completes
 );
-    localparam [2:0] E_STOP = 0, OVERRUN = 1, PROTOCOL = 2, WATCHDOG = 3, OVERSPEED = 4, LIMITED = 5, UNDERRUN = 6,
-        HOST = 7;
+    localparam [3:0] `CAUSES;
 
     wire fault, finds, frozen, ramp, halted, settles, clearing;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [`AXES-1:0] culprits;
     `DUT dut (.*);
 
@@ -47,7 +47,7 @@ module promises (
     // of them counts.
 
     reg tick_found = 0, tick_freezes = 0, tick_ran = 0;
-    reg [2:0] tick_cause = 0;
+    reg [3:0] tick_cause = 0;
     reg [`AXES-1:0] tick_axis = 0;
     wire finds_now = time_slot_ends & (too_fast | limit | dry);
     always @(posedge clock) begin
@@ -56,7 +56,7 @@ module promises (
         if (time_slot_ends && (too_fast || limit && `LIMIT_FREEZES)) tick_freezes <= 1;
         if (finds_now && !tick_found) begin
             tick_found <= 1;
-            tick_cause <= too_fast ? OVERSPEED : limit ? LIMITED : UNDERRUN;
+            tick_cause <= too_fast ? OVERSPEED : limit ? LIMIT : UNDERRUN;
             tick_axis <= axis_one_hot;
         end
     end
@@ -69,8 +69,8 @@ module promises (
     wire watchdog = strobe & missed;
     wire called = overrun | e_stop | breaks | found | watchdog | asked | ending;
     wire freezes = overrun | e_stop | breaks | strobe & tick_freezes | ending;
-    wire [2:0] call = overrun ? OVERRUN : e_stop ? E_STOP : breaks ? PROTOCOL : found ? tick_cause
-        : watchdog ? WATCHDOG : HOST;
+    wire [3:0] call = overrun ? OVERRUN : e_stop ? E_STOP : breaks ? PROTOCOL : found ? tick_cause
+        : watchdog ? WATCHDOG : STOP;
     wire [`AXES-1:0] caller = overrun ? late : !e_stop & !breaks & found ? tick_axis : 0;
     // `clear` clears the stop in this tick.
     (* inside = "dut.wiping" *) wire wiping;
@@ -81,7 +81,7 @@ module promises (
     reg first_clock = 1, was_called = 0, was_freezes = 0, was_cleared = 0, was_strobe = 0;
     reg was_fault = 0, was_frozen = 0, was_ramp = 0, was_halted = 0, was_wiping = 0;
     reg was_watchdog = 0, was_asked = 0, was_ending = 0;
-    reg [2:0] was_call = 0, was_cause = 0;
+    reg [3:0] was_call = 0, was_cause = 0;
     reg [`AXES-1:0] was_caller = 0, was_culprits = 0;
     reg ran = 0, found_before = 0, found_freezing = 0, told = 0, quiet = 0;
     reg halted_at_strobe = 0;        // `halted` was 1 at the last strobe
@@ -136,7 +136,7 @@ module promises (
 
     // ---- The invariants that make the promises inductive.
 
-    (* inside = "dut.kind" *) wire [2:0] kind;
+    (* inside = "dut.kind" *) wire [3:0] kind;
     (* inside = "dut.settled" *) wire settled;
     (* inside = "dut.ran" *) wire dut_ran;
     (* inside = "dut.found_freezing" *) wire dut_found_freezing;
