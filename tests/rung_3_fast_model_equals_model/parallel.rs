@@ -5,7 +5,7 @@ use carrystep_core::{AXES, Build, PinTiming, StartPhase};
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, engine_vectors};
 use carrystep_tests::twins::Twins;
-use carrystep_tests::{dense, lockstep, moves, programs};
+use carrystep_tests::{dense, effort, lockstep, moves, programs};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
@@ -76,17 +76,25 @@ fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     edges.get()
 }
 
+/// A million edges at least, or five million in the run of repeats.
+fn many_edges(phases: u32, phase: StartPhase) {
+    let cases = if effort::repeats_in_full() { 400 } else { 80 };
+    let edges = dense_programs(&lockstep::quick_build(phases, phase), 20_000, cases);
+    assert!(edges >= u64::from(cases) * 12_500, "only {edges} edges");
+    if effort::repeats_in_full() {
+        effort::figures(&format!("{edges} edges of the fast model at {phases} phases"));
+    }
+}
+
 /// The pin timings never delay a step, so all edges of the accumulators appear on the pins.
 #[test]
-fn ten_million_edges_with_fast_pins() {
-    let edges = dense_programs(&lockstep::quick_build(16, StartPhase::Half), 20_000, 400);
-    assert!(edges >= 5_000_000, "only {edges} edges");
+fn many_edges_with_fast_pins() {
+    many_edges(16, StartPhase::Half);
 }
 
 #[test]
-fn ten_million_edges_from_zero_phase() {
-    let edges = dense_programs(&lockstep::quick_build(4, StartPhase::Zero), 20_000, 400);
-    assert!(edges >= 5_000_000, "only {edges} edges");
+fn many_edges_from_zero_phase() {
+    many_edges(4, StartPhase::Zero);
 }
 
 /// The pin timings delay steps and changes of DIR, and cause overruns.

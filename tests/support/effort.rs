@@ -5,8 +5,9 @@ use std::io::Write as _;
 
 /// The least number of clocks of a random run: `usual`, or more if `CARRYSTEP_CLOCKS` asks for it.
 ///
-/// # Panics If `CARRYSTEP_CLOCKS` is not a number, because a long run that falls back to the usual
-/// length would prove nothing.
+/// # Panics
+/// If `CARRYSTEP_CLOCKS` is not a number, because a long run that falls back to the usual length
+/// would prove nothing.
 pub fn clocks(usual: u64) -> u64 {
     asked().map_or(usual, |asked| asked.max(usual))
 }
@@ -14,6 +15,17 @@ pub fn clocks(usual: u64) -> u64 {
 /// True in a long run, which must cover everything and not only what is quick.
 pub fn is_long() -> bool {
     asked().is_some()
+}
+
+/// True if what a slow simulator repeats must be run in full and not only its beginning: another
+/// simulator compares the same program in every test run.
+pub fn repeats_in_full() -> bool {
+    std::env::var_os("CARRYSTEP_REPEATS").is_some()
+}
+
+/// All of this work in a run of repeats, a tenth of it otherwise.
+pub fn tenth(whole: u64) -> u64 {
+    if repeats_in_full() { whole } else { whole / 10 }
 }
 
 /// True if every board must be covered and not only one of each kind.

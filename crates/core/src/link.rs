@@ -29,7 +29,6 @@ pub use ports::{BYTE_PORTS, LinkInputs, LinkOutputs, line_pins, line_ports, link
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
-
 /// A number that both sides of the link use; it is generated into the clients' languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LinkConstant {

@@ -2,8 +2,8 @@
 //! a page of documentation.
 
 use crate::ExportError;
-use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
 use carrystep_core::engine::{CAUSES, Cause};
+use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
 use carrystep_core::link::{self, ANSWER, ANSWER_DATA, Field, LinkConstant, WRITE};
 use minijinja::{Environment, Value, context};
 

@@ -57,6 +57,32 @@ const RUNS: [Run; 11] = [
         ],
     },
     Run {
+        name: "repeats",
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, 300 random machines that home",
+        asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
+        cargo: &[
+            "-p",
+            "carrystep-tests",
+            "-p",
+            "carrystep-virtual-board",
+            "--test",
+            "rung_3_fast_model_equals_model",
+            "--test",
+            "rung_4_model_equals_rust_hdl",
+            "--test",
+            "rung_5_model_equals_verilog",
+            "--test",
+            "homing",
+            "--",
+            "many_edges",
+            "the_demo",
+            "every_profile",
+            "golden_vectors",
+            "parameters_of_others",
+            "random_machines",
+        ],
+    },
+    Run {
         name: "proofs",
         what: "the [promises](promises.md), their covers and planted bugs",
         asks: &[],
@@ -180,7 +206,11 @@ impl Run {
     fn make(&self) -> Result<(bool, String), String> {
         let is_test = self.cargo.contains(&"--test");
         let first: &[&str] = if is_test { &["test", "--release"] } else { &["run", "--release"] };
-        let last: &[&str] = if is_test { &["--", "--nocapture"] } else { &[] };
+        let last: &[&str] = match (is_test, self.cargo.contains(&"--")) {
+            (true, false) => &["--", "--nocapture"],
+            (true, true) => &["--nocapture"],
+            (false, _) => &[],
+        };
         let mut command = shell::command("cargo", &[first, self.cargo, last].concat());
         command.envs(self.asks.iter().copied()).env("CARRYSTEP_FRESH", "1").stderr(Stdio::piped());
         let mut running =

@@ -211,8 +211,7 @@ mod tests {
         for (row, cause) in rows.iter().zip(CAUSES) {
             let CauseFacts { name, stops_by, rank, has_culprits, .. } = cause.facts();
             let culprits = if has_culprits { "yes " } else { "" };
-            let wanted =
-                format!("| {} | {name} | {stops_by} | {rank} | {culprits}| ", cause as u8);
+            let wanted = format!("| {} | {name} | {stops_by} | {rank} | {culprits}| ", cause as u8);
             assert!(row.starts_with(&wanted), "{row}\nis not\n{wanted}");
         }
     }

@@ -50,7 +50,8 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("fault", BIT, Peer::Host, "a stop is in force"),
     output("halted", BIT, Peer::Host, "a stop is in force and no axis moves any more"),
     output("resetting", BIT, Peer::Nobody, "the engine is returning to that state"),
-    output("cause", Width::Bits(CAUSE_BITS as u32), Peer::Host, "the number of its cause").valid_with("fault"),
+    output("cause", Width::Bits(CAUSE_BITS as u32), Peer::Host, "the number of its cause")
+        .valid_with("fault"),
     output("culprits", Width::Axes, Peer::Host, "the axes that it came from").valid_with("fault"),
     output("armed", BIT, Peer::Host, "a start is armed"),
     output("ready", BIT, Peer::Host, "the drivers have had power for long enough"),

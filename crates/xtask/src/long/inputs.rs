@@ -39,9 +39,26 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 11] = [
+pub const INPUTS: [Inputs; 12] = [
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
+    (
+        "repeats",
+        &[
+            "crates/core/",
+            "crates/model/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/simulators/",
+            "crates/link/",
+            "crates/virtual-board/",
+            "hdl-out/core/",
+            "tests/golden/",
+            "tests/rung_3_fast_model_equals_model/",
+            "tests/rung_4_model_equals_rust_hdl/",
+            "tests/rung_5_model_equals_verilog/",
+        ],
+    ),
     (
         "proofs",
         &[
