@@ -50,8 +50,6 @@ pub const INPUTS: [Inputs; 12] = [
             "crates/hdl/",
             "crates/verilog/",
             "crates/simulators/",
-            "crates/link/",
-            "crates/virtual-board/",
             "hdl-out/core/",
             "tests/golden/",
             "tests/rung_3_fast_model_equals_model/",
