@@ -1,5 +1,5 @@
-//! Rung 3: the fast model is the clock-by-clock model: the same registers wherever it stops, the same
-//! edges (ten million of them and more), the same outputs in every clock.
+//! Rung 3: the fast model is the clock-by-clock model: the same registers wherever it stops, the
+//! same edges (ten million of them and more), the same outputs in every clock.
 
 mod engine;
 mod parallel;

@@ -103,7 +103,8 @@ fn random_programs_of_one_axis_in_the_shortest_tick() {
     in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 100_000);
 }
 
-/// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same programs.
+/// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same
+/// programs.
 #[test]
 fn random_programs_with_each_set_of_parameters() {
     parameter_sets().iter().for_each(|build| in_rust_hdl(build, 100_000));

@@ -1,6 +1,6 @@
-//! The Rust-HDL simulation of the parallel core equals its model in every output in every clock, on random
-//! programs, the demo and every profile. It reproduces the golden vectors to the last edge and
-//! phase.
+//! The Rust-HDL simulation of the parallel core equals its model in every output in every clock, on
+//! random programs, the demo and every profile. It reproduces the golden vectors to the last edge
+//! and phase.
 
 use carrystep_core::StartPhase;
 use carrystep_hdl::AxisSim;

@@ -1,4 +1,5 @@
-//! The exported engine in Icarus and in Verilator is the engine's model, every output in every clock.
+//! The exported engine in Icarus and in Verilator is the engine's model, every output in every
+//! clock.
 
 use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE};
 use carrystep_core::{
@@ -121,7 +122,8 @@ fn random_programs_of_one_and_of_eight_axes_in_icarus() {
     );
 }
 
-/// The Verilog of the one build, instantiated with the parameters of the other under the top's usual name.
+/// The Verilog of the one build, instantiated with the parameters of the other under the top's
+/// usual name.
 fn with_parameters(verilog: &str, of: &EngineBuild) -> String {
     const TOP: &str = "module carrystep_engine #(\n";
     let other = carrystep_verilog::engine_verilog(of, "a test").expect("a fine build");

@@ -153,7 +153,8 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
 
     // The queues run dry, so that every axis ramps down, once from forward and once from backward
     // motion. No clear follows, which would set P to its start value: P is compared at the end, and
-    // it depends on every bit of the stop acceleration. The longest ramp takes 6 ms, 480 000 clocks.
+    // it depends on every bit of the stop acceleration. The longest ramp takes 6 ms, 480 000
+    // clocks.
     let recordings = [1_i64 << 52, -1 << 52].map(|v| {
         let segment = Segment { ticks: 50, v, a: 0, j: 0, last: false };
         let mut program: Vec<_> = (0..6).map(|axis| Command::Segment { axis, segment }).collect();

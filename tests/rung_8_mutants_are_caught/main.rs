@@ -1,5 +1,5 @@
-//! Rung 8: every bug is caught: mutants of the exported engine, and bugs that are planted by hand in
-//! the gateware, in the model's arithmetic and in the plan.
+//! Rung 8: every bug is caught: mutants of the exported engine, and bugs that are planted by hand
+//! in the gateware, in the model's arithmetic and in the plan.
 
 mod mutants;
 mod planted_bugs;

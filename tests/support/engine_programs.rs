@@ -183,8 +183,8 @@ pub fn build(
     build
 }
 
-/// Four sets of parameters of the engine of six axes and 16 phases, which is one text of Verilog. Each differs from the
-/// first in every parameter but the second's e-stop and limits.
+/// Four sets of parameters of the engine of six axes and 16 phases, which is one text of Verilog.
+/// Each differs from the first in every parameter but the second's e-stop and limits.
 pub fn parameter_sets() -> [EngineBuild; 4] {
     let first = build(AXES, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
     let second = build(AXES, 96_000_000, 16, StartPhase::Zero, LimitWiring::Pair);

@@ -60,8 +60,8 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     }
 }
 
-/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s, `latch` and `room`), in each
-/// cycle in which one of them changed, and how it ended.
+/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s,
+/// `latch` and `room`), in each cycle in which one of them changed, and how it ended.
 fn engine_record(
     level: Level,
     build: &EngineBuild,
@@ -81,8 +81,8 @@ fn engine_record(
     (changes, outcome.unwrap_or_else(|error| panic!("{level}: {error}")))
 }
 
-/// Panics at the first clock in which a level of the engine differs from its model on planned moves. Verilog is compared
-/// with it in every output where it runs.
+/// Panics at the first clock in which a level of the engine differs from its model on planned
+/// moves. Verilog is compared with it in every output where it runs.
 pub fn assert_engine_equals_model(level: Level, (build, plan): &(EngineBuild, Plan)) {
     let (expected, ended) = engine_record(Level::Model, build, plan);
     let (found, found_ended) = engine_record(level, build, plan);

@@ -20,7 +20,8 @@ pub fn demo() -> Plan {
     shipped("demo").1
 }
 
-/// The demo's moves at 48 MHz: a clock that only the parallel core takes, so its levels are through sooner.
+/// The demo's moves at 48 MHz: a clock that only the parallel core takes, so its levels are through
+/// sooner.
 pub fn demo_at_48_mhz() -> Plan {
     let read = |name: &str| {
         std::fs::read_to_string(root().join("sim").join(name)).expect("a shipped file")
@@ -50,7 +51,8 @@ fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
     carrystep_plan::plan::<f64>(&file).expect("a plan")
 }
 
-/// A short move of each axis of the shipped machine and back, and its engine: for levels that take microseconds a clock.
+/// A short move of each axis of the shipped machine and back, and its engine: for levels that take
+/// microseconds a clock.
 pub fn nudge() -> (EngineBuild, Plan) {
     let machine = Machine::load(&root().join("sim/six-axis.toml")).expect("the shipped machine");
     let engine = machine.engine();

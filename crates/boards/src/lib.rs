@@ -1,10 +1,10 @@
 //! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
 //! Each board is one file of `data/boards/`, which the build script lists.
 //!
-//! A new board of a known family is its file; `cargo xtask long boards` measures it, and `cargo xtask
-//! generate` writes its pages and its directory. A new family is a variant of [`Family`], a file of
-//! `family/` and its templates. If no known clock manager and no known program fits it, it needs these
-//! too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
+//! A new board of a known family is its file; `cargo xtask long boards` measures it, and `cargo
+//! xtask generate` writes its pages and its directory. A new family is a variant of [`Family`], a
+//! file of `family/` and its templates. If no known clock manager and no known program fits it, it
+//! needs these too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
 use carrystep_core::engine::LimitWiring;

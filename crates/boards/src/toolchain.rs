@@ -3,7 +3,8 @@
 
 use std::fmt;
 
-/// The tools that make a bitstream. Names of templates are those of `crates/verilog/templates/board`.
+/// The tools that make a bitstream. Names of templates are those of
+/// `crates/verilog/templates/board`.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Toolchain {
     /// Name for messages and pages.

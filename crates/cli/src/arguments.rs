@@ -55,7 +55,8 @@ pub enum Subcommand {
     Check(CheckArguments),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
-    /// Run many machines and moves on all processors of this computer and report the worst of each figure.
+    /// Run many machines and moves on all processors of this computer and report the worst of each
+    /// figure.
     Sweep(Sweep),
     /// Execute the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C ramps the
     /// axes down.
@@ -114,7 +115,8 @@ pub struct Demo {
     /// Folder for everything that the demo writes.
     #[arg(long, default_value = "sim/out/demo", value_name = "DIR")]
     pub out: PathBuf,
-    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
+    /// an adder an axis.
     #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs.
@@ -149,7 +151,8 @@ pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
+    /// an adder an axis.
     #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs.
@@ -214,7 +217,8 @@ pub struct CheckArguments {
 /// The arguments of `carrystep verilog`.
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
+    /// an adder an axis.
     #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// All gateware of a board instead: a top level with clock, host link and engine, constraints,
@@ -224,8 +228,8 @@ pub struct Verilog {
     /// Which of the board's parts; default: its first.
     #[arg(long, value_name = "PART", requires = "board")]
     pub part: Option<String>,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine, for a board at
-    /// the board's clock.
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped
+    /// machine, for a board at the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// The beginning of the names of all modules and files: two configurations with different
@@ -246,7 +250,8 @@ pub struct Sweep {
     /// The sweep: a move file with blanks, and what they are filled with.
     #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
     pub file: Option<PathBuf>,
-    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
+    /// an adder an axis.
     #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// So many random cases instead of the whole grid.

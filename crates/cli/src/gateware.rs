@@ -68,7 +68,8 @@ impl CorePlan<'_> {
 /// The engine of the machine in this file.
 ///
 /// # Errors
-/// Status 2, with what would do: another tick, another clock, the parallel core where that can hold the machine.
+/// Status 2, with what would do: another tick, another clock, the parallel core where that can hold
+/// the machine.
 pub fn engine(machine: &Machine, name: &str) -> Result<EngineBuild, Failure> {
     let engine = machine.engine();
     match engine.check() {

@@ -57,8 +57,8 @@ pub const MAX_DEBOUNCE_SAMPLES: u32 = 127;
 /// events.
 ///
 /// # Errors
-/// [`EngineError::Schedule`] says what is needed and what there is, [`EngineError::ShortPhase`] that phases are too many;
-/// both the shortest tick and the slowest clock that would do.
+/// [`EngineError::Schedule`] says what is needed and what there is, [`EngineError::ShortPhase`]
+/// that phases are too many; both the shortest tick and the slowest clock that would do.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
     let needed = clocks_of_time_slots(axes);
     let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());

@@ -1,6 +1,7 @@
 //! The kinds of profiles by name. The names are those of move files and of the command line.
 //!
-//! A new kind is added here, in `kinds.rs` of the crate `profile`, and on the page docs/profiles.md.
+//! A new kind is added here, in `kinds.rs` of the crate `profile`, and on the page
+//! docs/profiles.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,8 +32,8 @@ pub enum ProfileKind {
     Trapezoid,
     /// Seven segments within limits of speed, acceleration and jerk.
     Scurve,
-    /// Along a logistic curve (M. Sorn, 2019), with small accelerations at both ends; never quite at
-    /// rest.
+    /// Along a logistic curve (M. Sorn, 2019), with small accelerations at both ends; never quite
+    /// at rest.
     Logistic,
     /// Acceleration proportional to 1 - cos, so that the jerk is continuous too.
     Sine,

@@ -14,7 +14,8 @@ use core::fmt;
 /// Tick, in ns, of a machine file without `tick_ns` whose clock is [`FIXED_CLOCK_HZ`].
 const FIXED_TICK_NS: u64 = 1000;
 
-/// The default clock, Hz. Its default tick is fixed where an engine takes it, and not the shortest that it takes.
+/// The default clock, Hz. Its default tick is fixed where an engine takes it, and not the shortest
+/// that it takes.
 pub const FIXED_CLOCK_HZ: u64 = 80_000_000;
 
 /// If a chosen tick is longer than this, in ns, and fewer phases would shorten it, they are
@@ -76,13 +77,15 @@ impl Ticks {
         u64::from(MAX_CLOCKS) / self.grain_clocks
     }
 
-    /// The slowest clock, Hz, at which an engine of so many axes takes this tick, ns; `None` where no clock does.
+    /// The slowest clock, Hz, at which an engine of so many axes takes this tick, ns; `None` where
+    /// no clock does.
     pub fn clock_for_engine(tick_ns: u64, phases: u32, axes: usize) -> Option<u64> {
         const NS: u64 = 1_000_000_000;
         if tick_ns == 0 {
             return None;
         }
-        // Clocks of a tick come in grains, so that phases are whole clocks and the clock is whole Hz.
+        // Clocks of a tick come in grains, so that phases are whole clocks and the clock is whole
+        // Hz.
         let common = gcd(tick_ns, NS);
         let (whole, per_phase) = (tick_ns / common, u64::from(phases).max(1));
         let grain = (whole / gcd(whole, per_phase)).checked_mul(per_phase)?;
@@ -268,7 +271,8 @@ mod tests {
                         found.is_none_or(|hz| fits(&hz)),
                         "{tick_ns} ns, {phases}, {axes}: {found:?}"
                     );
-                    // Any that fits has a whole number of clocks in the tick: all of them can be tried.
+                    // Any that fits has a whole number of clocks in the tick: all of them can be
+                    // tried.
                     let of = |clocks: u64| {
                         let hz = u128::from(clocks) * 1_000_000_000;
                         let tick = u128::from(tick_ns).max(1);

@@ -1,5 +1,5 @@
-//! The user's cache folder. What lies there is executed or believed, so nobody but the user may have
-//! put it there.
+//! The user's cache folder. What lies there is executed or believed, so nobody but the user may
+//! have put it there.
 
 use std::fs::{self, Metadata};
 use std::io;
@@ -30,8 +30,8 @@ pub enum CacheFailure {
     },
 }
 
-/// The user's own cache folder, made where it is not there: `$CARRYSTEP_CACHE`, or `carrystep` in the
-/// user's cache folder (`$XDG_CACHE_HOME`, `~/.cache`).
+/// The user's own cache folder, made where it is not there: `$CARRYSTEP_CACHE`, or `carrystep` in
+/// the user's cache folder (`$XDG_CACHE_HOME`, `~/.cache`).
 ///
 /// # Errors
 /// The folder cannot be made, or another user owns it or may write to it.

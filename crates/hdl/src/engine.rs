@@ -81,12 +81,12 @@ pub struct Engine<const N: usize> {
     /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
     /// to a tick while the queue has space.
     pub put_valid: Input<Bit>,
-    /// The axis of the offered word, as a number from 0. Also the axis whose free queue space `room`
-    /// reports.
+    /// The axis of the offered word, as a number from 0. Also the axis whose free queue space
+    /// `room` reports.
     pub put_axis: Input<Word<3>>,
-    /// The number of the word. The words of a segment come in order: 0 is its duration in ticks less
-    /// 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
-    /// segment.
+    /// The number of the word. The words of a segment come in order: 0 is its duration in ticks
+    /// less 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7
+    /// commits the segment.
     pub put_word: Input<Word<3>>,
     /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     pub put_data: Input<Word<32>>,
@@ -122,11 +122,11 @@ pub struct Engine<const N: usize> {
     /// The e-stop pin; asynchronous. The parameter `ESTOP_LOW` gives its active level. It stops the
     /// axes if it is active for a whole tick.
     pub estop: Input<Bit>,
-    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS` tells
-    /// how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
+    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS`
+    /// tells how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
     pub limit_min: Input<Word<N>>,
-    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
-    /// only if `LIMITS` is 1.
+    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are
+    /// used only if `LIMITS` is 1.
     pub limit_max: Input<Word<N>>,
     /// The axis that the host reads.
     pub get_axis: Input<Word<3>>,

@@ -135,7 +135,8 @@ impl<const N: usize> Link<N> {
     }
 }
 
-/// What the build says of itself: address, and the number as it follows from parameters of the Verilog.
+/// What the build says of itself: address, and the number as it follows from parameters of the
+/// Verilog.
 fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
     let number = |value: u64| value as u32;
     let build_id = BUILD_ID.of::<64>(id.0);

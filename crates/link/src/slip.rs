@@ -1,6 +1,6 @@
 //! Framing as in RFC 1055: END before and behind a frame; END and ESC within it are escaped to two
-//! bytes. By hand, because it is short, needs no `std`, says which frames are broken, and decodes byte
-//! by byte as the gateware and the C library do.
+//! bytes. By hand, because it is short, needs no `std`, says which frames are broken, and decodes
+//! byte by byte as the gateware and the C library do.
 
 use crate::registers::{END, ESC, ESC_END, ESC_ESC};
 use core::iter::once;

@@ -123,9 +123,9 @@ fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
     (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
 }
 
-/// Fewest ticks of a move without distance, so that any number of them can follow each other. The host
-/// sends the engine a segment of each axis in eight ticks, and the engine takes a start at one strobe
-/// and follows it at a later one.
+/// Fewest ticks of a move without distance, so that any number of them can follow each other. The
+/// host sends the engine a segment of each axis in eight ticks, and the engine takes a start at one
+/// strobe and follows it at a later one.
 const LEAST_TICKS: u64 = SEGMENT_WORDS as u64 + 1 + 2;
 
 /// Rounds `least` seconds up to whole ticks, at least one.

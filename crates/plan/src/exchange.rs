@@ -7,8 +7,8 @@
 //! has to be searched.
 //!
 //! The constants may be tuned: the caller judges the rounded integers, not the level that is found
-//! here. The 4x4 matrix is inverted by hand: an exchange updates the inverse in place, and a release
-//! of a library of linear algebra could change its roundings, and with them plans.
+//! here. The 4x4 matrix is inverted by hand: an exchange updates the inverse in place, and a
+//! release of a library of linear algebra could change its roundings, and with them plans.
 
 /// One linear constraint on the three unknowns x and the level: `at` x - `error` level <= `most`.
 ///

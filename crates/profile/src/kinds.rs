@@ -1,6 +1,7 @@
 //! The rules of every kind of profile, by its name.
 //!
-//! A new kind has one row in each function here; the planner and the command `profile` call nothing else.
+//! A new kind has one row in each function here; the planner and the command `profile` call nothing
+//! else.
 
 use crate::{Curve, LimitRefusal, Limits, Real, rule};
 use carrystep_core::ProfileKind;
@@ -48,8 +49,8 @@ pub fn whole<F: Real>(
     }
 }
 
-/// A ramp from rest, or from the start speed, to the speed `top` in steps/s, in `time` seconds or as
-/// fast as the limits allow. A constant speed has no ramp.
+/// A ramp from rest, or from the start speed, to the speed `top` in steps/s, in `time` seconds or
+/// as fast as the limits allow. A constant speed has no ramp.
 pub(crate) fn ramp(
     kind: ProfileKind,
     top: f64,

@@ -55,7 +55,8 @@ fn row(port: &Port) -> Value {
         Width::Bits(1) => ("1".to_owned(), String::new()),
         Width::Bits(bits) => (bits.to_string(), format!("[{}:0] ", bits - 1)),
     };
-    // Before the contents are read, the host takes back what it offers; the drivers keep their power.
+    // Before the contents are read, the host takes back what it offers; the drivers keep their
+    // power.
     let flag = port.peer != Peer::Pins && port.width == Width::Bits(1);
     context! {
         name => port.name,

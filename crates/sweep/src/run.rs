@@ -5,8 +5,8 @@ use crate::report::{CaseVerdict, SweepReport};
 use crate::shard::Shard;
 use rayon::prelude::*;
 
-/// Runs each case of a shard; a case that fails does not keep the others from running. `done` hears of every
-/// case that is over. `core` names the gateware on which cases are judged.
+/// Runs each case of a shard; a case that fails does not keep the others from running. `done` hears
+/// of every case that is over. `core` names the gateware on which cases are judged.
 pub fn run(
     sweep: &SweepFile,
     shard: Shard,

@@ -1,13 +1,14 @@
 //! Answers of slow external tools, kept for the next run.
 //!
-//! A tool is asked in a folder, by its arguments and the files in that folder. Its answer is what it
-//! prints and the files that it writes there. An answer is kept in the user's cache folder by the
-//! SHA-256 of the whole question: the tools with their versions, the arguments, and name and content
-//! of every file in the folder. So a changed input is another question, which the tool is asked anew.
+//! A tool is asked in a folder, by its arguments and the files in that folder. Its answer is what
+//! it prints and the files that it writes there. An answer is kept in the user's cache folder by
+//! the SHA-256 of the whole question: the tools with their versions, the arguments, and name and
+//! content of every file in the folder. So a changed input is another question, which the tool is
+//! asked anew.
 //!
 //! Only an answer of a tool that ended with success is kept, and only where the caller finds it
-//! complete: a solver that ran out of time would answer otherwise on a faster machine. A kept answer
-//! carries the hash of its own content; a damaged one is not used.
+//! complete: a solver that ran out of time would answer otherwise on a faster machine. A kept
+//! answer carries the hash of its own content; a damaged one is not used.
 //!
 //! With `CARRYSTEP_FRESH=1` no kept answer is used; `cargo xtask long` sets it.
 
@@ -39,8 +40,8 @@ static ASKED: AtomicUsize = AtomicUsize::new(0);
 static KEPT: AtomicUsize = AtomicUsize::new(0);
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// From now on this process asks every tool anew and keeps nothing: for a command whose user expects
-/// the tools to be run.
+/// From now on this process asks every tool anew and keeps nothing: for a command whose user
+/// expects the tools to be run.
 pub fn never() {
     NEVER.store(true, Ordering::Relaxed);
 }

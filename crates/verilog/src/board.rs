@@ -46,8 +46,8 @@ pub struct Design<'a> {
     pub ports: &'a [String],
 }
 
-/// Usual name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
-/// and `clock` (out).
+/// Usual name of the clock module, which the top level instantiates. It has the ports `oscillator`
+/// (in) and `clock` (out).
 pub const CLOCK_NAME: &str = "carrystep_clock";
 
 impl Design<'_> {
@@ -158,8 +158,8 @@ impl Design<'_> {
     }
 }
 
-/// Renders a template of `templates/board`. Lines of block tags leave no empty lines; a name that has
-/// no value is an error.
+/// Renders a template of `templates/board`. Lines of block tags leave no empty lines; a name that
+/// has no value is an error.
 fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
     #[allow(
         unused_qualifications,

@@ -380,8 +380,8 @@ impl Exported {
     }
 }
 
-/// Writes the six-axis core into `dir`: its Verilog, its waivers and a template of an instance. Each
-/// file appears completely or not at all.
+/// Writes the six-axis core into `dir`: its Verilog, its waivers and a template of an instance.
+/// Each file appears completely or not at all.
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated or a file cannot be written.

@@ -36,8 +36,8 @@ pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
     Ok(files)
 }
 
-/// The cores, each with its files, with the parameters of the shipped machine as defaults, and their
-/// description for FuseSoC.
+/// The cores, each with its files, with the parameters of the shipped machine as defaults, and
+/// their description for FuseSoC.
 fn core_files() -> Result<Vec<TextFile>, ExportError> {
     let machine =
         Machine::from_source(&SourceText { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;

@@ -123,8 +123,8 @@ fn constants(page: &mut Page, module: &Module, names: &Names) {
     }
 }
 
-/// Instantiates a module that does not exist where a parameter is out of range: Verilog-2005 knows no other way to
-/// stop the elaboration.
+/// Instantiates a module that does not exist where a parameter is out of range: Verilog-2005 knows
+/// no other way to stop the elaboration.
 fn refusals(page: &mut Page, names: &Names) {
     if names.refusals.is_empty() {
         return;

@@ -138,7 +138,8 @@ fn no_line_to_the_host_is_driven_before_the_gate_allows_it() {
     }
 }
 
-/// The text without the overrides of parameters, which modules that yosys makes from their instances do not have.
+/// The text without the overrides of parameters, which modules that yosys makes from their
+/// instances do not have.
 fn without_overrides(text: &str) -> String {
     let mut parts = text.split(" #(\n");
     let first = parts.next().unwrap().to_owned();

@@ -3,7 +3,8 @@
 use crate::shell::{self, TaskResult};
 use crate::{accuracy, arrows, decisions, readme, testing, tools};
 
-/// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
+/// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an
+/// error.
 pub fn climb() -> TaskResult {
     tools::install()?;
     arrows::check()?;
@@ -27,7 +28,8 @@ pub fn prove() -> TaskResult {
 /// A microcontroller without atomics, and without anything of `std`.
 const BARE: &str = "thumbv6m-none-eabi";
 
-/// The link's core on a bare microcontroller; where its target cannot be had, on this machine without `std`.
+/// The link's core on a bare microcontroller; where its target cannot be had, on this machine
+/// without `std`.
 pub fn bare() -> TaskResult {
     let check =
         ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];

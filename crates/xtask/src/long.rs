@@ -1,8 +1,9 @@
-//! The longer runs: what a test run does in part is done whole, and what came of it is written into `docs/long-runs.md`.
+//! The longer runs: what a test run does in part is done whole, and what came of it is written into
+//! `docs/long-runs.md`.
 //!
-//! A run is a command; it says what it came to in lines that begin with `FIGURES`. Its row of the page is replaced as soon
-//! as it is over, passed or failed, and the page is whole at any time. A row is of the commit that it was run on, so
-//! nothing is run on files that are not committed.
+//! A run is a command; it says what it came to in lines that begin with `FIGURES`. Its row of the
+//! page is replaced as soon as it is over, passed or failed, and the page is whole at any time. A
+//! row is of the commit that it was run on, so nothing is run on files that are not committed.
 
 mod inputs;
 
@@ -30,7 +31,8 @@ struct Run {
     cargo: &'static [&'static str],
 }
 
-/// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
+/// All runs, in the order in which they are done. To add one: a line here; its command says its
+/// `FIGURES`.
 const RUNS: [Run; 11] = [
     Run {
         name: "lockstep",
@@ -172,7 +174,8 @@ pub fn run(names: &[String]) -> TaskResult {
         shell::say(&format!("== {}: {}", run.name, run.what));
         let begun = Instant::now();
         let (passed, figures) = run.make()?;
-        // A run that leaves other files behind than were committed has not shown that these are right.
+        // A run that leaves other files behind than were committed has not shown that these are
+        // right.
         let passed = passed && committed().is_ok();
         if !passed {
             failed.push(run.name);

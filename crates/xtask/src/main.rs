@@ -30,7 +30,8 @@ enum Chore {
     Prove,
     /// Install the simulators, yosys and z3 that the tests need, by apt.
     Tools,
-    /// All longer runs, or those that are named, each with its row in `docs/long-runs.md`: lockstep, rust-hdl, proofs, mutants, resources.
+    /// All longer runs, or those that are named, each with its row in `docs/long-runs.md`:
+    /// lockstep, rust-hdl, proofs, mutants, resources.
     Long {
         /// The runs; none: all.
         runs: Vec<String>,
@@ -46,13 +47,15 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
-    /// Check the arrows between the crates and between the files of a folder, and their drawing in `docs/architecture.md`.
+    /// Check the arrows between the crates and between the files of a folder, and their drawing in
+    /// `docs/architecture.md`.
     Arrows {
         /// Write the drawing anew.
         #[arg(long)]
         write: bool,
     },
-    /// Write the index of `docs/decisions/`, and the lists of decisions and boards in `docs/SUMMARY.md`.
+    /// Write the index of `docs/decisions/`, and the lists of decisions and boards in
+    /// `docs/SUMMARY.md`.
     Decisions,
     /// Formatting and lints, without a warning.
     Lint,
@@ -64,9 +67,11 @@ enum Chore {
         #[arg(long)]
         json: bool,
     },
-    /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, the boards' pages, and the JSON Schemas.
+    /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, the
+    /// boards' pages, and the JSON Schemas.
     Generate,
-    /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
+    /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and
+    /// xvfb).
     Readme,
     /// Write the table of `docs/accuracy.md` anew from the checker's figures.
     Accuracy,

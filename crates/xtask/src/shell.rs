@@ -50,7 +50,8 @@ pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -
     }
 }
 
-/// Runs a command whose complaints go to the terminal, and takes what it prints to its standard output.
+/// Runs a command whose complaints go to the terminal, and takes what it prints to its standard
+/// output.
 pub fn read_stdout(program: &str, arguments: &[&str]) -> Result<String, String> {
     let output = command(program, arguments).stderr(Stdio::inherit()).output();
     let output = output.map_err(|error| format!("cannot start {program}: {error}"))?;

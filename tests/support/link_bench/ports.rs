@@ -33,8 +33,8 @@ impl Both {
         Self { link, line: empty(line_ports(kind).collect()), kind }
     }
 
-    /// Records the present cycle: what the link sees and shows, the bytes between link and line, and
-    /// the levels of the line's pins by their names.
+    /// Records the present cycle: what the link sees and shows, the bytes between link and line,
+    /// and the levels of the line's pins by their names.
     pub(super) fn add(
         &mut self,
         seen: &LinkInputs,

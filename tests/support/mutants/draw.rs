@@ -98,9 +98,9 @@ impl Sample {
     }
 }
 
-/// The netlist (RTLIL) in which a module that yosys has made of one with parameters is named after its kind or, in an
-/// array of instances, after the first of its instances: `carrystep_pulser_2` in place of
-/// `$paramod$1f2e\carrystep_pulser`.
+/// The netlist (RTLIL) in which a module that yosys has made of one with parameters is named after
+/// its kind or, in an array of instances, after the first of its instances: `carrystep_pulser_2` in
+/// place of `$paramod$1f2e\carrystep_pulser`.
 fn named_by_instance(netlist: &str) -> String {
     let mut names: HashMap<&str, String> = HashMap::new();
     for line in netlist.lines() {

@@ -15,7 +15,8 @@ use crate::proofs::{self, Case, Proof, ProofError, Question};
 pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
     let built: BuiltEngine = (stimuli::build(), stimuli::verilog().into());
     let dut = format!("carrystep_{}", mutant.module);
-    // A pulser is named after its axis. All are one module in the exported text, but not in the netlist.
+    // A pulser is named after its axis. All are one module in the exported text, but not in the
+    // netlist.
     let axis = mutant.module.strip_prefix("pulser_").and_then(|axis| axis.parse::<usize>().ok());
     let pins = axis.map(|axis| pin_parameters(&built.0.pins[axis]));
     let is_own = |case: &Case| match &pins {

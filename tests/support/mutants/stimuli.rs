@@ -31,8 +31,8 @@ pub struct Stimulus {
     modules: &'static [&'static str],
 }
 
-/// The shipped machine with ticks of 2 us at 48 MHz, that of the slower boards: the times of all recordings are written
-/// for it.
+/// The shipped machine with ticks of 2 us at 48 MHz, that of the slower boards: the times of all
+/// recordings are written for it.
 pub fn build() -> EngineBuild {
     let path = root().join("sim/six-axis.toml");
     let text = std::fs::read_to_string(&path).expect("the shipped machine");

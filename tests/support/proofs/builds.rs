@@ -110,7 +110,8 @@ pub fn beat_name(time: &Timebase) -> String {
     format!("{} clocks in {} phases", time.clocks_per_tick(), time.phases())
 }
 
-/// One case for each pin timing of the builds. All are of one module of this kind, whose parameters they are.
+/// One case for each pin timing of the builds. All are of one module of this kind, whose parameters
+/// they are.
 pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     for (pins, verilog) in builds {

@@ -38,7 +38,8 @@ impl Promises {
     }
 
     /// Names that stand for a signal inside the module, with that signal, as declared by
-    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest first.
+    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest
+    /// first.
     pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
         let declared = self
             .text

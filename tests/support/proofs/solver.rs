@@ -220,7 +220,8 @@ pub(super) fn run(
     run_until(dir, tool, arguments, |_| true)
 }
 
-/// The same for a tool whose answer is kept only where it is a complete one: a solver may run out of time.
+/// The same for a tool whose answer is kept only where it is a complete one: a solver may run out
+/// of time.
 pub(super) fn run_until(
     dir: &Path,
     tool: Tool,

@@ -1,4 +1,5 @@
-//! `carrystep sweep`: many machines and moves over all processors, or the reports of many shards as one.
+//! `carrystep sweep`: many machines and moves over all processors, or the reports of many shards as
+//! one.
 
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;

@@ -129,7 +129,8 @@ fn a_sweep_is_of_one_core() {
     assert_eq!(folder.run("sweep --core parallel --merge engine1.json engine2.json").status, 2);
 }
 
-/// What only the parallel core can hold fails on the engine by name, and is never left out in silence.
+/// What only the parallel core can hold fails on the engine by name, and is never left out in
+/// silence.
 #[test]
 fn machines_that_the_engine_cannot_hold_fail_on_it() {
     let folder = sweep("[\"a4988\"]");

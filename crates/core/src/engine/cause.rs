@@ -1,8 +1,8 @@
-//! The table of stop causes: number, name, kind of stop, rank, meaning, and what the user does about
-//! each.
+//! The table of stop causes: number, name, kind of stop, rank, meaning, and what the user does
+//! about each.
 //!
-//! Everything that names a cause takes it from here: the models, the constants of the kernels and of
-//! the proofs, the register map of the clients, and the messages of the commands.
+//! Everything that names a cause takes it from here: the models, the constants of the kernels and
+//! of the proofs, the register map of the clients, and the messages of the commands.
 //! `docs/clock-by-clock.md` specifies the same table for those who build gateware, and a test
 //! compares the two. To add a cause, add a row here and a row there.
 
@@ -47,8 +47,8 @@ pub struct CauseFacts {
 /// Declares the enumeration and its table.
 macro_rules! causes {
     ($($(#[$what:meta])* $cause:ident = $number:literal, $facts:expr;)*) => {
-        /// Cause of a stop. Its number is the value at the engine's `cause` port and in an answer of
-        /// the link.
+        /// Cause of a stop. Its number is the value at the engine's `cause` port and in an answer
+        /// of the link.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Cause {
             $($(#[$what])* $cause = $number,)*

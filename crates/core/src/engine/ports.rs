@@ -59,8 +59,8 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("started", BIT, Peer::Nobody, "axes start at the end of this clock"),
 ];
 
-/// The ports of this direction that [`EngineInputs::at_ports`] and [`EngineOutputs::at_ports`] list,
-/// in their order: all but the clock and those by which a host reads one item (`get`).
+/// The ports of this direction that [`EngineInputs::at_ports`] and [`EngineOutputs::at_ports`]
+/// list, in their order: all but the clock and those by which a host reads one item (`get`).
 pub fn recorded_ports(direction: Direction) -> impl Iterator<Item = &'static Port> {
     ENGINE_PORTS.iter().filter(move |port| {
         port.direction == direction && port.peer != Peer::Clock && !port.name.starts_with("get_")

@@ -1,4 +1,5 @@
-//! Names for the beats of a time slot, and for the words and the bits in the memories of the engine.
+//! Names for the beats of a time slot, and for the words and the bits in the memories of the
+//! engine.
 //!
 //! ```text
 //! beat        0    1    2    3    4    5    6    7    8    9    10   11   12   13-15   16

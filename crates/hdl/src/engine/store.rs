@@ -123,7 +123,8 @@ impl Store {
         for (axis, stop) in stops.iter().enumerate() {
             let stop = STOP_ACCEL.of_axis::<64>(axis, *stop);
             let (low, high) = (stop.bits::<32>(0), stop.bits::<32>(32));
-            // -s: one more than its complement, whose low half carries where s has zeros only there.
+            // -s: one more than its complement, whose low half carries where s has zeros only
+            // there.
             let carry =
                 Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
             let down = [Formula::number(0) - low.clone(), !high.clone() + carry];

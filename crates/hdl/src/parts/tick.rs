@@ -51,7 +51,8 @@ impl Tick {
     /// Makes the counter of a timebase. [`Timebase`] has checked that Q divides C.
     pub fn new(timebase: &Timebase) -> Self {
         let clocks = CLOCKS_PER_TICK.of::<32>(timebase.clocks_per_tick());
-        // A shift divides by the phases, which are a power of two; 65536 of one phase are 0 in 16 bits.
+        // A shift divides by the phases, which are a power of two; 65536 of one phase are 0 in 16
+        // bits.
         let last_sub = clocks.bits::<16>(timebase.phase_bits() as usize) - Formula::number(1);
         let outside = clocks.is_outside(MIN_CLOCKS_PER_TICK.into(), MAX_CLOCKS.into());
         let remainder = clocks.whole() & Formula::number(u64::from(timebase.phases() - 1));

@@ -44,8 +44,8 @@ pub struct Memory<const A: usize, const W: usize> {
     pub write_data: Input<Word<W>>,
     words: Vec<Word<W>>,
     rose: bool,
-    /// The parameter of the Verilog that places the memory; `None`: it is in block RAM, and its words
-    /// are always written whole.
+    /// The parameter of the Verilog that places the memory; `None`: it is in block RAM, and its
+    /// words are always written whole.
     placed_by: Option<&'static str>,
     initial: Vec<(usize, Formula<W>)>,
     given: Vec<TextParameter>,

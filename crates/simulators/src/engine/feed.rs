@@ -16,8 +16,8 @@ use carrystep_core::{Command, Program, Segment};
 struct Due {
     /// 0: before the first move; n: once tick n has begun.
     room: u64,
-    /// The first start after all segments that are due with it, a later one after its own; these in the order of their
-    /// queues.
+    /// The first start after all segments that are due with it, a later one after its own; these in
+    /// the order of their queues.
     place: usize,
     command: Command,
 }
@@ -89,7 +89,8 @@ fn due(program: &Program) -> Vec<Due> {
                     axis_feeds.iter().map(|axis_feed| axis_feed.room).fold(started, u64::max);
                 let begins = axis_feeds.iter().filter_map(|axis_feed| axis_feed.begins.last());
                 started = begins.map(|begin| begin + 1).fold(started, u64::max);
-                // The first waits for full queues. A later one for its own segments only: the move before may be short.
+                // The first waits for full queues. A later one for its own segments only: the move
+                // before may be short.
                 let own = axis_feeds
                     .iter()
                     .map(|axis_feed| axis_feed.begins.len())

@@ -84,8 +84,8 @@ impl Recording {
         self.clocks += 1;
     }
 
-    /// The stimuli as text, a line for each: the number of cycles, then the inputs in hexadecimal in
-    /// the order of the engine's table of ports.
+    /// The stimuli as text, a line for each: the number of cycles, then the inputs in hexadecimal
+    /// in the order of the engine's table of ports.
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {

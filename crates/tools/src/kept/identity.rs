@@ -24,7 +24,8 @@ pub(super) fn name_of_pip(name: &str) -> String {
 /// What is known of a tool, by its name and the path on which it is looked for.
 type Known = HashMap<(&'static str, Option<OsString>), String>;
 
-/// A tool and those that it starts: place, size, date and version of each. None where it is not found.
+/// A tool and those that it starts: place, size, date and version of each. None where it is not
+/// found.
 pub(super) fn of(tool: &Tool) -> Option<String> {
     static KNOWN: Mutex<Option<Known>> = Mutex::new(None);
     // Tests change the path on which tools are looked for.

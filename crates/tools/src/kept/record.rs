@@ -1,5 +1,5 @@
-//! One kept answer as a file: the SHA-256 of all that follows, a line that says how long each part is,
-//! and the parts.
+//! One kept answer as a file: the SHA-256 of all that follows, a line that says how long each part
+//! is, and the parts.
 
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
@@ -19,8 +19,8 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// The answer in a file; none where there is none, where somebody else could have written it, or
-    /// where it is not as it was written.
+    /// The answer in a file; none where there is none, where somebody else could have written it,
+    /// or where it is not as it was written.
     pub fn read(file: &Path) -> Option<Self> {
         if !carrystep_files::cache_holds(file).ok()? {
             return None;

@@ -22,7 +22,8 @@ use minijinja::{Value, context};
 /// Verilator.
 const FILE_LIST: &str = "files.f";
 
-/// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
+/// The machine that boards are built for where no other is asked for; clock, tick and limits are
+/// put before its axes.
 const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
 
 /// The gateware of a machine for a board, after all checks.
@@ -133,8 +134,8 @@ impl<'a> Gateware<'a> {
         self.files_with(verilog, &sources)
     }
 
-    /// All files of a directory that takes the modules of link and engine from another one, which the top level's
-    /// directory reaches as `core`.
+    /// All files of a directory that takes the modules of link and engine from another one, which
+    /// the top level's directory reaches as `core`.
     ///
     /// # Errors
     /// [`ExportError`] if a module cannot be generated.
@@ -224,7 +225,8 @@ impl<'a> Gateware<'a> {
         // versa.
         let (bytes, between) = link_ports(&self.build, self.line)?;
         let mut given = Overrides::of(&self.build, self.line)?;
-        // Where block RAMs write whole words only, the memory that is written bit by bit lies in LUTs.
+        // Where block RAMs write whole words only, the memory that is written bit by bit lies in
+        // LUTs.
         if !self.board.family.facts().writes_parts_of_words() {
             for memory in given.engine.iter_mut().filter(|one| one.name == EVENT_MEMORY.name) {
                 memory.literal = "\"distributed\"".to_owned();

@@ -116,8 +116,8 @@ pub const INPUTS: [Inputs; 12] = [
     ),
 ];
 
-/// The runs that a change since a commit can break. All, where git does not know the commit: a branch
-/// that is new on a server has none before it.
+/// The runs that a change since a commit can break. All, where git does not know the commit: a
+/// branch that is new on a server has none before it.
 ///
 /// # Errors
 /// git cannot compare.

@@ -1,4 +1,5 @@
-//! What a test binary's output says: how many tests passed, and how many answers of tools were kept.
+//! What a test binary's output says: how many tests passed, and how many answers of tools were
+//! kept.
 
 /// Numbers of tests.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -77,7 +77,8 @@ impl Running {
         let wrong = |error| shell::cannot("write", path, &error);
         let file = File::options().create(true).append(true).open(path).map_err(wrong)?;
         let mut command = command(binary);
-        // One test at a time: a line is printed where each begins, and the other cores have other slices.
+        // One test at a time: a line is printed where each begins, and the other cores have other
+        // slices.
         command.arg("--test-threads=1");
         if !slice.names.is_empty() {
             command.arg("--exact").args(&slice.names);

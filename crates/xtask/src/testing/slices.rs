@@ -56,8 +56,8 @@ pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -
     parts.into_iter().map(slice).collect()
 }
 
-/// So many parts, of nearly equal length: each test, the longest first, goes to the part that is the
-/// shortest so far.
+/// So many parts, of nearly equal length: each test, the longest first, goes to the part that is
+/// the shortest so far.
 fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..seconds.len()).collect();
     order.sort_by(|&one, &other| seconds[other].total_cmp(&seconds[one]));
