@@ -22,8 +22,9 @@ const BOARDS: &str = "docs/boards/index.md";
 const HEAD: &str = "\
 # Decisions
 
-Each page is one choice that someone might undo, with its reason. The pages are numbered and never
-rewritten. A choice that no longer holds gets a new page, and the old one says which page replaced it.
+Each page is one choice that someone might undo, with its reason. The pages are numbered. The choice
+on a page is never changed: one that no longer holds gets a new page, and the old page says which
+page replaced it.
 
 `cargo xtask decisions` writes this index from the third line of each page.
 ";
