@@ -212,8 +212,8 @@ module promises (
             && axis == (in_time_slot ? at / TIME_SLOT_CLOCKS : 0) && axis_one_hot == 32'd1 << axis);
         invariant_4: assert (was_beat[11:0] == 0 || at % TIME_SLOT_CLOCKS != 0);
         invariant_5: assert (axis != who || !in_time_slot || word_read == word);
-        invariant_6: assert (!in_time_slot || at % TIME_SLOT_CLOCKS == 0 || !(committed && at % TIME_SLOT_CLOCKS < 8));
-        invariant_7: assert (!(committed && in_time_slot && at % TIME_SLOT_CLOCKS != 0) || taken);
+        invariant_6: assert (!in_time_slot || at % TIME_SLOT_CLOCKS == 0 || !(took && at % TIME_SLOT_CLOCKS < 8));
+        invariant_7: assert (!(took && in_time_slot && at % TIME_SLOT_CLOCKS != 0) || taken);
         invariant_8: assert (!taken || !rest_1 && !rest_2);
         invariant_9: assert (!rest_2 || rest_1 && quiet);
         invariant_10: assert (!(had_time_slot && !active && !taken) || quiet);

@@ -215,7 +215,7 @@ module promises (
         invariant_11: assert (!was_ends || first_clock || was_beat[12] && was_axis == who);
         invariant_5: assert (lasts == marks);
         invariant_6: assert (!mine || beat[12:1] == 0 || mark_read == lasts[begun_now[2:0]]);
-        invariant_7: assert (!adds || takes && due == 7);
+        invariant_7: assert (adds == (takes && due == 7));
         invariant_8: assert (behind_then <= 3 - slack && behind_then >= slack - 3);
         invariant_9: assert (!adds || waiting < 7);
         invariant_10: assert (!asked || !was_unseen || given_up != written_off);
