@@ -105,7 +105,7 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
                 + f64::from(edge.phase) / f64::from(timebase.phases());
             let error = ticks * h - due.seconds;
             let leg =
-                timelines[index].legs.iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
+                timelines[index].legs().iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
             let a = steepest(&*leg.profile, due.seconds - h, due.seconds + h);
             // At phase zero the last pulse is due at rest; it cannot be later than its tick.
             let v = due.speed.max(h * a / 8.0);

@@ -90,7 +90,7 @@ impl<'a> AxisCheck<'a> {
         let next = [crossings.next(), crossings.next()];
         let fit_ps = setup
             .timeline
-            .legs
+            .legs()
             .iter()
             .map(|leg| (leg.fit_seconds * PS).round())
             .fold(0.0, f64::max);

@@ -138,9 +138,9 @@ impl Plan {
                 fit_seconds: planned.fit_seconds,
             })
         };
-        let timeline = |axis| Timeline {
-            tick_seconds: self.build.timebase.tick_seconds(),
-            legs: self.moves.iter().filter_map(|planned| leg(planned, axis)).collect(),
+        let timeline = |axis| {
+            let legs = self.moves.iter().filter_map(|planned| leg(planned, axis)).collect();
+            Timeline::new(self.build.timebase.tick_seconds(), legs)
         };
         (0..axes).map(timeline).collect()
     }

@@ -6,10 +6,10 @@ use carrystep_core::StartPhase;
 /// The float reference of one axis over all moves.
 #[derive(Debug, Clone)]
 pub struct Timeline {
-    /// Length of a tick, seconds.
-    pub tick_seconds: f64,
-    /// The moves in which the axis travels, in order; they do not overlap.
-    pub legs: Vec<Leg>,
+    tick_seconds: f64,
+    legs: Vec<Leg>,
+    /// The position at which each leg begins, steps.
+    begins: Vec<i64>,
 }
 
 /// One move of one axis.
@@ -63,6 +63,25 @@ impl Leg {
 }
 
 impl Timeline {
+    /// Puts legs in sequence. `tick_seconds` is the length of a tick in seconds. The legs are the
+    /// moves in which the axis travels, in order; they must not overlap.
+    pub fn new(tick_seconds: f64, legs: Vec<Leg>) -> Self {
+        let mut position = 0_i64;
+        let begin = |leg: &Leg| {
+            let here = position;
+            let steps = leg.steps.cast_signed();
+            position = here.wrapping_add(if leg.backward { -steps } else { steps });
+            here
+        };
+        let begins = legs.iter().map(begin).collect();
+        Self { tick_seconds, legs, begins }
+    }
+
+    /// The moves in which the axis travels, in order.
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
     /// All pulses in order.
     pub fn crossings(&self, phase: StartPhase) -> impl Iterator<Item = Crossing> + '_ {
         self.legs.iter().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
@@ -70,8 +89,9 @@ impl Timeline {
 
     /// Signed position in steps, `tick` ticks (not necessarily whole) after the origin.
     pub fn position_at(&self, tick: f64) -> f64 {
-        let begun = self.legs.iter().take_while(|leg| leg.start_tick as f64 <= tick);
-        begun.map(|leg| leg.sign() * leg.profile.position(self.local(leg, tick))).sum()
+        self.begun(tick).map_or(0.0, |(leg, begin)| {
+            begin as f64 + leg.sign() * leg.profile.position(self.local(leg, tick))
+        })
     }
 
     /// Signed speed in steps/s, `tick` ticks after the origin; 0 between moves.
@@ -84,9 +104,15 @@ impl Timeline {
         self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.acceleration(t))
     }
 
-    fn moving(&self, tick: f64) -> Option<(&Leg, f64)> {
+    /// The last leg that has begun, and the position at which it began.
+    fn begun(&self, tick: f64) -> Option<(&Leg, i64)> {
         let after = self.legs.partition_point(|leg| leg.start_tick as f64 <= tick);
-        let leg = self.legs.get(after.checked_sub(1)?)?;
+        let last = after.checked_sub(1)?;
+        Some((self.legs.get(last)?, *self.begins.get(last)?))
+    }
+
+    fn moving(&self, tick: f64) -> Option<(&Leg, f64)> {
+        let (leg, _) = self.begun(tick)?;
         let t = self.local(leg, tick);
         (t < leg.profile.duration()).then_some((leg, t))
     }

@@ -259,7 +259,7 @@ fn error(
 fn profile_line(plot: &Plot<'_>, curves: &Curves<'_>) -> Vec<(f64, f64)> {
     let end = plot.span_s / plot.tick_seconds;
     let even = (0..=LINE).map(|k| end * f64::from(k) / f64::from(LINE));
-    let bends = curves.axis.timeline.legs.iter().flat_map(|leg| {
+    let bends = curves.axis.timeline.legs().iter().flat_map(|leg| {
         let start = leg.start_tick as f64;
         let inside = leg.profile.breakpoints().iter().copied();
         let all = std::iter::once(0.0).chain(inside).chain(std::iter::once(leg.profile.duration()));

@@ -43,7 +43,7 @@ impl Machine {
             let flip = index % 2 == 1;
             let legs =
                 vec![leg(0, flip, Arc::new(out) as _), leg(250_000, !flip, Arc::new(back) as _)];
-            Timeline { tick_seconds: timebase.tick_seconds(), legs }
+            Timeline::new(timebase.tick_seconds(), legs)
         };
         Self { timebase, timelines: (0..axes).map(timeline).collect(), total_ticks: 500_000 }
     }
@@ -53,7 +53,7 @@ impl Machine {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let profile = Arc::new(Constant::new(steps as f64, 1.0));
         let legs = vec![Leg { start_tick: 0, backward: false, steps, profile, fit_seconds: 0.0 }];
-        let timelines = vec![Timeline { tick_seconds: timebase.tick_seconds(), legs }];
+        let timelines = vec![Timeline::new(timebase.tick_seconds(), legs)];
         Self { timebase, timelines, total_ticks: 1_000_000 }
     }
 
@@ -67,9 +67,9 @@ impl Machine {
             unit: None,
             timeline,
             pins_ns: PINS_NS,
-            expected_pulses: timeline.legs.iter().map(|leg| leg.steps).sum(),
+            expected_pulses: timeline.legs().iter().map(|leg| leg.steps).sum(),
             expected_position: timeline
-                .legs
+                .legs()
                 .iter()
                 .map(|leg| if leg.backward { -(leg.steps as i64) } else { leg.steps as i64 })
                 .sum(),
