@@ -159,7 +159,12 @@ impl fmt::Display for FoundBoard {
         } else {
             format!(", from {}", culprits.join(", "))
         };
-        let power = if self.ready { "drivers powered" } else { "drivers without power" };
+        let power = match (self.ready, self.idle) {
+            (true, _) => "drivers powered",
+            // The gateware takes the power away only when no segment waits any more.
+            (false, false) => "drivers powered while segments wait",
+            (false, true) => "drivers without power",
+        };
         match (&self.cause, self.halted, self.idle) {
             (Some(cause), true, _) => writeln!(f, "STOPPED: {cause}{from}; {power}")?,
             (Some(cause), false, _) => writeln!(f, "stopping: {cause}{from}; {power}")?,

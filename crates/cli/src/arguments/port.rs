@@ -108,7 +108,7 @@ pub struct Stop {
     /// `jog` or `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
-    /// Then switch the drivers off.
+    /// Then switch the drivers off. If segments of a stopped move wait, this needs --clear too.
     #[arg(long)]
     pub off: bool,
     /// One JSON document instead of the table.

@@ -210,7 +210,18 @@ fn killed_host_leaves_a_stopped_machine_that_reports_the_watchdog() {
     assert_eq!(ran.status, 1);
     assert!(ran.stderr.starts_with("error: the machine has stopped: "), "{}", ran.stderr);
     assert!(ran.stderr.contains("`carrystep stop --clear`"), "{}", ran.stderr);
-    passed(&folder.run(&format!("stop --clear --port {} --machine machine.toml", board.port)));
+    // The rest of the move waits in the queues, and as long as it does the drivers keep their power.
+    let stop = |options: &str| {
+        folder.run(&format!("stop{options} --port {} --machine machine.toml", board.port))
+    };
+    let kept = stop(" --off");
+    assert_eq!(kept.status, 1, "{}", kept.stderr);
+    assert!(kept.stderr.contains("`carrystep stop --clear --off`"), "{}", kept.stderr);
+    let ran = folder.run(&status);
+    assert!(ran.stdout.contains("drivers powered while segments wait"), "{}", ran.stdout);
+    let ran = stop(" --clear --off");
+    passed(&ran);
+    assert!(ran.stdout.contains("at rest; drivers without power"), "{}", ran.stdout);
     passed(&folder.run(&run));
 }
 
