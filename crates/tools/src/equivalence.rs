@@ -92,18 +92,30 @@ fn to_words(top: &str) -> String {
 pub type Memories = BTreeMap<String, BTreeMap<String, String>>;
 
 /// Modes and initial contents of a design's block RAMs, by name. Contents that are never read (`x`)
-/// are 0 in a bitstream.
+/// are 0 in a bitstream. Contents are hexadecimal; yosys writes them in binary if only some bits of
+/// a digit are never read.
 pub fn memories(verilog: &str) -> Memories {
     let memory = pattern(r"(?s)SB_RAM40_4K #\((.*?)\n\s*\) *\\?(\S+) *\(");
-    let parameter = pattern(r"\.(\w+)\((?:\d+'[hd])?(\w+)\)");
+    let parameter = pattern(r"\.(\w+)\((?:\d+'([hdb]))?(\w+)\)");
     let all = memory.captures_iter(verilog).map(|found| {
         let all = parameter.captures_iter(&found[1]);
         (
             found[2].to_owned(),
-            all.map(|one| (one[1].to_owned(), one[2].replace('x', "0"))).collect(),
+            all.map(|one| {
+                let digits = one[3].replace('x', "0");
+                let is_binary = one.get(2).is_some_and(|base| base.as_str() == "b");
+                (one[1].to_owned(), if is_binary { hexadecimal(&digits) } else { digits })
+            })
+            .collect(),
         )
     });
     all.collect()
+}
+
+/// Binary digits, a multiple of four of them, as hexadecimal ones.
+fn hexadecimal(binary: &str) -> String {
+    let digit = |four: &[u8]| four.iter().fold(0, |value, bit| value << 1 | u32::from(bit & 1));
+    binary.as_bytes().chunks(4).filter_map(|four| char::from_digit(digit(four), 16)).collect()
 }
 
 /// Commands that cut a design at its memories: their inputs become outputs of the design, and their
