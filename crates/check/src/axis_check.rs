@@ -3,7 +3,7 @@
 //! Transcripts in tests/ quote the messages.
 
 use crate::edge::{Pin, PinChange};
-use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
+use crate::ideal::{Due, NS, PS, curvature_ps, moment, phase_ps, tick_ps};
 use crate::line_check::Off;
 use crate::pins::{PinWatch, Shortest, Stretch};
 use crate::report::AxisReport;
@@ -57,9 +57,9 @@ pub(crate) struct AxisCheck<'a> {
     slack_ps: f64,
     /// The greatest tolerance of a fit, ps.
     fit_ps: f64,
-    crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
+    crossings: Box<dyn Iterator<Item = (Crossing, Due)> + 'a>,
     /// The next two crossings. If an edge is nearer to the second one, a pulse is missing.
-    next: [Option<Crossing>; 2],
+    next: [Option<(Crossing, Due)>; 2],
     /// Number of the crossing in `next[0]`, counted from 1.
     number: u64,
     watch: PinWatch,
@@ -85,8 +85,10 @@ impl<'a> AxisCheck<'a> {
         timebase: Timebase,
         slack_ps: u64,
     ) -> Self {
-        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> =
-            Box::new(setup.timeline.crossings(phase));
+        let tick = tick_ps(&timebase);
+        let with_due = move |crossing: Crossing| (crossing, Due::of(&crossing, tick));
+        let mut crossings: Box<dyn Iterator<Item = (Crossing, Due)> + 'a> =
+            Box::new(setup.timeline.crossings(phase).map(with_due));
         let next = [crossings.next(), crossings.next()];
         let fit_ps = setup
             .timeline
@@ -136,8 +138,8 @@ impl<'a> AxisCheck<'a> {
 
     /// The origin for which an edge at `ps` would be exactly at the first crossing of this axis.
     pub(crate) fn origin_for(&self, ps: u64) -> Option<i64> {
-        let first = self.next[0].filter(|_| self.number == 1)?;
-        i64::try_from(i128::from(ps) - due_ps(0, &first, tick_ps(&self.timebase))).ok()
+        let (_, first) = self.next[0].filter(|_| self.number == 1)?;
+        i64::try_from(i128::from(ps) - first.at_ps(0)).ok()
     }
 
     pub(crate) fn initial(&mut self, pin: Pin, level: bool) {
@@ -172,7 +174,7 @@ impl<'a> AxisCheck<'a> {
         while self.is_missing(change.ps, origin_ps, sure) {
             self.miss(origin_ps);
         }
-        let Some(crossing) = self.next[0] else { return };
+        let Some((crossing, due)) = self.next[0] else { return };
         if crossing.backward != backward {
             self.wrong_direction += 1;
             let way = |back| if back { "backward" } else { "forward" };
@@ -184,21 +186,20 @@ impl<'a> AxisCheck<'a> {
                 way(crossing.backward)
             ));
         }
-        self.pair(change.ps, backward, crossing, origin_ps);
+        self.pair(change.ps, backward, crossing, due.lateness_ps(change.ps, origin_ps));
         self.advance();
     }
 
     /// The time since the last paired pulse on the pins, and the period that the profile has up to
     /// each of the next two crossings, all in ps.
     fn period(&self, ps: u64, origin_ps: i64, sure: bool) -> Option<(f64, [Option<f64>; 2])> {
-        let tick = tick_ps(&self.timebase);
         let (since, lateness) = match self.last {
             Some(last) => (ps.saturating_sub(last.ps) as f64, last.lateness_ps),
             None if sure => ((i128::from(ps) - i128::from(origin_ps)) as f64, 0.0),
             None => return None,
         };
         // The period of the profile is the period on the pins minus the change of the lateness.
-        let ideal = |c: Crossing| since - (lateness_ps(ps, origin_ps, &c, tick) - lateness);
+        let ideal = |(_, due): (Crossing, Due)| since - (due.lateness_ps(ps, origin_ps) - lateness);
         Some((since, self.next.map(|c| c.map(ideal))))
     }
 
@@ -227,9 +228,9 @@ impl<'a> AxisCheck<'a> {
 
     /// Records that the next crossing has no pulse.
     fn miss(&mut self, origin_ps: i64) {
-        if let Some(crossing) = self.next[0] {
-            let due = due_ps(origin_ps, &crossing, tick_ps(&self.timebase));
-            self.fail_pulse(&format!("pulse {} is missing, due at {}", self.number, moment(due)));
+        if let Some((_, due)) = self.next[0] {
+            let due = moment(due.at_ps(origin_ps));
+            self.fail_pulse(&format!("pulse {} is missing, due at {due}", self.number));
             self.advance();
         }
     }
@@ -237,20 +238,17 @@ impl<'a> AxisCheck<'a> {
     /// Records the crossings that are left when the capture ends.
     fn miss_rest(&mut self, origin_ps: i64) {
         match self.next {
-            [Some(first), Some(_)] => {
-                let due = due_ps(origin_ps, &first, tick_ps(&self.timebase));
-                let number = self.number;
+            [Some((_, first)), Some(_)] => {
+                let (number, due) = (self.number, moment(first.at_ps(origin_ps)));
                 self.fail_pulse(&format!(
-                    "pulse {number} and all behind it are missing, due from {}",
-                    moment(due)
+                    "pulse {number} and all behind it are missing, due from {due}"
                 ));
             }
             _ => self.miss(origin_ps),
         }
     }
 
-    fn pair(&mut self, ps: u64, backward: bool, crossing: Crossing, origin_ps: i64) {
-        let lateness_ps = lateness_ps(ps, origin_ps, &crossing, tick_ps(&self.timebase));
+    fn pair(&mut self, ps: u64, backward: bool, crossing: Crossing, lateness_ps: f64) {
         self.errors.add(lateness_ps, self.number, ps);
         self.curvature_ps = self.curvature_ps.max(curvature_ps(&crossing, &self.timebase));
         if let Some(last) = self.last.filter(|last| last.backward == backward) {

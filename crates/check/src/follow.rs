@@ -1,7 +1,7 @@
 //! Follows one axis pulse by pulse beside its profile, for the waveform, the CSV and the plot.
 
 use crate::edge::{Pin, PinChange};
-use crate::ideal::{lateness_ps, tick_ps};
+use crate::ideal::{Due, tick_ps};
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::{Crossing, Timeline};
 use std::fmt;
@@ -82,7 +82,7 @@ impl<'a> Follower<'a> {
         self.initial(change.pin, change.level);
         rises.then(|| {
             let crossing = self.crossings.next();
-            let lateness = |c| lateness_ps(change.ps, self.origin_ps, &c, self.tick_ps);
+            let lateness = |c| Due::of(&c, self.tick_ps).lateness_ps(change.ps, self.origin_ps);
             let (number, position) = self.last.map_or((0, 0), |p| (p.number, p.position));
             let same_way = self.last.filter(|p| p.backward == self.dir);
             let pulse = Pulse {

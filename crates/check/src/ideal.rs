@@ -19,26 +19,36 @@ pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
     tick_ps(timebase) as f64 / f64::from(timebase.phases())
 }
 
-/// The time from the load of the move to the crossing: whole ps, and a rest of at most half a ps.
-fn due(crossing: &Crossing, tick_ps: u64) -> (i128, f64) {
-    let whole = (crossing.seconds * PS).round();
-    let rest = crossing.seconds.mul_add(PS, -whole);
-    // 64 bits hold 106 days in ps. A longer time saturates in the cast.
-    (i128::from(crossing.start_tick) * i128::from(tick_ps) + i128::from(whole as i64), rest)
+/// The time at which a crossing is due, after the origin: whole ps, and a rest of at most half a
+/// ps. It is computed once for each crossing, because an edge is compared with it several times.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Due {
+    whole: i128,
+    rest: f64,
 }
 
-/// The lateness e = m - t of a rising edge, ps; negative is early. Integers are subtracted first
-/// and floats last, so that the result is exact to a fraction of a ps.
-pub(crate) fn lateness_ps(rise_ps: u64, origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> f64 {
-    let (whole, rest) = due(crossing, tick_ps);
-    let late = i128::from(rise_ps) - i128::from(origin_ps) - whole;
-    // The difference nearly always fits into 64 bits, whose conversion to a float is faster.
-    i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - rest
-}
+impl Due {
+    /// When a crossing is due. `tick_ps` is the length of a tick.
+    pub(crate) fn of(crossing: &Crossing, tick_ps: u64) -> Self {
+        let whole = (crossing.seconds * PS).round();
+        let rest = crossing.seconds.mul_add(PS, -whole);
+        // 64 bits hold 106 days in ps. A longer time saturates in the cast.
+        let start = i128::from(crossing.start_tick) * i128::from(tick_ps);
+        Self { whole: start + i128::from(whole as i64), rest }
+    }
 
-/// The time at which a crossing is due, in whole ps of the capture.
-pub(crate) fn due_ps(origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> i128 {
-    i128::from(origin_ps) + due(crossing, tick_ps).0
+    /// The lateness e = m - t of a rising edge, ps; negative is early. Integers are subtracted
+    /// first and floats last, so that the result is exact to a fraction of a ps.
+    pub(crate) fn lateness_ps(self, rise_ps: u64, origin_ps: i64) -> f64 {
+        let late = i128::from(rise_ps) - i128::from(origin_ps) - self.whole;
+        // The difference nearly always fits into 64 bits, whose conversion to a float is faster.
+        i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - self.rest
+    }
+
+    /// The time of the capture, in whole ps.
+    pub(crate) fn at_ps(self, origin_ps: i64) -> i128 {
+        i128::from(origin_ps) + self.whole
+    }
 }
 
 /// The greatest shift of an edge, ps, because the gateware interpolates linearly within a tick and
@@ -75,10 +85,12 @@ mod tests {
         let (tick, hour) = (1_000_000_u64, 3_600_000_000_u64);
         for late in [-1_i64, 0, 1, 12_345] {
             let rise = (hour * tick + 123_456_789).strict_add_signed(late) + 7;
-            let found = lateness_ps(rise, 7, &crossing(hour, 123.456_789e-6, 1.0, 0.0), tick);
+            let due = Due::of(&crossing(hour, 123.456_789e-6, 1.0, 0.0), tick);
+            let found = due.lateness_ps(rise, 7);
             assert!((found - late as f64).abs() < 1e-6, "{found}");
         }
-        assert_eq!(due_ps(-7, &crossing(hour, 0.5, 1.0, 0.0), tick), 3_600_500_000_000_000 - 7);
+        let due = Due::of(&crossing(hour, 0.5, 1.0, 0.0), tick);
+        assert_eq!(due.at_ps(-7), 3_600_500_000_000_000 - 7);
     }
 
     #[test]

@@ -42,25 +42,30 @@ pub(crate) struct LinesCheck {
     lines: Vec<LineCheck>,
     phase: StartPhase,
     pulses: Vec<u64>,
+    /// Of each axis, the number of the first line that its pulses have not passed.
+    reached: Vec<usize>,
 }
 
 impl LinesCheck {
+    /// The lines are in the order of the moves.
     pub(crate) fn new(lines: Vec<StraightLine>, phase: StartPhase, axes: usize) -> Self {
         let lines =
             lines.into_iter().map(|line| LineCheck { worst: vec![None; axes], line }).collect();
-        Self { lines, phase, pulses: vec![0; axes] }
+        Self { lines, phase, pulses: vec![0; axes], reached: vec![0; axes] }
     }
 
     /// Takes a pulse of an axis.
     pub(crate) fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
-        let within = |line: &StraightLine| {
-            (1..=line.steps[axis].unsigned_abs())
-                .contains(&(pulse.saturating_sub(line.before[axis])))
-        };
-        if let Some(check) = self.lines.iter_mut().find(|check| within(&check.line)) {
-            check.measure(axis, &self.pulses, self.phase);
+        let place = &mut self.reached[axis];
+        while let Some(check) = self.lines.get_mut(*place) {
+            let (before, steps) = (check.line.before[axis], check.line.steps[axis].unsigned_abs());
+            match pulse.saturating_sub(before) {
+                0 => return,
+                done if done <= steps => return check.measure(axis, &self.pulses, self.phase),
+                _ => *place += 1,
+            }
         }
     }
 
@@ -83,9 +88,12 @@ impl LineCheck {
         for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0)
         {
             let (there, m) = self.place(other, pulses, phase);
-            let apart = (here * m - there * n).abs() - (n + m);
-            let worst =
-                Worst { beyond: apart as f64 / (4.0 * n as f64 * m as f64), pulse: pulses[axis] };
+            let [whole_n, whole_m] = [n, m].map(i128::from);
+            let apart = (here * whole_m - there * whole_n).abs() - (whole_n + whole_m);
+            // The difference nearly always fits into 64 bits, whose conversion to a float is
+            // faster.
+            let apart = i64::try_from(apart).map_or_else(|_| apart as f64, |apart| apart as f64);
+            let worst = Worst { beyond: apart / (4.0 * n as f64 * m as f64), pulse: pulses[axis] };
             for axis in [axis, other] {
                 if self.worst[axis].is_none_or(|old| old.beyond < worst.beyond) {
                     self.worst[axis] = Some(worst);
@@ -96,10 +104,10 @@ impl LineCheck {
 
     /// The middle of an axis' current place on the line, in half steps, and the number of its
     /// steps.
-    fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, i128) {
+    fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, u64) {
         let steps = self.line.steps[axis];
-        let n = i128::from(steps.unsigned_abs());
-        let done = i128::from(pulses[axis].saturating_sub(self.line.before[axis])).min(n);
+        let n = steps.unsigned_abs();
+        let done = i128::from(pulses[axis].saturating_sub(self.line.before[axis]).min(n));
         // A pulse is due in the middle of its step, or at phase zero at its end, which is the start
         // of the step for a backward move.
         let middle = match phase {
