@@ -10,6 +10,6 @@ pub mod core;
 pub mod sequencer;
 mod sim;
 
-pub use axis::ParallelAxis;
 pub use self::core::ParallelCore;
+pub use axis::ParallelAxis;
 pub use sim::{AnyParallelCore, AxisSim, ParallelSim, parallel_core};

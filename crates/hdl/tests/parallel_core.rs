@@ -158,7 +158,8 @@ fn step_rate_above_the_pin_timing_is_an_overrun() {
     let mut bench = Bench::new();
     let timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
     let pins = [PinTiming { step_high: 40, step_low: 40, dir_setup: 1, dir_hold: 1 }; AXES];
-    bench.core = ParallelSim::new(&Build { timebase, phase: StartPhase::Half, pins }, AXES).unwrap();
+    bench.core =
+        ParallelSim::new(&Build { timebase, phase: StartPhase::Half, pins }, AXES).unwrap();
     bench.segment(4, Segment { ticks: 1000, v: i64::MAX, ..LAST });
     bench.start(1 << 4);
     bench.until(|o| o.faults.overrun == 1 << 4);

@@ -21,8 +21,8 @@ mod tool;
 pub mod vectors;
 mod verilator;
 
-use carrystep_core::ports::Outputs;
 use carrystep_core::build::{ParallelAxesError, check_parallel_axes};
+use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Build, Program};
 use carrystep_tools::programs::Tool;
 use std::path::PathBuf;
@@ -218,8 +218,7 @@ pub fn run_verilog(
 /// [`LevelError::Endless`] if the program has no start; [`LevelError::Axes`] if no core has the
 /// number of axes of the job.
 pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
-    host::first_start(&mut model(job)?, job)
-        .ok_or(LevelError::Endless(job.max_clocks))
+    host::first_start(&mut model(job)?, job).ok_or(LevelError::Endless(job.max_clocks))
 }
 
 /// The clock-by-clock model of a job's core.

@@ -223,7 +223,8 @@ pub(crate) fn engine_of(
     prefix: &Prefix,
     description: &str,
 ) -> Result<Exported, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, build.pins.iter(), &guard::lines(build));
+    let facts =
+        Facts::of_axes(&build.timebase, build.phase, build.pins.iter(), &guard::lines(build));
     let top = Top { name: ENGINE_NAME, kind: "Engine", waivers: Some(ENGINE_WAIVERS) };
     Exported::new(engine(build)?.as_mut(), top, prefix, &facts, description)
 }
