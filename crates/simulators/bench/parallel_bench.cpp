@@ -1,6 +1,6 @@
-// The host of docs/clock-by-clock.md for Verilator: feeds a program to the parallel core, and prints
-// every cycle in which any output changed. The outputs of axes that the core does not have are
-// printed as 0. Macro: AXES, the core's number of axes. Arguments: FILE TAIL MAX.
+// The host of docs/clock-by-clock.md for Verilator: feeds a program to the parallel core, and
+// prints every cycle in which any output changed. The outputs of axes that the core does not have
+// are printed as 0. Macro: AXES, the core's number of axes. Arguments: FILE TAIL MAX.
 #include "Vparallel.h"
 #include "verilated.h"
 #include <cinttypes>

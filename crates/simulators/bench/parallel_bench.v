@@ -1,6 +1,6 @@
 // The host that docs/clock-by-clock.md specifies, for Icarus: it feeds a program to the parallel
-// core, and prints the outputs in every cycle in which any of them changed. The outputs of axes that
-// the core does not have are printed as 0.
+// core, and prints the outputs in every cycle in which any of them changed. The outputs of axes
+// that the core does not have are printed as 0.
 // Macros: CORE, the name of the core; AXES, its number of axes.
 // Arguments: +program=FILE +tail=CYCLES +max=CYCLES.
 `timescale 1ns / 1ps
