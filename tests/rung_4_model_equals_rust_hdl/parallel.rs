@@ -35,6 +35,16 @@ fn random_programs_at_1_phase() {
 }
 
 #[test]
+fn random_programs_on_one_axis() {
+    lockstep::assert_random_programs_equal_model(Level::RustHdl, 1, 16, 60);
+}
+
+#[test]
+fn random_programs_on_three_axes() {
+    lockstep::assert_random_programs_equal_model(Level::RustHdl, 3, 4, 60);
+}
+
+#[test]
 fn the_demo() {
     let plan = moves::demo_at_48_mhz();
     let program = plan.program();

@@ -57,6 +57,22 @@ fn random_programs_in_icarus_at_1_phase() {
     random_programs(Level::Icarus, 1, StartPhase::Half, 60);
 }
 
+/// The position of one axis has 32 bits, that of two axes 64, and that of three more: these are
+/// three types in C++.
+#[test]
+fn random_programs_in_verilator_on_one_two_and_three_axes() {
+    for (axes, phases) in [(1, 16), (2, 16), (3, 4)] {
+        lockstep::assert_random_programs_equal_model(Level::Verilator, axes, phases, 60);
+    }
+}
+
+#[test]
+fn random_programs_in_icarus_on_one_and_three_axes() {
+    for (axes, phases) in [(1, 16), (3, 4)] {
+        lockstep::assert_random_programs_equal_model(Level::Icarus, axes, phases, 15);
+    }
+}
+
 #[test]
 fn the_demo_in_verilator() {
     planned(Level::Verilator, &moves::demo_at_48_mhz());

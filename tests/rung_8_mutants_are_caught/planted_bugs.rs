@@ -118,7 +118,7 @@ fn rung_5_catches_each_bug_in_the_gateware() {
     let program = program();
     let job = lockstep::job(&build, &program);
     let expected = lockstep::record(Level::Model, &job).expect("the model");
-    let verilog = carrystep_verilog::six_axis_verilog(&build, "a test").expect("the core");
+    let verilog = carrystep_verilog::parallel_verilog(&build, 6, "a test").expect("the core");
     assert_eq!(
         lockstep::difference(&expected, &in_icarus(&verilog, &job)),
         None,

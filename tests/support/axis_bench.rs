@@ -11,7 +11,7 @@ const BENCH: &str = include_str!("axis_bench.v");
 /// Runs segments back to back and returns every edge and the final P.
 pub fn edges_in_icarus(build: &Build, segments: &[Segment]) -> (Vec<Edge>, u64) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let verilog = carrystep_verilog::six_axis_verilog(build, "a test").expect("the core");
+    let verilog = carrystep_verilog::parallel_verilog(build, 1, "a test").expect("the core");
     let mut program = String::new();
     for Segment { ticks, v, a, j, last } in segments {
         writeln!(program, "{ticks:x} {v:x} {a:x} {j:x} {}", u8::from(*last)).expect("a string");

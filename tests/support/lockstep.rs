@@ -1,12 +1,15 @@
 //! Compares two levels on the same program, every output in every clock.
 
 use crate::golden::Edge;
+use crate::programs;
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, Program, StartPhase, Timebase};
 use carrystep_plan::Plan;
 use carrystep_simulators::engine::run::{EngineJob, EngineOutcome};
 use carrystep_simulators::{Job, Level, LevelError, Outcome, run};
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
 
 /// All outputs in each cycle in which any of them changed, and the end of the run. A host can block
 /// itself for ever (with a start that can never happen); then there is no end.
@@ -58,6 +61,27 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
             panic!("{level} is not {model}: {difference}\n program {:?}", job.program);
         }
     }
+}
+
+/// Panics at the first clock in which a level of the parallel core of this many axes differs from
+/// its models, in this number of random programs. They also name axes that the core does not have.
+pub fn assert_random_programs_equal_model(level: Level, axes: usize, phases: u32, cases: u32) {
+    let build = tight_build(phases, StartPhase::Half);
+    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 100, ..Config::default() });
+    let refused = Cell::new(0);
+    let held = runner.run(&programs::program_with_strangers(axes), |program| {
+        let job = Job { axes, ..job(&build, &program) };
+        assert_equals_model(level, &job);
+        let model = record(Level::Model, &job).expect("the model");
+        refused.set(
+            refused.get()
+                + u32::from(model.changes.iter().any(|(_, outputs)| outputs.faults.protocol)),
+        );
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+    let refused = refused.get();
+    assert!(refused > cases / 4, "only {refused} programs broke the protocol");
 }
 
 /// All outputs of a planned engine but those that the fast level does not tell (the `ready`s,

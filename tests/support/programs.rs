@@ -113,6 +113,26 @@ pub fn program() -> impl Strategy<Value = Program> {
     program_of(AXES)
 }
 
+/// A complete program for a core of this many axes, at most 6, that also names axes which the core
+/// does not have: one segment is for such an axis, and the masks of the starts have bits for them.
+pub fn program_with_strangers(axes: usize) -> impl Strategy<Value = Program> {
+    let stranger = (axes as u8..8, segment(), 1_u32..400, any::<prop::sample::Index>());
+    (program_of(axes), stranger, any::<u8>()).prop_map(
+        move |(mut program, (axis, segment, clocks, place), bits)| {
+            for command in &mut program {
+                if let Command::Start { mask } = command {
+                    *mask |= bits & !all(axes);
+                }
+            }
+            let place = place.index(program.len() + 1);
+            let strange =
+                [Command::Segment { axis, segment }, Command::Wait { clocks }, Command::Clear];
+            program.splice(place..place, strange);
+            program
+        },
+    )
+}
+
 /// A complete program for this many axes: correct moves, wild moves, protocol faults, and some
 /// clears.
 pub fn program_of(axes: usize) -> impl Strategy<Value = Program> {

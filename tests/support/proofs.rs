@@ -24,13 +24,13 @@ pub mod equivalence;
 mod event_wheel;
 mod homing_control;
 mod limits;
+mod parallel_core;
 mod promises;
 mod pulser;
 mod queue;
 mod resets;
 mod sequencer;
 mod shaper;
-mod six_axis;
 mod solver;
 mod stops;
 mod supervisor;
@@ -130,7 +130,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         sequencer::proof(),
         tick::proof(),
         edge::proof(),
-        six_axis::proof(),
+        parallel_core::proof(),
         pulser::proof(engine),
         stops::proof(engine),
         supervisor::proof(engine),

@@ -2,14 +2,14 @@
 //! inputs in every clock. The registers must be equal wherever the fast model stops.
 
 use carrystep_core::ports::Inputs;
-use carrystep_core::{Build, Command};
+use carrystep_core::{AXES, Build, Command};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_model::{Fast, SixAxis};
+use carrystep_model::{Fast, ParallelCore};
 
 /// Both models, and their edges since the last comparison.
 pub struct Twins {
     fast: Fast,
-    slow: SixAxis,
+    slow: ParallelCore,
     fast_edges: Vec<Edge>,
     slow_edges: Vec<Edge>,
     /// The greatest lengths of the leaps, used in turn, so that a leap can end in any clock.
@@ -25,8 +25,8 @@ impl Twins {
     /// Both models at configuration.
     pub fn new(build: &Build, leaps: Vec<u64>) -> Self {
         Self {
-            fast: Fast::new(build),
-            slow: SixAxis::new(build),
+            fast: Fast::new(build, AXES),
+            slow: ParallelCore::new(build, AXES),
             fast_edges: Vec::new(),
             slow_edges: Vec::new(),
             leaps,
@@ -63,12 +63,20 @@ impl Twins {
 
     /// Holds inputs until they are accepted. It returns without waiting if the core is frozen,
     /// because a frozen core accepts nothing.
-    fn offer(&mut self, inputs: &Inputs, taken: impl Fn(&SixAxis) -> bool) -> Result<(), String> {
+    fn offer(
+        &mut self,
+        inputs: &Inputs,
+        taken: impl Fn(&ParallelCore) -> bool,
+    ) -> Result<(), String> {
         self.until(inputs, |slow| slow.faults().any() || taken(slow))?;
         if self.slow.faults().any() { Ok(()) } else { self.clock(inputs) }
     }
 
-    fn until(&mut self, inputs: &Inputs, done: impl Fn(&SixAxis) -> bool) -> Result<(), String> {
+    fn until(
+        &mut self,
+        inputs: &Inputs,
+        done: impl Fn(&ParallelCore) -> bool,
+    ) -> Result<(), String> {
         while !done(&self.slow) {
             self.advance(inputs, u64::MAX)?;
         }
@@ -108,8 +116,10 @@ impl Twins {
 
     /// Executes one clock of the slow model and derives its edges from its pins alone.
     fn slow_clock(&mut self, inputs: &Inputs, cycle: u64) {
-        let pins = |slow: &SixAxis| {
-            std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir))
+        let pins = |slow: &ParallelCore| {
+            std::array::from_fn::<_, AXES, _>(|axis| {
+                (slow.shaper(axis).step, slow.shaper(axis).dir)
+            })
         };
         let before = pins(&self.slow);
         self.slow.clock(inputs);

@@ -151,6 +151,7 @@ pub fn run(
     let how_far = Some(progress.how_far());
     let on = match &engine {
         None => CorePlan::Parallel(Job {
+            axes: file.machine.axes.len(),
             halt,
             how_far,
             ..Job::new(&plan.build, &program, plan.total_ticks())

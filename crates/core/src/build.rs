@@ -4,7 +4,7 @@
 use crate::fixed::StartPhase;
 use thiserror::Error;
 
-/// Number of axes of the six-axis core; a machine may use fewer.
+/// The greatest number of axes of the parallel core, and of the axes whose moves are planned.
 pub const AXES: usize = 6;
 
 /// Fewest clocks in a tick. Within a tick a host must be able to send a segment for every axis, and
@@ -193,13 +193,27 @@ pub struct PinTimes {
     pub dir_hold: u64,
 }
 
-/// All parameters of a build of the six-axis core.
+/// A number of axes that the parallel core cannot have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("{0} axes: the parallel core has 1 to {AXES}")]
+pub struct ParallelAxesError(pub usize);
+
+/// Checks a number of axes of the parallel core.
+///
+/// # Errors
+/// [`ParallelAxesError`] if it is not 1 to [`AXES`].
+pub const fn check_parallel_axes(axes: usize) -> Result<(), ParallelAxesError> {
+    if axes >= 1 && axes <= AXES { Ok(()) } else { Err(ParallelAxesError(axes)) }
+}
+
+/// All parameters of a build of the parallel core, except its number of axes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Build {
     /// Clock, tick and phases.
     pub timebase: Timebase,
     /// Phase of a step in which moves start.
     pub phase: StartPhase,
-    /// Pin timing of each axis. Axes that the machine does not have use [`PinTiming::SHORTEST`].
+    /// Pin timing of each axis. A core of N axes uses the first N. Axes that the machine does not
+    /// have use [`PinTiming::SHORTEST`].
     pub pins: [PinTiming; AXES],
 }

@@ -25,6 +25,8 @@ pub enum Width {
     Bits(u32),
     /// One bit for each axis of the build; bit i is axis i.
     Axes,
+    /// 32 bits for each axis of the build; axis 0 is in the lowest bits.
+    WordPerAxis,
 }
 
 impl Width {
@@ -33,6 +35,7 @@ impl Width {
         match self {
             Self::Bits(bits) => bits,
             Self::Axes => axes as u32,
+            Self::WordPerAxis => 32 * axes as u32,
         }
     }
 }
@@ -106,11 +109,11 @@ pub(crate) const fn output(
 }
 
 const BIT: Width = Width::Bits(1);
-const MASK: Width = Width::Bits(AXES as u32);
-const WORDS: Width = Width::Bits(32 * AXES as u32);
+const MASK: Width = Width::Axes;
+const WORDS: Width = Width::WordPerAxis;
 
-/// The ports of `carrystep_six_axis`, in order.
-pub const SIX_AXIS_PORTS: [Port; 24] = [
+/// The ports of the parallel core, `carrystep_parallel_N` for N axes, in order.
+pub const PARALLEL_PORTS: [Port; 24] = [
     CLOCK,
     input("seg_valid", BIT, Peer::Host, "the host offers a segment"),
     input("seg_axis", Width::Bits(3), Peer::Host, "the axis of that segment"),
@@ -140,9 +143,11 @@ pub const SIX_AXIS_PORTS: [Port; 24] = [
 /// Input values of the core in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Inputs {
-    /// The axis (0 to 7; 6 and 7 do not exist) and the segment that the host offers, if any.
+    /// The axis, 0 to 7, and the segment that the host offers, if any. In a core of N axes, the
+    /// axes from N on do not exist.
     pub segment: Option<(u8, Segment)>,
-    /// Mask of the axes whose start the host offers, if any.
+    /// Mask of the axes whose start the host offers, if any. The port of a core of N axes has the
+    /// lowest N bits of it.
     pub start: Option<u8>,
     /// Resume after a fault.
     pub clear: bool,
@@ -159,9 +164,9 @@ pub struct Outputs {
     pub step: u8,
     /// Levels of the DIR pins; bit i is axis i, 1 is backward.
     pub dir: u8,
-    /// Position registers, in steps.
+    /// Position registers, in steps; 0 for axes that the core does not have.
     pub position: [i32; AXES],
-    /// Number of steps per axis that a freeze discarded.
+    /// Number of steps per axis that a freeze discarded; 0 for axes that the core does not have.
     pub discarded: [u32; AXES],
     /// All axes have finished and no start is armed.
     pub idle: bool,

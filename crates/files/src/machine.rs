@@ -114,7 +114,8 @@ impl Machine {
         file.machine.check(source)
     }
 
-    /// The parameters of this machine's build of the six-axis core.
+    /// The parameters of this machine's build of the parallel core, which has as many axes as the
+    /// machine.
     ///
     /// # Errors
     /// [`TooManyAxes`] if the machine has more than six axes.

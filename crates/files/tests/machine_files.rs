@@ -87,7 +87,7 @@ fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
 }
 
 #[test]
-fn build_of_the_core_always_has_six_axes() {
+fn build_of_the_core_always_has_six_pin_timings() {
     let two = format!(
         "[machine]\n{AXIS}driver = \"a4988\"\n{}driver = \"tmc2209\"\n",
         AXIS.replace("\"x\"", "\"y\"")

@@ -4,8 +4,8 @@
 //! exports them as Verilog; the `*Sim` types of this crate simulate them clock by clock.
 //!
 //! - [`mod@engine`]: the product. One adder serves up to eight axes, each in its own time slot.
-//! - [`parallel`]: the reference core. Each of six axes has its own adders, as the article draws
-//!   it. Read [`parallel::axis`] first: it is the accumulator in which every carry is a step.
+//! - [`parallel`]: the reference core. Each of up to six axes has its own adders, as the article
+//!   draws it. Read [`parallel::axis`] first: it is the accumulator in which every carry is a step.
 //! - [`parts`]: the modules of the parallel core that form pulses and divide time: the shaper, the
 //!   edge and the tick. The engine uses the tick as well.
 //! - [`mod@link`] and [`line`]: the host's requests, and the UART or SPI that carries their bytes.
@@ -29,9 +29,11 @@ mod sim;
 pub use engine::{AnyEngine, EngineSim, engine};
 pub use line::{Spi, SpiSim, UartLine, UartSim};
 pub use link::{AnyLink, LinkSim, link};
-pub use parallel::{AxisSim, ParallelAxis, SixAxis, SixAxisSim};
+pub use parallel::{
+    AnyParallelCore, AxisSim, ParallelAxis, ParallelCore, ParallelSim, parallel_core,
+};
 
-use carrystep_core::build::MAX_CLOCKS;
+use carrystep_core::build::{MAX_CLOCKS, ParallelAxesError};
 use carrystep_core::engine::EngineError;
 use thiserror::Error;
 
@@ -49,6 +51,9 @@ pub enum HdlError {
     /// The number of phases per tick, Q, is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
+    /// The parallel core cannot have this number of axes.
+    #[error(transparent)]
+    ParallelAxes(#[from] ParallelAxesError),
     /// The time slots of all axes do not fit in a tick, or a parameter exceeds the range of its
     /// counter.
     #[error(transparent)]

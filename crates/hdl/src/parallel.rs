@@ -1,4 +1,4 @@
-//! The parallel core: each of six axes has its own adders, so that all axes work in the same clock.
+//! The parallel core: each of its axes has its own adders, so that all axes work in the same clock.
 //!
 //! It is the circuit that the article draws, and the reference for [`mod@crate::engine`]: a proof
 //! compares the pulses of both. The two cores share only the tick counter and the primitives. The
@@ -6,10 +6,10 @@
 //! block RAM.
 
 pub mod axis;
+pub mod core;
 pub mod sequencer;
 mod sim;
-pub mod six_axis;
 
+pub use self::core::ParallelCore;
 pub use axis::ParallelAxis;
-pub use sim::{AxisSim, SixAxisSim};
-pub use six_axis::SixAxis;
+pub use sim::{AnyParallelCore, AxisSim, ParallelSim, parallel_core};

@@ -1,5 +1,5 @@
 //! Both cores without visiting every clock. States, outputs and faults are exactly those of
-//! [`SixAxis`] and [`Engine`](crate::Engine); only the way to compute them may change here.
+//! [`ParallelCore`] and [`Engine`](crate::Engine); only the way to compute them may change here.
 //!
 //! Between two loads of a segment, the position of an axis is a cubic with integer coefficients. A
 //! *window* is a run of clocks in which the axes only repeat their additions, so that on the pins
@@ -29,7 +29,7 @@ mod pins;
 pub use edges::{Change, Edge, Edges};
 pub use engine::FastEngine;
 
-use crate::SixAxis;
+use crate::ParallelCore;
 use carrystep_core::Build;
 use carrystep_core::ports::{Inputs, Outputs};
 use passage::Passages;
@@ -37,19 +37,20 @@ use passage::Passages;
 /// The parallel core, and the number of the clock cycle that it is in.
 #[derive(Debug, Clone)]
 pub struct Fast {
-    core: SixAxis,
+    core: ParallelCore,
     cycle: u64,
     passages: Passages,
 }
 
 impl Fast {
-    /// The core at configuration, in cycle 0.
-    pub fn new(build: &Build) -> Self {
-        Self { core: SixAxis::new(build), cycle: 0, passages: Passages::default() }
+    /// The core of this number of axes at configuration, as [`ParallelCore::new`] makes it, in
+    /// cycle 0.
+    pub fn new(build: &Build, axes: usize) -> Self {
+        Self { core: ParallelCore::new(build, axes), cycle: 0, passages: Passages::default() }
     }
 
     /// The registers of the core.
-    pub fn core(&self) -> &SixAxis {
+    pub fn core(&self) -> &ParallelCore {
         &self.core
     }
 
@@ -110,7 +111,7 @@ impl Fast {
     /// running segments, that strobe not included. The ticks `left` of a segment include the
     /// present tick.
     fn clocks_to_load(&self) -> u64 {
-        let left = |axis_model: &crate::parallel::six_axis::AxisModel| {
+        let left = |axis_model: &crate::parallel::core::AxisModel| {
             axis_model.axis.running.then_some(axis_model.axis.left.saturating_sub(1))
         };
         let plain = self.core.axis_models.iter().filter_map(left).min().unwrap_or(u32::MAX);

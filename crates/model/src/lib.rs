@@ -19,4 +19,4 @@ pub mod parts;
 pub use engine::Engine;
 pub use fast::{Fast, FastEngine};
 pub use link::Link;
-pub use parallel::SixAxis;
+pub use parallel::ParallelCore;

@@ -1,6 +1,6 @@
 //! The parallel core: each axis has adders of its own.
 
 pub mod axis;
-pub mod six_axis;
+pub mod core;
 
-pub use six_axis::SixAxis;
+pub use self::core::ParallelCore;

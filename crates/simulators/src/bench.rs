@@ -52,6 +52,7 @@ fn rendered(template: &str) -> Result<String, LevelError> {
 fn row(port: &Port) -> Value {
     let (width, range) = match port.width {
         Width::Axes => ("AXES".to_owned(), "[AXES-1:0] ".to_owned()),
+        Width::WordPerAxis => ("32 * AXES".to_owned(), "[32*AXES-1:0] ".to_owned()),
         Width::Bits(1) => ("1".to_owned(), String::new()),
         Width::Bits(bits) => (bits.to_string(), format!("[{}:0] ", bits - 1)),
     };

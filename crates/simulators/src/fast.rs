@@ -4,6 +4,7 @@ use crate::host::Host;
 pub use crate::listener::{EdgesOnly, Listener};
 use crate::replay::Replay;
 use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
+use carrystep_core::build::check_parallel_axes;
 use carrystep_core::ports::Outputs;
 use carrystep_model::Fast;
 
@@ -19,9 +20,11 @@ pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outco
 /// Runs a job on the fast model; `listener` receives the edges as they occur.
 ///
 /// # Errors
-/// [`LevelError::Endless`] if the run does not end; [`LevelError::Halted`] if it was halted.
+/// [`LevelError::Endless`] if the run does not end; [`LevelError::Halted`] if it was halted;
+/// [`LevelError::Axes`] if no core has the number of axes of the job.
 pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outcome, LevelError> {
-    let mut core = Fast::new(job.build);
+    check_parallel_axes(job.axes)?;
+    let mut core = Fast::new(job.build, job.axes);
     let mut host = Host::new(job.program);
     let mut quiet = 0;
     let mut origin = None;

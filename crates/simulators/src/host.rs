@@ -4,7 +4,7 @@ use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{Command, Program};
 
-/// A six-axis core that is simulated in Rust, clock by clock.
+/// A parallel core that is simulated in Rust, clock by clock.
 pub trait SimulatedCore {
     /// The outputs of this cycle for these inputs.
     fn outputs(&mut self, inputs: &Inputs) -> Outputs;
@@ -12,7 +12,7 @@ pub trait SimulatedCore {
     fn clock(&mut self, inputs: &Inputs);
 }
 
-impl SimulatedCore for carrystep_model::SixAxis {
+impl SimulatedCore for carrystep_model::ParallelCore {
     fn outputs(&mut self, inputs: &Inputs) -> Outputs {
         Self::outputs(self, inputs)
     }
@@ -21,7 +21,7 @@ impl SimulatedCore for carrystep_model::SixAxis {
     }
 }
 
-impl SimulatedCore for carrystep_hdl::SixAxisSim {
+impl SimulatedCore for carrystep_hdl::ParallelSim {
     fn outputs(&mut self, inputs: &Inputs) -> Outputs {
         self.settle(inputs)
     }

@@ -4,7 +4,7 @@ use crate::tool::{self, ICARUS};
 use crate::{Job, LevelError, Observer, Outcome, external};
 use std::process::Command;
 
-const BENCH: &str = include_str!("../bench/six_axis_bench.v");
+const BENCH: &str = include_str!("../bench/parallel_bench.v");
 
 pub(crate) fn run(
     verilog: &str,
@@ -21,9 +21,17 @@ pub(crate) fn run(
     write("bench.v", BENCH)?;
     write("program.txt", &external::program_text(job))?;
     let files = ["-o", "bench.vvp", "bench.v", "core.v"];
+    let numbers = [
+        format!("-DAXES={}", job.axes),
+        format!("-DCORE={}", carrystep_verilog::parallel_name(job.axes)),
+    ];
     tool::complete(
         &ICARUS,
-        Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder.path()),
+        Command::new(ICARUS.name)
+            .arg("-g2005")
+            .args(numbers)
+            .args(files)
+            .current_dir(folder.path()),
     )?;
     let mut simulation = Command::new("vvp");
     simulation.args(["-n", "bench.vvp", "+program=program.txt"]).current_dir(folder.path());

@@ -21,8 +21,9 @@ mod tool;
 pub mod vectors;
 mod verilator;
 
+use carrystep_core::build::{ParallelAxesError, check_parallel_axes};
 use carrystep_core::ports::Outputs;
-use carrystep_core::{Build, Program};
+use carrystep_core::{AXES, Build, Program};
 use carrystep_tools::programs::Tool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,11 +57,13 @@ impl Level {
     }
 }
 
-/// A program for a six-axis core, and the conditions of its run.
+/// A program for the parallel core, and the conditions of its run.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// Build parameters of the gateware.
     pub build: &'a Build,
+    /// Number of axes of the core, 1 to 6.
+    pub axes: usize,
     /// Commands that the host sends.
     pub program: &'a Program,
     /// Number of consecutive cycles with nothing left to do after which the run is over; at least
@@ -84,14 +87,15 @@ pub(crate) fn halted(halt: Halt<'_>) -> bool {
 }
 
 impl<'a> Job<'a> {
-    /// A job of `ticks` ticks of motion. Its limit of cycles includes time for the pipeline and the
-    /// last pulse.
+    /// A job of `ticks` ticks of motion on a core of six axes. Its limit of cycles includes time
+    /// for the pipeline and the last pulse.
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let slack = 4 * clocks
             + build.pins.iter().map(|p| u64::from(p.step_high + p.step_low)).max().unwrap_or(0);
         Self {
             build,
+            axes: AXES,
             program,
             tail: slack,
             max_clocks: (ticks + 8) * clocks + 4 * slack,
@@ -133,6 +137,9 @@ pub enum LevelError {
     /// The run was halted by a flag.
     #[error("the run was stopped before its end")]
     Halted,
+    /// The parallel core cannot have the number of axes of the job.
+    #[error(transparent)]
+    Axes(#[from] ParallelAxesError),
     /// No gateware can be made for these build parameters.
     #[error("{0}")]
     Gateware(String),
@@ -169,21 +176,22 @@ pub fn run(
 ) -> Result<Outcome, LevelError> {
     match level {
         Level::Fast => fast::replay(job, observer),
-        Level::Model => host::run(&mut carrystep_model::SixAxis::new(job.build), job, observer),
+        Level::Model => host::run(&mut model(job)?, job, observer),
         Level::RustHdl => {
-            let mut core = carrystep_hdl::SixAxisSim::new(job.build)
+            let mut core = carrystep_hdl::ParallelSim::new(job.build, job.axes)
                 .map_err(|e| LevelError::Gateware(e.to_string()))?;
             host::run(&mut core, job, observer)
         }
         Level::Icarus | Level::Verilator => {
-            let verilog = carrystep_verilog::six_axis_verilog(job.build, "a simulation")
+            let verilog = carrystep_verilog::parallel_verilog(job.build, job.axes, "a simulation")
                 .map_err(|e| LevelError::Gateware(e.to_string()))?;
             run_verilog(level, &verilog, job, observer)
         }
     }
 }
 
-/// Runs a job in Icarus or Verilator on Verilog text whose top is `carrystep_six_axis`.
+/// Runs a job in Icarus or Verilator on Verilog text whose top is `carrystep_parallel_N` for the N
+/// axes of the job.
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, if the level has no Verilog, or if the run does
@@ -207,10 +215,16 @@ pub fn run_verilog(
 /// model computes it.
 ///
 /// # Errors
-/// [`LevelError::Endless`] if the program has no start.
+/// [`LevelError::Endless`] if the program has no start; [`LevelError::Axes`] if no core has the
+/// number of axes of the job.
 pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
-    host::first_start(&mut carrystep_model::SixAxis::new(job.build), job)
-        .ok_or(LevelError::Endless(job.max_clocks))
+    host::first_start(&mut model(job)?, job).ok_or(LevelError::Endless(job.max_clocks))
+}
+
+/// The clock-by-clock model of a job's core.
+fn model(job: &Job<'_>) -> Result<carrystep_model::ParallelCore, LevelError> {
+    check_parallel_axes(job.axes)?;
+    Ok(carrystep_model::ParallelCore::new(job.build, job.axes))
 }
 
 /// Checks that the tools of a level are installed.

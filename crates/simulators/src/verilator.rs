@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
 
-const BENCH: &str = include_str!("../bench/six_axis_bench.cpp");
+const BENCH: &str = include_str!("../bench/parallel_bench.cpp");
 /// Verilator's makefile adds -Os behind all other flags, unless `OPT_FAST` is set. With -Os some
 /// simulations reach only a third of the speed.
 const OPTIONS: [&str; 9] = [
@@ -31,9 +31,11 @@ pub(crate) fn run(
 ) -> Result<Outcome, LevelError> {
     let program_file =
         tempfile::NamedTempFile::new().map_err(tool::io("cannot make a temporary file"))?;
-    let six_axis =
-        Simulation { name: "six_axis", top: "carrystep_six_axis", bench: BENCH, options: &[] };
-    let mut simulation = Command::new(six_axis.compiled(verilog)?);
+    let top = carrystep_verilog::parallel_name(job.axes);
+    let axes = format!("-DAXES={}", job.axes);
+    let options = ["--prefix", "Vparallel", "-CFLAGS", &axes];
+    let parallel = Simulation { name: "parallel", top: &top, bench: BENCH, options: &options };
+    let mut simulation = Command::new(parallel.compiled(verilog)?);
     std::fs::write(&program_file, external::program_text(job))
         .map_err(tool::io("cannot write the program"))?;
     simulation.arg(program_file.path()).args([job.tail.to_string(), job.max_clocks.to_string()]);

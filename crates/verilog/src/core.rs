@@ -11,12 +11,17 @@ use crate::{ExportError, guard, instances, parameters};
 use carrystep_core::link::{BYTE_PORTS, LineKind};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_hdl::primitives::formula::ParameterValue;
-use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
+use carrystep_hdl::{HdlError, Spi, UartLine, engine, link, parallel_core};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
 
-/// Name of the six-axis core's top module and of its files.
-pub const CORE_NAME: &str = "carrystep_six_axis";
+/// Name of the parallel core's top module and of its files, without the number of axes.
+pub(crate) const PARALLEL: &str = "carrystep_parallel";
+
+/// Name of the parallel core's top module and of its files, for a core of this number of axes.
+pub fn parallel_name(axes: usize) -> String {
+    format!("{PARALLEL}_{axes}")
+}
 
 /// Name of the engine's top module and of its files.
 pub const ENGINE_NAME: &str = "carrystep_engine";
@@ -24,8 +29,8 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 /// Name of the host link's top module and of its file.
 pub const LINK_NAME: &str = "carrystep_link";
 
-/// Verilator's waivers for the parallel core, each with its reason.
-pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
+/// Verilator's waivers for the parallel core of any number of axes, each with its reason.
+pub const PARALLEL_WAIVERS: &str = include_str!("carrystep_parallel.vlt");
 
 /// Verilator's waivers for the engine, each with its reason.
 pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
@@ -59,8 +64,8 @@ const PURPOSES: [(&str, &str); 35] = [
         "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
     ),
     (
-        CORE_NAME,
-        "Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
+        PARALLEL,
+        "Parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
     ),
     (
         "carrystep_time_slot",
@@ -153,17 +158,22 @@ const PURPOSES: [(&str, &str); 35] = [
     (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
 ];
 
-/// The six-axis core of this build as Verilog-2005 with the top module [`CORE_NAME`]. `description`
-/// is a line that names the source of the build. The same build always gives the same text.
+/// The parallel core of this build with this number of axes, 1 to 6, as Verilog-2005 with the top
+/// module [`parallel_name`]. `description` is a line that names the source of the build. The same
+/// build always gives the same text.
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated.
-pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    Ok(six_axis(build, &Prefix::default(), description)?.text)
+pub fn parallel_verilog(
+    build: &Build,
+    axes: usize,
+    description: &str,
+) -> Result<String, ExportError> {
+    Ok(parallel_of(build, axes, &Prefix::default(), description)?.text)
 }
 
 /// The engine of this build as Verilog-2005 with the top module [`ENGINE_NAME`]. Otherwise as
-/// [`six_axis_verilog`].
+/// [`parallel_verilog`].
 ///
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated.
@@ -172,7 +182,7 @@ pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, 
 }
 
 /// The host link of this build as Verilog-2005 with the top module [`LINK_NAME`]. Otherwise as
-/// [`six_axis_verilog`].
+/// [`parallel_verilog`].
 ///
 /// # Errors
 /// [`ExportError`] if the link cannot be generated.
@@ -185,7 +195,7 @@ pub fn link_verilog(
 }
 
 /// The line to the host as Verilog-2005 with the top module [`line_name`]. Otherwise as
-/// [`six_axis_verilog`].
+/// [`parallel_verilog`].
 ///
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
@@ -193,15 +203,18 @@ pub fn line_verilog(line: LineKind, description: &str) -> Result<String, ExportE
     Ok(line_of(line, &Prefix::default(), description)?.text)
 }
 
-/// The six-axis core, exported.
-pub(crate) fn six_axis(
+/// The parallel core, exported.
+pub(crate) fn parallel_of(
     build: &Build,
+    axes: usize,
     prefix: &Prefix,
     description: &str,
 ) -> Result<Exported, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
-    let top = Top { name: CORE_NAME, kind: "SixAxis", waivers: Some(CORE_WAIVERS) };
-    Exported::new(&mut SixAxis::new(build)?, top, prefix, &facts, description)
+    let mut core = parallel_core(build, axes)?;
+    let facts = Facts::of_axes(&build.timebase, build.phase, build.pins.iter().take(axes), "");
+    let name = parallel_name(axes);
+    let top = Top { name: &name, kind: "ParallelCore", waivers: Some(PARALLEL_WAIVERS) };
+    Exported::new(core.as_mut(), top, prefix, &facts, description)
 }
 
 /// The engine, exported.
@@ -210,7 +223,8 @@ pub(crate) fn engine_of(
     prefix: &Prefix,
     description: &str,
 ) -> Result<Exported, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
+    let facts =
+        Facts::of_axes(&build.timebase, build.phase, build.pins.iter(), &guard::lines(build));
     let top = Top { name: ENGINE_NAME, kind: "Engine", waivers: Some(ENGINE_WAIVERS) };
     Exported::new(engine(build)?.as_mut(), top, prefix, &facts, description)
 }
@@ -302,6 +316,15 @@ pub(crate) fn link_ports(
     Ok(ports.partition(|(name, _)| BYTE_PORTS.iter().any(|port| port.name == name.as_str())))
 }
 
+/// The name of a module without its number of axes, if it has one: `carrystep_parallel` for
+/// `carrystep_parallel_3`.
+fn without_axes(usual: &str) -> &str {
+    match usual.rsplit_once('_') {
+        Some((name, axes)) if axes.parse::<usize>().is_ok() => name,
+        _ => usual,
+    }
+}
+
 /// Contents of the header.
 struct Facts {
     title: String,
@@ -309,9 +332,9 @@ struct Facts {
 }
 
 /// A top module that can be exported.
-struct Top {
+struct Top<'a> {
     /// Its usual name.
-    name: &'static str,
+    name: &'a str,
     /// The struct that it is in Rust.
     kind: &'static str,
     waivers: Option<&'static str>,
@@ -332,7 +355,7 @@ pub(crate) struct Exported {
 impl Exported {
     fn new(
         core: &mut dyn Block,
-        Top { name: usual, kind, waivers }: Top,
+        Top { name: usual, kind, waivers }: Top<'_>,
         prefix: &Prefix,
         build: &Facts,
         description: &str,
@@ -349,7 +372,7 @@ impl Exported {
         for Written { usual, text: module, .. } in &library.modules {
             let (_, purpose) = PURPOSES
                 .iter()
-                .find(|(kind, _)| usual == kind)
+                .find(|(kind, _)| without_axes(usual) == *kind)
                 .ok_or_else(|| ExportError::undescribed(usual, "the module"))?;
             let purpose = wrapped(&prefix.in_text(purpose), "// ", COLUMNS).join("\n");
             text.push_str(&format!("\n{purpose}\n{module}"));
@@ -380,22 +403,23 @@ impl Exported {
     }
 }
 
-/// Writes the six-axis core into `dir`: its Verilog, its waivers and a template of an instance.
-/// Each file appears completely or not at all.
+/// Writes the parallel core of this number of axes, 1 to 6, into `dir`: its Verilog, its waivers
+/// and a template of an instance. Each file appears completely or not at all.
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated or a file cannot be written.
-pub fn write_core(
+pub fn write_parallel(
     dir: &Path,
     build: &Build,
+    axes: usize,
     prefix: &Prefix,
     description: &str,
 ) -> Result<Vec<PathBuf>, ExportError> {
-    write(dir, &six_axis(build, prefix, description)?.files()?)
+    write(dir, &parallel_of(build, axes, prefix, description)?.files()?)
 }
 
 /// Writes the engine into `dir`, with the constraints of its synchronizers. Otherwise as
-/// [`write_core`].
+/// [`write_parallel`].
 ///
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated or a file cannot be written.
@@ -445,7 +469,12 @@ impl Library<'_> {
 }
 
 impl Facts {
-    fn of_axes(time: &Timebase, phase: StartPhase, pins: &[PinTiming], guard: &str) -> Self {
+    fn of_axes<'a>(
+        time: &Timebase,
+        phase: StartPhase,
+        pins: impl ExactSizeIterator<Item = &'a PinTiming>,
+        guard: &str,
+    ) -> Self {
         let start = match phase {
             StartPhase::Half => "half a step",
             StartPhase::Zero => "0",
@@ -464,17 +493,20 @@ impl Facts {
             phases = time.phases(),
             latency = time.latency_clocks(),
         );
-        for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in
-            pins.iter().enumerate()
-        {
+        let axes = match pins.len() {
+            1 => "one axis".to_owned(),
+            count => {
+                let numbers = ["two", "three", "four", "five", "six", "seven", "eight"];
+                let number = count.checked_sub(2).and_then(|place| numbers.get(place));
+                format!("{} axes", number.unwrap_or(&"many"))
+            }
+        };
+        for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in pins.enumerate() {
             lines.push_str(&format!(
                 "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
             ));
         }
-        let count =
-            ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
-        let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
-        Self { title, lines: lines + guard }
+        Self { title: format!("step and direction for {axes}"), lines: lines + guard }
     }
 }
 

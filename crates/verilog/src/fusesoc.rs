@@ -1,7 +1,7 @@
 //! Describes the folder of the cores to FuseSoC, in its format CAPI2.
 
 use crate::ExportError;
-use crate::core::{CORE_NAME, ENGINE_NAME, Exported};
+use crate::core::{ENGINE_NAME, Exported, PARALLEL};
 use crate::docs::wrapped;
 use crate::module::COLUMNS;
 use crate::parameters;
@@ -20,8 +20,8 @@ CAPI=2:
 # The gateware of carrystep for FuseSoC. This file is generated: change the generator instead.
 #
 # The target `default` gives a design the engine, the host link and both lines to the host. The
-# target `parallel` gives it the parallel core, which has modules of the same names as the engine:
-# a design that needs both exports one of them anew, with `carrystep verilog --prefix`.
+# target `parallel_6` gives it the parallel core of six axes, which has modules of the same names as
+# the engine: a design that needs both exports one of them anew, with `carrystep verilog --prefix`.
 #
 # The .xdc files have the type `user`, because Vivado must read them with `read_xdc -ref MODULE`,
 # which FuseSoC does not do. The .veo files are templates of instances.
@@ -89,7 +89,7 @@ pub(crate) fn description(cores: &[Exported]) -> Result<TextFile, ExportError> {
             name = core.name,
             list = wrapped(&names.join(", "), "       ", COLUMNS).join("\n").trim_start()
         );
-        if core.name != CORE_NAME {
+        if !core.name.starts_with(PARALLEL) {
             together.push(sets);
         }
         all.extend(own.into_iter().map(|one| (one.name.clone(), one)));

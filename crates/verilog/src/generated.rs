@@ -1,7 +1,7 @@
 //! All files of the workspace that are generated from tables of `spec`: the files of the register
 //! map, the pages of boards and drivers, the cores, and the boards' gateware.
 
-use crate::core::{engine_of, line_of, link_of, six_axis};
+use crate::core::{engine_of, line_of, link_of, parallel_of};
 use crate::prefix::Prefix;
 use crate::write::{TextFile, write};
 use crate::{ExportError, Gateware, board, fusesoc, registers};
@@ -47,7 +47,7 @@ fn core_files() -> Result<Vec<TextFile>, ExportError> {
         link_of(&build, line, &prefix, SHIPPED)?,
         line_of(line, &prefix, SHIPPED)?,
         line_of(LineKind::Spi, &prefix, SHIPPED)?,
-        six_axis(&machine.build()?, &prefix, SHIPPED)?,
+        parallel_of(&machine.build()?, machine.axes.len(), &prefix, SHIPPED)?,
     ];
     let description = fusesoc::description(&cores)?;
     let mut files = Vec::new();

@@ -32,8 +32,8 @@ mod write;
 
 pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
 pub use crate::core::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, line_name,
-    line_verilog, link_verilog, six_axis_verilog, write_core, write_engine,
+    ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, PARALLEL_WAIVERS, engine_verilog, line_name,
+    line_verilog, link_verilog, parallel_name, parallel_verilog, write_engine, write_parallel,
 };
 pub use crate::generated::{generated_files, write_generated_files};
 pub use crate::prefix::{Prefix, PrefixError};

@@ -6,8 +6,8 @@ use carrystep_core::engine::{Guard, LimitWiring};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_verilog::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, Prefix, engine_verilog,
-    generated_files, six_axis_verilog, write_core, write_engine,
+    ENGINE_NAME, ENGINE_WAIVERS, ExportError, PARALLEL_WAIVERS, Prefix, engine_verilog,
+    generated_files, parallel_name, parallel_verilog, write_engine, write_parallel,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -27,10 +27,14 @@ struct Core {
 
 const CORES: [Core; 2] = [
     Core {
-        name: CORE_NAME,
-        of_machine: |machine, description| six_axis_verilog(&machine.build().unwrap(), description),
-        write: |folder, build, about| write_core(folder, build, &Prefix::default(), about),
-        waivers: CORE_WAIVERS,
+        name: "carrystep_parallel_6",
+        of_machine: |machine, description| {
+            parallel_verilog(&machine.build().unwrap(), AXES, description)
+        },
+        write: |folder, build, about| {
+            write_parallel(folder, build, AXES, &Prefix::default(), about)
+        },
+        waivers: PARALLEL_WAIVERS,
         machine: "sim/six-axis.toml",
         timebases: [(48_000_000, 1000, 16), (20_000_000, 1000, 4), (16_000_000, 1000, 1)],
     },
@@ -81,7 +85,7 @@ fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
     (output.status.success(), said.into_owned())
 }
 
-/// Runs a tool on each core in some builds, and on engines of each number of axes, each in a fresh
+/// Runs a tool on each core in some builds, and on cores of each number of axes, each in a fresh
 /// directory.
 fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &str) -> bool) {
     for core in &CORES {
@@ -93,6 +97,13 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
             let (ok, said) = run(tool, &arguments(core.name), folder.path());
             assert!(fine(ok, &said), "{}, {phases} phases: {said}", core.name);
         }
+    }
+    for axes in 1..=AXES {
+        let (folder, build) = (tempfile::tempdir().unwrap(), build(20_000_000, 4));
+        write_parallel(folder.path(), &build, axes, &Prefix::default(), "a test").unwrap();
+        let name = parallel_name(axes);
+        let (ok, said) = run(tool, &arguments(&name), folder.path());
+        assert!(fine(ok, &said), "{name}: {said}");
     }
     for axes in 1..=8 {
         let folder = tempfile::tempdir().unwrap();
@@ -111,10 +122,23 @@ fn engine_has_the_axes_of_its_build() {
 }
 
 #[test]
+fn parallel_core_has_the_axes_that_its_name_says() {
+    for axes in 1..=AXES {
+        let text = parallel_verilog(&build(48_000_000, 16), axes, "a test").unwrap();
+        assert!(text.contains(&format!("\nmodule carrystep_parallel_{axes} #(\n")));
+        assert_eq!(text.matches("    carrystep_shaper #(").count(), axes);
+    }
+    for axes in [0, 7] {
+        let error = parallel_verilog(&build(48_000_000, 16), axes, "a test").unwrap_err();
+        assert_eq!(error.to_string(), format!("{axes} axes: the parallel core has 1 to 6"));
+    }
+}
+
+#[test]
 fn equal_modules_are_written_once_and_named_by_kind() {
-    let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
+    let text = parallel_verilog(&build(48_000_000, 16), 6, "a test").unwrap();
     let modules: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("module ")).collect();
-    let heads = ["tick #", "sequencer ", "step_edge ", "axis #", "shaper #", "six_axis #"];
+    let heads = ["tick #", "sequencer ", "step_edge ", "axis #", "shaper #", "parallel_6 #"];
     assert_eq!(modules, heads.map(|head| format!("carrystep_{head}(")));
     assert!(!text.contains('$'));
 }
@@ -122,7 +146,8 @@ fn equal_modules_are_written_once_and_named_by_kind() {
 #[test]
 fn same_build_gives_the_same_text() {
     let build = build(20_000_000, 4);
-    assert_eq!(six_axis_verilog(&build, "a").unwrap(), six_axis_verilog(&build, "a").unwrap());
+    let text = || parallel_verilog(&build, 3, "a").unwrap();
+    assert_eq!(text(), text());
 }
 
 #[test]
@@ -130,9 +155,12 @@ fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
     let mut build = build(48_000_000, 16);
     build.pins[3].step_low = 0;
     let folder = tempfile::tempdir().unwrap();
-    let error = write_core(folder.path(), &build, &Prefix::default(), "a test").unwrap_err();
+    let write = |axes| write_parallel(folder.path(), &build, axes, &Prefix::default(), "a test");
+    let error = write(AXES).unwrap_err();
     assert!(error.to_string().contains("step_low is 0 clocks"), "{error}");
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+    // The timing is that of axis 3, which a core of three axes does not have.
+    assert_eq!(write(3).unwrap().len(), 3);
 }
 
 #[test]

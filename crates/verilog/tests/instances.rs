@@ -9,7 +9,7 @@ use carrystep_core::ports::{Direction, Peer, Port};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_verilog::{
     Gateware, Prefix, TextFile, engine_verilog, generated_files, line_verilog, link_verilog,
-    six_axis_verilog, write_core, write_engine,
+    parallel_verilog, write_engine, write_parallel,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -105,7 +105,8 @@ fn around(template: &str, name: &str) -> String {
 
 #[test]
 fn every_module_and_every_port_has_a_comment() {
-    let mut texts = vec![six_axis_verilog(&build(), "a test").unwrap()];
+    let mut texts: Vec<String> =
+        [1, 6].map(|axes| parallel_verilog(&build(), axes, "a test").unwrap()).into();
     for axes in [1, 6, 8] {
         texts.push(engine_verilog(&engine_of(axes), "a test").unwrap());
         texts.push(link_verilog(&engine_of(axes), uart(), "a test").unwrap());
@@ -168,12 +169,12 @@ fn two_engines_with_different_prefixes_are_in_one_design() {
         assert!(fine && said.is_empty(), "{name}: {said}");
     }
     // The parallel core has modules of the same names as the engine.
-    write_core(folder.path(), &build(), &prefix("all_"), "a test").unwrap();
-    top.push_str(&around(&read(folder.path(), "all_six_axis.veo"), "all_"));
+    write_parallel(folder.path(), &build(), 3, &prefix("all_"), "a test").unwrap();
+    top.push_str(&around(&read(folder.path(), "all_parallel_3.veo"), "all_"));
     let top = format!("{top}module both ();\n{instances}    all_ instance_of_all ();\nendmodule\n");
     std::fs::write(folder.path().join("both.v"), top).unwrap();
     elaborates(folder.path(), "both");
-    let script = "read_verilog left_engine.v right_engine.v all_six_axis.v both.v; \
+    let script = "read_verilog left_engine.v right_engine.v all_parallel_3.v both.v; \
                   hierarchy -check -top both";
     let (fine, said) = run("yosys", &["-q", "-p", script], folder.path());
     assert!(fine && !said.contains("Warning"), "{said}");
@@ -324,7 +325,7 @@ fn asynchronous_pins_reach_only_the_synchronizers_of_the_constraints() {
         let ports: Vec<Port> = line_ports(line).collect();
         assert_only_synchronizers(&text, name, &ports, xdc);
     }
-    for name in ["carrystep_link", "carrystep_six_axis"] {
+    for name in ["carrystep_link", "carrystep_parallel_6"] {
         assert!(find(&format!("{name}.xdc")).is_none() && find(&format!("{name}.v")).is_some());
     }
     // The constraints for Quartus name the same registers.

@@ -6,7 +6,7 @@ use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_verilog::{
-    ENGINE_NAME, engine_verilog, line_verilog, link_verilog, six_axis_verilog,
+    ENGINE_NAME, engine_verilog, line_verilog, link_verilog, parallel_verilog,
 };
 use std::path::Path;
 use std::process::Command;
@@ -66,7 +66,7 @@ fn builds_differ_in_the_values_of_parameters_alone() {
         [(&first, lines[0]), (&second, lines[1])]
             .map(|(build, line)| link_verilog(build, line, "a test").unwrap()),
         lines.map(|line| line_verilog(line, "a test").unwrap()),
-        parallel.map(|build| six_axis_verilog(&build, "a test").unwrap()),
+        parallel.map(|build| parallel_verilog(&build, AXES, "a test").unwrap()),
     ];
     for [one, other] in pairs {
         assert_ne!(one, other);

@@ -4,11 +4,11 @@
 
 use carrystep_core::engine::ENGINE_PORTS;
 use carrystep_core::link::{LineKind, Uart, line_ports, link_ports};
-use carrystep_core::ports::{Direction, Peer, Port, SIX_AXIS_PORTS, Width};
+use carrystep_core::ports::{Direction, PARALLEL_PORTS, Peer, Port, Width};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_verilog::{
-    CORE_NAME, ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_verilog,
-    six_axis_verilog,
+    ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_verilog, parallel_name,
+    parallel_verilog,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -72,10 +72,14 @@ fn names<'a>(ports: impl IntoIterator<Item = &'a Port>) -> BTreeSet<String> {
 
 #[test]
 fn exported_modules_have_the_ports_of_their_tables() {
-    let text = six_axis_verilog(&build(), "a test").unwrap();
-    let six = declared(&text, CORE_NAME);
-    assert!(six.iter().map(|(name, _)| name.as_str()).eq(SIX_AXIS_PORTS.map(|port| port.name)));
-    assert_eq!(six.into_iter().collect::<Ports>(), tabled(SIX_AXIS_PORTS, AXES));
+    for axes in 1..=AXES {
+        let text = parallel_verilog(&build(), axes, "a test").unwrap();
+        let core = declared(&text, &parallel_name(axes));
+        let order = PARALLEL_PORTS.iter().map(|port| port.name);
+        assert!(core.iter().map(|(name, _)| name.as_str()).eq(order), "{axes} axes");
+        let table = tabled(PARALLEL_PORTS, axes);
+        assert_eq!(core.into_iter().collect::<Ports>(), table, "{axes} axes");
+    }
     let uart = LineKind::Uart(Uart::new(80_000_000, 921_600).unwrap());
     for axes in 1..=8 {
         let build = engine_of(axes);
@@ -96,7 +100,7 @@ fn exported_modules_have_the_ports_of_their_tables() {
 #[test]
 fn outputs_are_valid_with_outputs_of_their_own_table() {
     let link: Vec<Port> = link_ports().collect();
-    for table in [&SIX_AXIS_PORTS[..], ENGINE_PORTS, &link] {
+    for table in [&PARALLEL_PORTS[..], ENGINE_PORTS, &link] {
         for name in table.iter().filter_map(|port| port.valid_with) {
             let with = table.iter().find(|port| port.name == name).unwrap();
             assert_eq!(with.width, Width::Bits(1), "{name}");
@@ -108,8 +112,8 @@ fn outputs_are_valid_with_outputs_of_their_own_table() {
 fn hand_written_verilog_connects_every_port() {
     let harness = read("crates/tools/src/resources/harness.v");
     assert_eq!(connected(&harness, "carrystep_engine core ("), names(ENGINE_PORTS));
-    let bench = read("crates/simulators/bench/six_axis_bench.v");
-    assert_eq!(connected(&bench, "carrystep_six_axis core ("), names(&SIX_AXIS_PORTS));
+    let bench = read("crates/simulators/bench/parallel_bench.v");
+    assert_eq!(connected(&bench, "`CORE core ("), names(&PARALLEL_PORTS));
     for folder in std::fs::read_dir(Path::new(ROOT).join("hdl-out")).unwrap() {
         let board = folder.unwrap().file_name().into_string().unwrap();
         let top = format!("hdl-out/{board}/carrystep_{}_top.v", board.replace('-', "_"));
@@ -146,13 +150,13 @@ fn harness_has_a_register_for_every_bit_of_the_engine() {
 
 #[test]
 fn hand_written_simulations_use_every_port() {
-    let bench = read("crates/simulators/bench/six_axis_bench.cpp");
-    for port in SIX_AXIS_PORTS {
+    let bench = read("crates/simulators/bench/parallel_bench.cpp");
+    for port in PARALLEL_PORTS {
         assert!(bench.contains(&format!("core.{}", port.name)), "{}", port.name);
     }
     // This one never has to resume.
     let toggle = read("crates/xtask/benches/levels/harness/toggle.cpp");
-    for port in SIX_AXIS_PORTS.iter().filter(|port| port.direction == Direction::Input) {
+    for port in PARALLEL_PORTS.iter().filter(|port| port.direction == Direction::Input) {
         let used = toggle.contains(&format!("core.{}", port.name));
         assert_eq!(used, port.name != "clear", "{}", port.name);
     }
@@ -181,11 +185,12 @@ fn documented(page: &str, port: &str) -> BTreeMap<String, (bool, String)> {
 #[test]
 fn page_has_the_ports_of_the_tables() {
     let page = read("docs/clock-by-clock.md");
-    for (table, one) in [(&SIX_AXIS_PORTS[..], "seg_valid"), (ENGINE_PORTS, "put_valid")] {
+    for (table, one) in [(&PARALLEL_PORTS[..], "seg_valid"), (ENGINE_PORTS, "put_valid")] {
         let row = |port: &Port| {
             let width = match port.width {
                 Width::Bits(bits) => bits.to_string(),
                 Width::Axes => "N".to_owned(),
+                Width::WordPerAxis => "32N".to_owned(),
             };
             (port.name.to_owned(), (port.direction == Direction::Input, width))
         };

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped() -> (Build, Arc<str>) {
-    let file = moves::root().join("hdl-out/core/carrystep_six_axis.v");
+    let file = moves::root().join("hdl-out/core/carrystep_parallel_6.v");
     let text = std::fs::read_to_string(file).expect("the committed Verilog");
     (moves::demo().build, text.into())
 }
@@ -40,7 +40,8 @@ pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
         pins(MAX_CLOCKS, MAX_CLOCKS, MAX_CLOCKS, MAX_CLOCKS),
     ];
     let build = Build { pins, ..lockstep::quick_build(phases, start) };
-    let text = carrystep_verilog::six_axis_verilog(&build, "a proof").expect("the core").into();
+    let text =
+        carrystep_verilog::parallel_verilog(&build, AXES, "a proof").expect("the core").into();
     (build, text)
 }
 

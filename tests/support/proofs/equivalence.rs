@@ -13,6 +13,7 @@ use super::{Bug, Case, Promises};
 use carrystep_core::engine::LimitWiring;
 use carrystep_core::{AXES, Build, PinTiming};
 use carrystep_tools::programs::{YOSYS, YOSYS_ABC};
+use carrystep_verilog::{parallel_name, parallel_verilog};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -120,6 +121,7 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
     let parallel = Build { timebase: build.timebase, pins, ..small(phases).0 };
     let numbers = [
         ("AXES", axes.to_string()),
+        ("PARALLEL", parallel_name(axes)),
         ("CLOCKS", clocks.to_string()),
         ("PHASES", phases.to_string()),
         ("TICKS_1", ticks[0].to_string()),
@@ -136,7 +138,7 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
             verilog: engine,
             numbers: numbers.into(),
         },
-        axes: carrystep_verilog::six_axis_verilog(&parallel, "a proof").expect("the axes").into(),
+        axes: parallel_verilog(&parallel, axes, "a proof").expect("the axes").into(),
         // One tick without time slots, 16 ticks for the words, 2 until the start, 2 until the pins,
         // and one for the delay of the pins.
         clocks: clocks * (1 + 16 + 2 + ticks[0] + ticks[1] + 3),
@@ -209,17 +211,18 @@ fn swept(
 /// The commands of yosys. Each core is flattened separately, because both have modules of the same
 /// name; then the miter combines them.
 fn script(pair: &Move, asked: Asked) -> String {
-    let cores = ["engine", "six_axis"];
+    let axes = parallel_name(pair.engine.axes());
+    let cores = [("engine.v", &*pair.engine.dut), ("axes.v", &*axes)];
     let mut text = String::new();
-    for (core, file) in cores.into_iter().zip(["engine.v", "axes.v"]) {
+    for (file, core) in cores {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "read_verilog -sv {file}\nhierarchy -check -top carrystep_{core}\nproc\nflatten\ndesign -stash {core}"
+            "read_verilog -sv {file}\nhierarchy -check -top {core}\nproc\nflatten\ndesign -stash {core}"
         );
     }
-    for core in cores {
-        let _ = writeln!(text, "design -copy-from {core} -as carrystep_{core} carrystep_{core}");
+    for (_, core) in cores {
+        let _ = writeln!(text, "design -copy-from {core} -as {core} {core}");
     }
     text.push_str("read_verilog -formal -sv");
     for (name, number) in &pair.engine.numbers {

@@ -9,7 +9,7 @@ use crate::{output, shipped};
 use carrystep_core::engine::GuardFigures;
 use carrystep_core::link::Uart;
 use carrystep_files::Machine;
-use carrystep_verilog::{CORE_NAME, ENGINE_NAME, ExportError, Prefix};
+use carrystep_verilog::{ENGINE_NAME, ExportError, Prefix, parallel_name};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -114,9 +114,10 @@ pub fn write(
         Core::Parallel => {
             let build =
                 machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
-            let files =
-                carrystep_verilog::write_core(out, &build, prefix, name).map_err(refused)?;
-            let top = prefix.name(CORE_NAME);
+            let axes = machine.axes.len();
+            let files = carrystep_verilog::write_parallel(out, &build, axes, prefix, name)
+                .map_err(refused)?;
+            let top = prefix.name(&parallel_name(axes));
             Ok(WrittenVerilog { passed: true, top, tick_ns, tick_note, guard: None, files })
         }
         Core::Engine => {

@@ -30,7 +30,7 @@ fn output_paths_that_no_file_can_have_are_refused() {
         .run("simulate move.toml --vcd out/a --csv ./out/a")
         .refuses("cannot write ./out/a: it is also the output out/a");
     folder.run("demo --out out/kept").refuses("cannot write out/kept/six-axis.toml: ");
-    for (core, file) in [("engine", "carrystep_engine.v"), ("parallel", "carrystep_six_axis.v")] {
+    for (core, file) in [("engine", "carrystep_engine.v"), ("parallel", "carrystep_parallel_6.v")] {
         for out in ["out/kept", "/proc/none"] {
             let ran = folder.run(&format!("verilog --core {core} --out {out}"));
             ran.refuses(&format!("cannot write {out}/{file}: "));

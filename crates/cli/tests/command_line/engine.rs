@@ -236,11 +236,11 @@ fn the_engine_is_what_runs_where_no_core_is_named() {
         assert_eq!(core(&format!("{command} --core engine")), "engine", "{command}");
         if let Some(out) = written {
             assert!(folder.files().contains(&format!("{out}/carrystep_engine.v")));
-            assert!(!folder.files().contains(&format!("{out}/carrystep_six_axis.v")));
+            assert!(!folder.files().contains(&format!("{out}/carrystep_parallel_6.v")));
         }
         assert_eq!(core(&format!("{command} --core parallel")), "parallel", "{command}");
     }
-    assert!(folder.files().contains(&"demo/carrystep_six_axis.v".to_owned()));
+    assert!(folder.files().contains(&"demo/carrystep_parallel_6.v".to_owned()));
     assert_eq!(
         folder.run("verilog --out hdl").stdout,
         folder.run("verilog --core engine --out hdl").stdout

@@ -69,7 +69,7 @@ fn verilog_does_not_replace_its_machine_file() {
     let folder = folder();
     fs::create_dir(folder.path("out")).unwrap();
     for (link, options) in
-        [("carrystep_six_axis.v", "--core parallel"), ("carrystep_engine.v", "--core engine")]
+        [("carrystep_parallel_1.v", "--core parallel"), ("carrystep_engine.v", "--core engine")]
     {
         fs::hard_link(folder.path("shop/machine.toml"), folder.path("out").join(link)).unwrap();
         let before = texts(&folder);

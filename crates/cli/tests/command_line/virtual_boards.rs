@@ -210,7 +210,8 @@ fn killed_host_leaves_a_stopped_machine_that_reports_the_watchdog() {
     assert_eq!(ran.status, 1);
     assert!(ran.stderr.starts_with("error: the machine has stopped: "), "{}", ran.stderr);
     assert!(ran.stderr.contains("`carrystep stop --clear`"), "{}", ran.stderr);
-    // The rest of the move waits in the queues, and as long as it does the drivers keep their power.
+    // The rest of the move waits in the queues, and as long as it does the drivers keep their
+    // power.
     let stop = |options: &str| {
         folder.run(&format!("stop{options} --port {} --machine machine.toml", board.port))
     };

@@ -2,6 +2,7 @@
 // same STEP and DIR in every clock.
 //
 //   parameters   AXES: number of axes
+//                PARALLEL: the name of the parallel core of this number of axes
 //                CLOCKS, PHASES: clocks and phases in a tick
 //                TICKS_1, TICKS_2: ticks of the two segments
 //                FREE: a mask of the bits of V, A and J that may have any value; the others are 0
@@ -72,18 +73,17 @@ module promises (
 
     // ---- Both cores.
 
-    wire [`AXES-1:0] step, dir;
-    wire [5:0] axes_step, axes_dir;
+    wire [`AXES-1:0] step, dir, axes_step, axes_dir;
     wire fault, started, axes_fault, axes_started, axes_idle;
     carrystep_engine dut (
         .clock(clock), .put_valid(!all_put), .put_axis(put_axis), .put_word(put[2:0]), .put_data(put_data),
         .put_ready(put_ready), .start_valid(start && !begun), .start_mask({`AXES{1'b1}}), .start_ready(start_ready),
         .kick(1'b1), .enable(1'b1), .step(step), .dir(dir), .fault(fault), .started(started)
     );
-    carrystep_six_axis axes (
+    `PARALLEL axes (
         .clock(clock), .seg_valid(offers), .seg_axis(seg_axis), .seg_ticks(second ? TICKS_2 : TICKS_1),
         .seg_v(seg_numbers[63:0]), .seg_a(seg_numbers[127:64]), .seg_j(seg_numbers[191:128]), .seg_last(second),
-        .seg_ready(seg_ready), .start_valid(asks), .start_mask({`AXES{1'b1}} | 6'd0), .start_ready(axes_start_ready),
+        .seg_ready(seg_ready), .start_valid(asks), .start_mask({`AXES{1'b1}}), .start_ready(axes_start_ready),
         .clear(1'b0), .step(axes_step), .dir(axes_dir), .idle(axes_idle), .fault(axes_fault), .started(axes_started)
     );
 
@@ -92,8 +92,8 @@ module promises (
     wire same = !axes_fault;
     always_comb begin
         equal_start: assert (started == axes_started);
-        equal_step: assert (!same || step == axes_step[`AXES-1:0]);
-        equal_dir: assert (!same || dir == axes_dir[`AXES-1:0]);
+        equal_step: assert (!same || step == axes_step);
+        equal_dir: assert (!same || dir == axes_dir);
         equal_faults: assert (!same || !fault);
         equal_stops: assert (faulty <= CLOCKS || fault);
     end

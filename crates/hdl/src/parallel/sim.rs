@@ -1,81 +1,130 @@
-//! Simulates the parallel core, or one of its axes alone, clock by clock.
+//! Makes the parallel core, whose number of axes is known only at run time, and simulates it or one
+//! of its axes alone, clock by clock.
 
 use crate::HdlError;
 use crate::parallel::axis::ParallelAxis;
-use crate::parallel::six_axis::SixAxis;
+use crate::parallel::core::ParallelCore;
 use crate::primitives::word::Word;
 use crate::sim::{connected, mask, rising_edge, settle};
+use carrystep_core::build::ParallelAxesError;
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, Faults, Segment, StartPhase};
+use rust_hdl::prelude::{Block, Out, Signal, check_all};
 
-/// A simulated six-axis core.
-pub struct SixAxisSim {
-    core: Box<SixAxis>,
+/// A parallel core whose number of axes is not part of its type.
+pub trait AnyParallelCore: Block {
+    /// Applies the inputs and returns the outputs of the present cycle.
+    fn settle(&mut self, inputs: &Inputs) -> Outputs;
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
+    fn clock(&mut self);
+    /// The P of an axis in the present cycle; `None` if the core does not have this axis.
+    fn fraction(&self, axis: usize) -> Option<u64>;
 }
 
-impl SixAxisSim {
-    /// Makes the core of this build, in cycle 0.
+/// Makes the parallel core of this build with this number of axes, which have the first pin timings
+/// of the build.
+///
+/// # Errors
+/// Returns [`HdlError::ParallelAxes`] if the number of axes is not 1 to 6, and
+/// [`HdlError::PinTiming`] if the pin timing of one of the axes is out of range.
+pub fn parallel_core(build: &Build, axes: usize) -> Result<Box<dyn AnyParallelCore>, HdlError> {
+    Ok(match axes {
+        1 => Box::new(ParallelCore::<1>::new(build)?),
+        2 => Box::new(ParallelCore::<2>::new(build)?),
+        3 => Box::new(ParallelCore::<3>::new(build)?),
+        4 => Box::new(ParallelCore::<4>::new(build)?),
+        5 => Box::new(ParallelCore::<5>::new(build)?),
+        6 => Box::new(ParallelCore::<6>::new(build)?),
+        _ => return Err(ParallelAxesError(axes).into()),
+    })
+}
+
+impl<const N: usize> AnyParallelCore for ParallelCore<N> {
+    fn settle(&mut self, inputs: &Inputs) -> Outputs {
+        self.clock.next = false.into();
+        let (axis, segment) = inputs.segment.unwrap_or((0, NO_SEGMENT));
+        self.seg_valid.next = inputs.segment.is_some();
+        self.seg_axis.next = Word::from(u64::from(axis));
+        self.seg_ticks.next = Word::from(u64::from(segment.ticks));
+        self.seg_v.next = Word::from(segment.v);
+        self.seg_a.next = Word::from(segment.a);
+        self.seg_j.next = Word::from(segment.j);
+        self.seg_last.next = segment.last;
+        self.start_valid.next = inputs.start.is_some();
+        self.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
+        self.clear.next = inputs.clear;
+        settle(self);
+        let words = |ports: &[Signal<Out, Word<32>>]| {
+            let mut words = [0; AXES];
+            for (word, port) in words.iter_mut().zip(ports) {
+                *word = port.val().value() as u32;
+            }
+            words
+        };
+        Outputs {
+            seg_ready: self.seg_ready.val(),
+            start_ready: self.start_ready.val(),
+            step: mask(&*self.step),
+            dir: mask(&*self.dir),
+            position: words(&*self.position).map(u32::cast_signed),
+            discarded: words(&*self.discarded),
+            idle: self.idle.val(),
+            faults: Faults {
+                overrun: mask(&*self.overrun),
+                overspeed: mask(&*self.overspeed),
+                underrun: mask(&*self.underrun),
+                protocol: self.protocol.val(),
+            },
+            started: self.started.val(),
+        }
+    }
+
+    fn clock(&mut self) {
+        if self.clock.val().clk {
+            self.clock.next = false.into();
+            settle(self);
+        }
+        self.clock.next = true.into();
+        rising_edge(self);
+    }
+
+    fn fraction(&self, axis: usize) -> Option<u64> {
+        self.axis.get(axis).map(|axis| axis.p.val().value() as u64)
+    }
+}
+
+/// A simulated parallel core.
+pub struct ParallelSim {
+    core: Box<dyn AnyParallelCore>,
+}
+
+impl ParallelSim {
+    /// Makes the core of this build with this number of axes, in cycle 0.
     ///
     /// # Errors
     /// Returns an [`HdlError`] if the core cannot be built.
-    pub fn new(build: &Build) -> Result<Self, HdlError> {
-        Ok(Self { core: connected(SixAxis::new(build)?)? })
+    pub fn new(build: &Build, axes: usize) -> Result<Self, HdlError> {
+        let mut core = parallel_core(build, axes)?;
+        core.connect_all();
+        check_all(core.as_ref()).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+        Ok(Self { core })
     }
 
     /// Applies the inputs and returns the outputs of the present cycle. Inputs that are not offered
     /// are driven as zero, so that `seg_ready` without a segment is that of axis 0.
     pub fn settle(&mut self, inputs: &Inputs) -> Outputs {
-        let core = &mut self.core;
-        core.clock.next = false.into();
-        let (axis, segment) = inputs.segment.unwrap_or((0, NO_SEGMENT));
-        core.seg_valid.next = inputs.segment.is_some();
-        core.seg_axis.next = Word::from(u64::from(axis));
-        core.seg_ticks.next = Word::from(u64::from(segment.ticks));
-        core.seg_v.next = Word::from(segment.v);
-        core.seg_a.next = Word::from(segment.a);
-        core.seg_j.next = Word::from(segment.j);
-        core.seg_last.next = segment.last;
-        core.start_valid.next = inputs.start.is_some();
-        core.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
-        core.clear.next = inputs.clear;
-        settle(core.as_mut());
-        self.outputs()
+        self.core.settle(inputs)
     }
 
     /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
-        if self.core.clock.val().clk {
-            self.core.clock.next = false.into();
-            settle(self.core.as_mut());
-        }
-        self.core.clock.next = true.into();
-        rising_edge(self.core.as_mut());
+        self.core.clock();
     }
 
-    /// The P of each axis in the present cycle. At rest after a whole move it equals the start
-    /// value.
-    pub fn fractions(&self) -> [u64; AXES] {
-        std::array::from_fn(|axis| self.core.axis[axis].p.val().value() as u64)
-    }
-
-    fn outputs(&self) -> Outputs {
-        let core = &self.core;
-        Outputs {
-            seg_ready: core.seg_ready.val(),
-            start_ready: core.start_ready.val(),
-            step: mask(&core.step),
-            dir: mask(&core.dir),
-            position: std::array::from_fn(|axis| core.position[axis].val().value() as u32 as i32),
-            discarded: std::array::from_fn(|axis| core.discarded[axis].val().value() as u32),
-            idle: core.idle.val(),
-            faults: Faults {
-                overrun: mask(&core.overrun),
-                overspeed: mask(&core.overspeed),
-                underrun: mask(&core.underrun),
-                protocol: core.protocol.val(),
-            },
-            started: core.started.val(),
-        }
+    /// The P of an axis in the present cycle; `None` if the core does not have this axis. At rest
+    /// after a whole move it equals the start value.
+    pub fn fraction(&self, axis: usize) -> Option<u64> {
+        self.core.fraction(axis)
     }
 }
 

@@ -11,6 +11,7 @@ mod ticking;
 mod verilator;
 mod writers;
 
+use carrystep_core::AXES;
 use carrystep_simulators::Level;
 use clap::Parser;
 use moves::{DENSITIES, Density, Moves, STEADY};
@@ -50,9 +51,9 @@ fn main() -> ExitCode {
 
 fn measure() -> Result<BenchReport, String> {
     let moves = DENSITIES.iter().map(Moves::load).collect::<Result<Vec<_>, _>>()?;
-    let verilog =
-        carrystep_verilog::six_axis_verilog(&moves[0].plan.build, "sim/bench/machine.toml")
-            .map_err(|error| error.to_string())?;
+    let build = &moves[0].plan.build;
+    let verilog = carrystep_verilog::parallel_verilog(build, AXES, "sim/bench/machine.toml")
+        .map_err(|error| error.to_string())?;
     let toggling = Verilated::compile(&verilog, false)?;
     let tracing = Verilated::compile(&verilog, true)?;
 

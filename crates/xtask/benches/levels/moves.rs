@@ -1,7 +1,7 @@
 //! The moves that every level runs, from `sim/bench/`.
 
 use carrystep_core::ports::Inputs;
-use carrystep_core::{Command, EngineBuild, Program, Timebase};
+use carrystep_core::{AXES, Command, EngineBuild, Program, Timebase};
 use carrystep_files::MoveFile;
 use carrystep_model::Fast;
 use carrystep_plan::{Plan, plan};
@@ -80,7 +80,7 @@ impl Moves {
 
     /// The commands with the cycle in which each is taken, as text for a harness without a host.
     pub fn feed(&self) -> String {
-        let mut core = Fast::new(&self.plan.build);
+        let mut core = Fast::new(&self.plan.build, AXES);
         let mut text = String::new();
         for command in &self.program {
             let (inputs, line) = match *command {

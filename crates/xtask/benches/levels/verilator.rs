@@ -46,7 +46,7 @@ impl Verilated {
             "fast",
             "--noassert",
         ]);
-        command.args(["-Wno-fatal", "--top-module", "carrystep_six_axis", "-o", "toggle"]);
+        command.args(["-Wno-fatal", "--top-module", "carrystep_parallel_6", "-o", "toggle"]);
         command.args([
             "-MAKEFLAGS",
             &format!("OPT_FAST='{flags}' OPT_SLOW='{flags}' OPT_GLOBAL='{flags}'"),

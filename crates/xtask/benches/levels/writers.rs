@@ -127,7 +127,7 @@ impl PortDump {
     fn create(path: &Path) -> std::io::Result<Self> {
         let mut out = vcd::Writer::new(BufWriter::with_capacity(1 << 18, File::create(path)?));
         let mut ids = [vcd::IdCode::FIRST; 5];
-        out.add_module("carrystep_six_axis")?;
+        out.add_module("carrystep_parallel_6")?;
         for (id, (name, bits)) in ids.iter_mut().zip(PORTS) {
             *id = out.add_wire(bits, name)?;
         }

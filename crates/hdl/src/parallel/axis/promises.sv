@@ -5,7 +5,7 @@
 //                START: the start value of P
 //   assumptions  A pushed segment has at least one tick, and it is pushed only while none waits. A
 //                frozen axis receives neither `push` nor `go`. An axis is cleared only while it is
-//                frozen and has no step in flight (proved in six_axis/promises.sv).
+//                frozen and has no step in flight (proved in core/promises.sv).
 //
 // This file sums the distance in 96 bits, so that no carry is lost: its upper 32 bits are the
 // number of steps, and its lower 64 bits are P.

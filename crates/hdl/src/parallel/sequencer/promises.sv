@@ -4,7 +4,7 @@
 //   parameters   `DUT: the name of the exported sequencer
 //   assumptions  A pushed segment has at least one tick, it is pushed only while none waits and the
 //                core is not frozen, and only a frozen sequencer is cleared (proved in
-//                six_axis/promises.sv). A frozen sequencer receives no strobe (proved in
+//                core/promises.sv). A frozen sequencer receives no strobe (proved in
 //                axis/promises.sv).
 //
 // This file keeps a copy of each segment from its push to its load, and counts its ticks.

@@ -5,7 +5,7 @@
 //                `DUT: the name of the exported edge
 //                The exported module carrystep_tick generates the strobe and the phases.
 //   assumptions  The module is cleared only while it is frozen and no step is in flight (proved in
-//                six_axis/promises.sv).
+//                core/promises.sv).
 //
 // The phase is that of docs/clock-by-clock.md, written here as one function of P and V.
 

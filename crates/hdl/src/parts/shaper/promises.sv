@@ -4,7 +4,7 @@
 //   parameters   STEP_HIGH, STEP_LOW, DIR_SETUP, DIR_HOLD: the pin timing in clocks
 //                `DUT: the name of the exported shaper, built with this timing
 //   assumptions  An overrun freezes the axis, and only a frozen axis is cleared (proved in
-//                six_axis/promises.sv).
+//                core/promises.sv).
 //
 // The promises refer to the pins and to counters in this file, not to the timers of the shaper.
 

@@ -1,9 +1,9 @@
-// Runs carrystep_six_axis by toggling its clock. A cycle without a command only toggles.
+// Runs carrystep_parallel_6 by toggling its clock. A cycle without a command only toggles.
 //
 // Arguments: FEED CLOCKS [TRACE.vcd]. Each line of the feed is `cycle kind who ticks v a j last`.
 // Kind 0 is a segment for axis `who`, kind 1 a start of the mask `who`. All numbers but the cycle,
 // kind and last are in hex. The program prints the seconds of processor time and the positions.
-#include "Vcarrystep_six_axis.h"
+#include "Vcarrystep_parallel_6.h"
 #include "verilated.h"
 #if VM_TRACE
 #include "verilated_vcd_c.h"
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
 #if VM_TRACE
     context.traceEverOn(true);
 #endif
-    Vcarrystep_six_axis core{&context};
+    Vcarrystep_parallel_6 core{&context};
     core.clock = 0;
     core.eval();
 #if VM_TRACE

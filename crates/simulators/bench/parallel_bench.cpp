@@ -1,6 +1,7 @@
-// The host of docs/clock-by-clock.md for Verilator: feeds a program to carrystep_six_axis, and
-// prints every cycle in which any output changed. Arguments: FILE TAIL MAX.
-#include "Vcarrystep_six_axis.h"
+// The host of docs/clock-by-clock.md for Verilator: feeds a program to the parallel core, and
+// prints every cycle in which any output changed. The outputs of axes that the core does not have
+// are printed as 0. Macro: AXES, the core's number of axes. Arguments: FILE TAIL MAX.
+#include "Vparallel.h"
 #include "verilated.h"
 #include <cinttypes>
 #include <cstdio>
@@ -30,10 +31,18 @@ struct Outputs {
     uint32_t position[6], discarded[6];
 };
 
-Outputs outputs(const Vcarrystep_six_axis& core) {
+// The 32 bits of one axis in a port of 32 bits, of 64 bits, or of more.
+uint32_t word(uint32_t port, int) { return port; }
+uint32_t word(uint64_t port, int axis) { return static_cast<uint32_t>(port >> 32 * axis); }
+template <class Wide> uint32_t word(const Wide& port, int axis) { return port[axis]; }
+
+Outputs outputs(const Vparallel& core) {
     Outputs o{{core.seg_ready, core.start_ready, core.step, core.dir, core.idle, core.started, core.overrun,
                core.overspeed, core.underrun, core.protocol, core.fault}, {}, {}};
-    for (int i = 0; i < 6; ++i) { o.position[i] = core.position[i]; o.discarded[i] = core.discarded[i]; }
+    for (int i = 0; i < AXES; ++i) {
+        o.position[i] = word(core.position, i);
+        o.discarded[i] = word(core.discarded, i);
+    }
     return o;
 }
 
@@ -55,7 +64,7 @@ int main(int argc, char** argv) {
     if (!file) return 2;
     const uint64_t tail = std::strtoull(argv[2], nullptr, 10), max = std::strtoull(argv[3], nullptr, 10);
     VerilatedContext context;
-    Vcarrystep_six_axis core{&context};
+    Vparallel core{&context};
     core.clock = 0;
     core.eval();
     Command command = next_command(file);
@@ -71,7 +80,7 @@ int main(int argc, char** argv) {
         core.seg_j = command.j;
         core.seg_last = command.last;
         core.start_valid = command.kind == START && !core.fault;
-        core.start_mask = command.who & 63;
+        core.start_mask = command.who & ((1 << AXES) - 1);
         core.clear = command.kind == CLEAR;
         core.eval();
         const Outputs now = outputs(core);

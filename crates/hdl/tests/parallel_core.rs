@@ -1,24 +1,28 @@
-//! Checks the six-axis core at its ports: starts, latency, faults and clear.
+//! Checks the parallel core at its ports: starts, latency, faults, clear and its number of axes.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, PinTiming, Segment, StartPhase, Timebase};
-use carrystep_hdl::SixAxisSim;
+use carrystep_hdl::ParallelSim;
 
 const C: u64 = 48;
 const LAST: Segment = Segment { ticks: 8, v: 1 << 61, a: 0, j: 0, last: true };
 
 struct Bench {
-    core: SixAxisSim,
+    core: ParallelSim,
     cycle: u64,
 }
 
 impl Bench {
     fn new() -> Self {
+        Self::of_axes(AXES)
+    }
+
+    fn of_axes(axes: usize) -> Self {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 2, dir_hold: 2 }; AXES];
         let build = Build { timebase, phase: StartPhase::Half, pins };
-        Self { core: SixAxisSim::new(&build).unwrap(), cycle: 0 }
+        Self { core: ParallelSim::new(&build, axes).unwrap(), cycle: 0 }
     }
 
     fn clock(&mut self, inputs: Inputs) -> Outputs {
@@ -62,7 +66,7 @@ fn first_edge_appears_after_the_latency() {
     assert_eq!(edge, loaded + 3 * C + 15 * 3 + 2 * C + 1);
     bench.until(|o| o.idle);
     assert_eq!(bench.rest().position, [0, 0, 1, 0, 0, 0]);
-    assert_eq!(bench.core.fractions(), [1 << 63; AXES]);
+    assert!((0..AXES).all(|axis| bench.core.fraction(axis) == Some(1 << 63)));
 }
 
 #[test]
@@ -101,6 +105,35 @@ fn segment_for_no_axis_or_of_zero_ticks_is_a_protocol_fault() {
     }
 }
 
+/// The last axis of each core moves, and the one after it does not exist.
+#[test]
+fn core_has_as_many_axes_as_were_asked_for() {
+    for axes in 1..=AXES {
+        let mut bench = Bench::of_axes(axes);
+        let last = axes as u8 - 1;
+        assert!(bench.segment(last, LAST));
+        assert!(bench.start(0xff << last), "the mask has no bit for a further axis");
+        bench.until(|o| o.started);
+        bench.until(|o| o.idle);
+        let outputs = bench.rest();
+        assert_eq!(outputs.position.iter().sum::<i32>(), 1);
+        assert_eq!((outputs.position[axes - 1], outputs.faults.any()), (1, false));
+        assert_eq!(bench.core.fraction(axes), None);
+        assert!(bench.segment(last + 1, LAST), "taken, and the protocol fault");
+        assert!(bench.rest().faults.protocol);
+    }
+}
+
+#[test]
+fn other_numbers_of_axes_are_refused() {
+    let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+    for axes in [0, 7, usize::MAX] {
+        let error = ParallelSim::new(&build, axes).err().unwrap();
+        assert_eq!(error.to_string(), format!("{axes} axes: the parallel core has 1 to 6"));
+    }
+}
+
 #[test]
 fn underrun_freezes_all_axes_until_clear() {
     let mut bench = Bench::new();
@@ -125,7 +158,8 @@ fn step_rate_above_the_pin_timing_is_an_overrun() {
     let mut bench = Bench::new();
     let timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
     let pins = [PinTiming { step_high: 40, step_low: 40, dir_setup: 1, dir_hold: 1 }; AXES];
-    bench.core = SixAxisSim::new(&Build { timebase, phase: StartPhase::Half, pins }).unwrap();
+    bench.core =
+        ParallelSim::new(&Build { timebase, phase: StartPhase::Half, pins }, AXES).unwrap();
     bench.segment(4, Segment { ticks: 1000, v: i64::MAX, ..LAST });
     bench.start(1 << 4);
     bench.until(|o| o.faults.overrun == 1 << 4);

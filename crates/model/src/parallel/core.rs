@@ -1,6 +1,6 @@
-//! The parallel core, clock by clock: six accumulators, six step shapers, one tick counter, a
-//! segment port, a start mask and the freeze after a fault. It must stay equal to the section
-//! "six_axis" of docs/clock-by-clock.md.
+//! The parallel core, clock by clock: N accumulators, N step shapers, one tick counter, a segment
+//! port, a start mask and the freeze after a fault. It must stay equal to the section "parallel" of
+//! docs/clock-by-clock.md.
 //!
 //! ```text
 //! cycle   c-1 | c                 | c+C               | c+2C
@@ -29,20 +29,24 @@ pub(crate) struct AxisModel {
     pub shaper: shaper::ShaperState,
 }
 
-/// The state of the core. [`SixAxis::outputs`] and [`SixAxis::clock`] together are one clock cycle.
+/// The state of the core. [`ParallelCore::outputs`] and [`ParallelCore::clock`] together are one
+/// clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SixAxis {
+pub struct ParallelCore {
     pub(crate) build: Build,
+    axes: usize,
     sub: u32,
     phase: u32,
     armed: Option<u8>,
     protocol: bool,
+    /// The axes. Those from N on do not exist: no command reaches them, and they stay at rest.
     pub(crate) axis_models: [AxisModel; AXES],
 }
 
-impl SixAxis {
-    /// The core at configuration.
-    pub fn new(build: &Build) -> Self {
+impl ParallelCore {
+    /// The core of this number of axes, 1 to 6, at configuration. It has the first pin timings of
+    /// the build. A greater number counts as 6.
+    pub fn new(build: &Build, axes: usize) -> Self {
         let axis_model = |axis: usize| AxisModel {
             axis: axis::AxisRegisters::at_rest(build.phase.start_value()),
             computed: Stage::default(),
@@ -53,6 +57,7 @@ impl SixAxis {
         };
         Self {
             build: build.clone(),
+            axes: axes.min(AXES),
             sub: 0,
             phase: 0,
             armed: None,
@@ -61,12 +66,14 @@ impl SixAxis {
         }
     }
 
-    /// The registers of an axis' accumulator. Panics if `axis` is not less than 6.
+    /// The registers of an axis' accumulator; at rest if the core does not have this axis. Panics
+    /// if `axis` is not less than 6.
     pub fn axis(&self, axis: usize) -> &axis::AxisRegisters {
         &self.axis_models[axis].axis
     }
 
-    /// The registers of an axis' step shaper. Panics if `axis` is not less than 6.
+    /// The registers of an axis' step shaper; at rest if the core does not have this axis. Panics
+    /// if `axis` is not less than 6.
     pub fn shaper(&self, axis: usize) -> &shaper::ShaperState {
         &self.axis_models[axis].shaper
     }
@@ -128,12 +135,15 @@ impl SixAxis {
             self.protocol = false;
         }
         if let Some((axis, segment)) = inputs.segment.filter(|_| seg_ready) {
-            match self.axis_models.get_mut(usize::from(axis)).filter(|_| segment.ticks > 0) {
+            let axis_models = &mut self.axis_models[..self.axes];
+            match axis_models.get_mut(usize::from(axis)).filter(|_| segment.ticks > 0) {
                 Some(axis_model) => axis_model.axis.waiting = Some(segment),
                 None => self.protocol = true,
             }
         }
-        if let Some(mask) = inputs.start.filter(|_| !frozen && armed_before.is_none()) {
+        if let Some(offered) = inputs.start.filter(|_| !frozen && armed_before.is_none()) {
+            // The port has one bit for each axis of the core.
+            let mask = offered & ((1 << self.axes) - 1);
             if mask & !waiting_before == 0 {
                 self.armed = Some(mask);
             } else {
@@ -156,7 +166,7 @@ impl SixAxis {
     /// True if a segment for this axis is accepted: its waiting slot is free, or the axis does not
     /// exist (a protocol fault).
     fn takes(&self, axis: u8) -> bool {
-        self.axis_models
+        self.axis_models[..self.axes]
             .get(usize::from(axis))
             .is_none_or(|axis_model| axis_model.axis.waiting.is_none())
     }
@@ -183,7 +193,7 @@ impl SixAxis {
 }
 
 /// Access for the fast model, which passes many cycles at once.
-impl SixAxis {
+impl ParallelCore {
     /// Cycles since the beginning of the tick.
     pub(crate) fn clock_of_tick(&self) -> u64 {
         let time = &self.build.timebase;

@@ -1,8 +1,8 @@
-//! The core of six parallel axes: it accepts segments and starts, and freezes all axes at a fault.
+//! The core of N parallel axes: it accepts segments and starts, and freezes all axes at a fault.
 //!
 //! ```text
 //!                 .------.  strobe, phase
-//!                 | tick |----+---------------+----- ... to all six
+//!                 | tick |----+---------------+----- ... to all axes
 //!                 '------'    v               v
 //!  seg_*   ---->  push ->  .------. request .--------.  ---> step, dir
 //!  start_* ---->  go   ->  | axis |-------->| shaper |  ---> position
@@ -17,26 +17,28 @@
 //! Interface: segments and starts are accepted where valid and ready are both 1. The outputs are
 //! the pins and the state of each axis.
 //!
-//! Cost: six axes and six shapers, which share one tick counter.
+//! Cost: N axes and N shapers, which share one tick counter.
 
 use crate::HdlError;
 use crate::parallel::axis::ParallelAxis;
 use crate::parts::shaper::Shaper;
 use crate::parts::tick::Tick;
-use crate::primitives::constant::Literal;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use carrystep_core::{AXES, Build};
+use carrystep_core::Build;
 use rust_hdl::prelude::*;
 
-/// The six-axis core. Its ports are listed in [`carrystep_core::ports::SIX_AXIS_PORTS`].
+/// The core of N axes. Its ports are listed in [`carrystep_core::ports::PARALLEL_PORTS`].
 #[derive(LogicBlock, Default)]
-pub struct SixAxis {
+pub struct ParallelCore<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host offers a segment and holds it until the core accepts it.
     pub seg_valid: Input<Bit>,
-    /// The number of the axis that the segment is for, 0 to 5.
+    /// The number of the axis that the segment is for. A segment for an axis that the core does not
+    /// have is a breach of the segment protocol.
     pub seg_axis: Input<Word<3>>,
     /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
@@ -53,44 +55,44 @@ pub struct SixAxis {
     /// The host offers a start and holds it until the core accepts it.
     pub start_valid: Input<Bit>,
     /// The axes to start; bit i is axis i.
-    pub start_mask: Input<Word<6>>,
+    pub start_mask: Input<Word<N>>,
     /// The core accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
     /// Clears a fault. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
     /// The STEP pins; bit i is axis i. A rising edge is a step.
-    pub step: [Signal<Out, Bit>; AXES],
+    pub step: PerAxis<Signal<Out, Bit>, N>,
     /// The DIR pins; bit i is axis i; 1 is backward.
-    pub dir: [Signal<Out, Bit>; AXES],
+    pub dir: PerAxis<Signal<Out, Bit>, N>,
     /// The steps forward less the steps backward of each axis, 32 bits two's complement; axis 0 is
     /// in the lowest bits.
-    pub position: [Signal<Out, Word<32>>; AXES],
+    pub position: PerAxis<Signal<Out, Word<32>>, N>,
     /// The number of steps of each axis that were requested but not made, modulo 2^32; axis 0 is in
     /// the lowest bits.
-    pub discarded: [Signal<Out, Word<32>>; AXES],
+    pub discarded: PerAxis<Signal<Out, Word<32>>, N>,
     /// All axes are at rest, no segment waits and no start is armed.
     pub idle: Signal<Out, Bit>,
     /// A fault is latched, and all axes are frozen.
     pub fault: Signal<Out, Bit>,
     /// Latched fault of an axis: a second step arrived while one was held back.
-    pub overrun: [Signal<Out, Bit>; AXES],
+    pub overrun: PerAxis<Signal<Out, Bit>, N>,
     /// Latched fault of an axis: the next V would have been outside -2^63 < V < 2^63.
-    pub overspeed: [Signal<Out, Bit>; AXES],
+    pub overspeed: PerAxis<Signal<Out, Bit>, N>,
     /// Latched fault of an axis: a segment that was not the last of its move ended, and no segment
     /// was waiting.
-    pub underrun: [Signal<Out, Bit>; AXES],
+    pub underrun: PerAxis<Signal<Out, Bit>, N>,
     /// Latched fault: the host broke the segment protocol.
     pub protocol: Signal<Out, Bit>,
     /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
     tick: Tick,
-    pub(crate) axis: [ParallelAxis; AXES],
-    shaper: [Shaper; AXES],
+    pub(crate) axis: PerAxis<ParallelAxis, N>,
+    shaper: PerAxis<Shaper, N>,
     armed: Register<Bit>,
-    mask: Register<Word<6>>,
+    mask: Register<Word<N>>,
     broken: Register<Bit>,
     frozen: Signal<Local, Bit>,
-    selected: Signal<Local, Word<6>>,
+    selected: Signal<Local, Word<N>>,
     waiting: Signal<Local, Bit>,
     nobody: Signal<Local, Bit>,
     taken: Signal<Local, Bit>,
@@ -102,32 +104,34 @@ pub struct SixAxis {
     at_rest: Signal<Local, Bit>,
     in_flight: Signal<Local, Bit>,
     clear_now: Signal<Local, Bit>,
-    first: Literal<6, 1>,
-    six: Literal<3, 6>,
+    first: Literal<N, 1>,
+    axes: Parameter<3>,
     no_ticks: Literal<32, 0>,
 }
 
-impl SixAxis {
-    /// Makes the core of this build.
+impl<const N: usize> ParallelCore<N> {
+    /// Makes the core of a build, with the first N of its pin timings. The caller ensures that N is
+    /// 1 to 6.
     ///
     /// # Errors
-    /// Returns [`HdlError::PinTiming`] if the pin timing of an axis is out of range.
-    pub fn new(build: &Build) -> Result<Self, HdlError> {
-        let mut shaper: [Shaper; AXES] = Default::default();
+    /// Returns [`HdlError::PinTiming`] if the pin timing of one of these axes is out of range.
+    pub(super) fn new(build: &Build) -> Result<Self, HdlError> {
+        let mut shaper = PerAxis::<Shaper, N>::default();
         for (shaper, pins) in shaper.iter_mut().zip(&build.pins) {
             *shaper = Shaper::new(pins)?;
         }
         let phases = build.timebase.phases();
         Ok(Self {
             tick: Tick::new(&build.timebase),
-            axis: std::array::from_fn(|_| ParallelAxis::new(phases, build.phase)),
+            axis: PerAxis::from_fn(|_| ParallelAxis::new(phases, build.phase)),
             shaper,
+            axes: Parameter::new(N as u64),
             ..Self::default()
         })
     }
 }
 
-impl Logic for SixAxis {
+impl<const N: usize> Logic for ParallelCore<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, armed, mask, broken);
@@ -137,7 +141,7 @@ impl Logic for SixAxis {
         self.frozen.next = self.broken.q.val();
         self.in_flight.next = false;
         self.at_rest.next = !self.armed.q.val();
-        for i in 0..6 {
+        for i in 0..N {
             self.frozen.next = self.frozen.val()
                 | self.shaper[i].overrun.val()
                 | self.axis[i].overspeed.val()
@@ -152,9 +156,9 @@ impl Logic for SixAxis {
 
         // The port for segments.
         self.selected.next = self.first.val() << self.seg_axis.val();
-        self.nobody.next = self.seg_axis.val() >= self.six.val();
+        self.nobody.next = self.seg_axis.val() >= self.axes.val();
         self.waiting.next = false;
-        for i in 0..6 {
+        for i in 0..N {
             self.waiting.next =
                 self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
         }
@@ -169,7 +173,7 @@ impl Logic for SixAxis {
         self.start.next = self.start_valid.val() & self.start_ready.val();
         self.unfed.next = false;
         self.all_startable.next = true;
-        for i in 0..6 {
+        for i in 0..N {
             self.unfed.next =
                 self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
             self.all_startable.next = self.all_startable.val()
@@ -195,7 +199,7 @@ impl Logic for SixAxis {
             self.broken.d.next = false;
         }
 
-        for i in 0..6 {
+        for i in 0..N {
             self.axis[i].clock.next = self.clock.val();
             self.axis[i].strobe.next = self.tick.strobe.val();
             self.axis[i].phase_start.next = self.tick.phase_start.val();
@@ -236,12 +240,15 @@ impl Logic for SixAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use carrystep_core::{PinTiming, StartPhase, Timebase};
+    use crate::sim::assert_synthesizes;
+    use carrystep_core::{AXES, PinTiming, StartPhase, Timebase};
 
     #[test]
-    fn six_axis_synthesizes() {
+    fn parallel_core_of_any_number_of_axes_synthesizes() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        crate::sim::assert_synthesizes(SixAxis::new(&build).unwrap(), "carrystep_six_axis");
+        assert_synthesizes(ParallelCore::<1>::new(&build).unwrap(), "carrystep_parallel_1");
+        assert_synthesizes(ParallelCore::<3>::new(&build).unwrap(), "carrystep_parallel_3");
+        assert_synthesizes(ParallelCore::<6>::new(&build).unwrap(), "carrystep_parallel_6");
     }
 }

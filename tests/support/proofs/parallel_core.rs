@@ -2,7 +2,10 @@
 
 use super::builds::{beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::{AXES, Build};
+use crate::lockstep;
+use carrystep_core::{AXES, StartPhase};
+use carrystep_verilog::{parallel_name, parallel_verilog};
+use std::sync::Arc;
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -38,19 +41,26 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let case = |(build, verilog): (Build, _)| Case {
-        name: beat_name(&build.timebase),
-        dut: "carrystep_six_axis".into(),
+    let case = |axes: usize, beat: String, verilog: Arc<str>| Case {
+        name: format!("{axes} axes, {beat}"),
+        dut: parallel_name(axes),
         parameters: Vec::new(),
         verilog,
-        numbers: vec![("AXES", AXES.to_string())],
+        numbers: vec![("AXES", axes.to_string())],
     };
+    let fewer = |axes: usize| {
+        let build = lockstep::tight_build(4, StartPhase::Half);
+        let verilog = parallel_verilog(&build, axes, "a proof").expect("the core");
+        case(axes, beat_name(&build.timebase), verilog.into())
+    };
+    let all = [small(16), shipped()];
+    let all = all.into_iter().map(|(build, text)| case(AXES, beat_name(&build.timebase), text));
     Proof {
-        module: "six_axis",
+        module: "core",
         promises: Promises {
-            text: include_str!("../../../crates/hdl/src/parallel/six_axis/promises.sv"),
+            text: include_str!("../../../crates/hdl/src/parallel/core/promises.sv"),
         },
-        cases: [small(16), shipped()].into_iter().map(case).collect(),
+        cases: all.chain([fewer(1), fewer(3)]).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,
