@@ -272,6 +272,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
         [
             "lockstep",
             "rust-hdl",
+            "repeats",
             "proofs",
             "mutants",
             "bad-line",
