@@ -4,7 +4,7 @@
 
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
-use carrystep_tests::{effort, moves};
+use carrystep_tests::{effort, moves, pages};
 use carrystep_tools::kept;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -203,4 +203,37 @@ fn open_bits(mask: u64) -> String {
     let bottoms = ends(|bit| bit.checked_sub(1));
     let runs = tops.iter().zip(&bottoms).map(|(top, bottom)| format!("{top} to {bottom}"));
     format!("bits {}", runs.collect::<Vec<_>>().join(" and "))
+}
+
+#[test]
+fn page_gives_the_ticks_of_the_proofs() {
+    let proofs = proofs::all();
+    // The numbers of axes, clocks and phases of each proof of a module; a module of the parallel
+    // core has no number of axes.
+    let cases = |module: &str| -> BTreeSet<[u32; 3]> {
+        let proof = proofs.iter().find(|proof| proof.module == module).expect("a module");
+        let number = |case: &proofs::Case, wanted: &str| -> u32 {
+            let found = case.numbers.iter().find(|(name, _)| *name == wanted);
+            found.map_or(0, |(_, number)| number.parse().expect("a number"))
+        };
+        let cases = proof.cases.iter();
+        cases.map(|case| ["AXES", "CLOCKS", "PHASES"].map(|name| number(case, name))).collect()
+    };
+    let clocks = |module: &str, is_wanted: &dyn Fn(&[u32; 3]) -> bool| {
+        let cases = cases(module);
+        let clocks: BTreeSet<u32> =
+            cases.iter().filter(|case| is_wanted(case)).map(|case| case[1]).collect();
+        clocks.iter().map(u32::to_string).collect::<Vec<_>>().join(" and ")
+    };
+    let [many, few, one] = [16, 4, 1].map(|phases| clocks("tick", &|case| case[2] == phases));
+    assert_eq!(few, one, "one sentence gives the clocks of both");
+    let [single, six] = [1, 6].map(|axes| clocks("engine", &|case| case[0] == axes));
+    let six = six.replace(" and ", " (as shipped) and in ");
+    pages::says(
+        "docs/promises.md",
+        &[
+            format!("Ticks: {many} clocks in 16 phases, {few} clocks in 4 phases and in 1."),
+            format!("with one axis in ticks of {single} clocks, and with six in {six}."),
+        ],
+    );
 }
