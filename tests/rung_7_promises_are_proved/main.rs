@@ -4,7 +4,7 @@
 
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
-use carrystep_tests::{effort, moves};
+use carrystep_tests::{effort, moves, pages};
 use carrystep_tools::kept;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -152,4 +152,88 @@ fn every_promise_has_a_planted_bug_that_breaks_it() {
         }
         assert!(!proof.promises.covers().is_empty(), "{}: no covers", proof.module);
     }
+}
+
+/// The table of the page has the sizes of each move, its open bits and its clocks.
+#[test]
+fn page_lists_the_moves_that_are_compared() {
+    let page = std::fs::read_to_string(moves::root().join("docs/promises.md")).expect("the page");
+    let (_, rest) = page.split_once("| axes | tick | ticks of the segments |").expect("a table");
+    let mut shown: Vec<&str> =
+        rest.lines().skip(2).take_while(|line| line.starts_with("| ")).collect();
+    let mut wanted: Vec<String> = equivalence::moves().iter().map(row_of).collect();
+    shown.sort_unstable();
+    wanted.sort_unstable();
+    assert_eq!(shown, wanted);
+}
+
+/// The row of the page for a move.
+fn row_of(pair: &Move) -> String {
+    let number = |wanted: &str| {
+        let found = pair.engine.numbers.iter().find(|(name, _)| *name == wanted);
+        &*found.expect("a number of the miter").1
+    };
+    let free = number("FREE").strip_prefix("64'h").expect("a mask");
+    let free = u64::from_str_radix(free, 16).expect("a mask in hex");
+    format!(
+        "| {} | {} clocks, {} phases | {} and {} | {} | {} |",
+        number("AXES"),
+        number("CLOCKS"),
+        number("PHASES"),
+        number("TICKS_1"),
+        number("TICKS_2"),
+        open_bits(free),
+        pair.clocks
+    )
+}
+
+/// The set bits of a mask in words, from the highest down.
+fn open_bits(mask: u64) -> String {
+    if mask == u64::MAX {
+        return format!("all {} bits", u64::BITS);
+    }
+    let is_set = |bit: u32| mask >> bit & 1 == 1;
+    let ends = |beside: fn(u32) -> Option<u32>| {
+        (0..u64::BITS)
+            .rev()
+            .filter(|&bit| is_set(bit) && !beside(bit).is_some_and(is_set))
+            .collect::<Vec<_>>()
+    };
+    let tops = ends(|bit| Some(bit + 1).filter(|&bit| bit < u64::BITS));
+    let bottoms = ends(|bit| bit.checked_sub(1));
+    let runs = tops.iter().zip(&bottoms).map(|(top, bottom)| format!("{top} to {bottom}"));
+    format!("bits {}", runs.collect::<Vec<_>>().join(" and "))
+}
+
+#[test]
+fn page_gives_the_ticks_of_the_proofs() {
+    let proofs = proofs::all();
+    // The numbers of axes, clocks and phases of each proof of a module; a module of the parallel
+    // core has no number of axes.
+    let cases = |module: &str| -> BTreeSet<[u32; 3]> {
+        let proof = proofs.iter().find(|proof| proof.module == module).expect("a module");
+        let number = |case: &proofs::Case, wanted: &str| -> u32 {
+            let found = case.numbers.iter().find(|(name, _)| *name == wanted);
+            found.map_or(0, |(_, number)| number.parse().expect("a number"))
+        };
+        let cases = proof.cases.iter();
+        cases.map(|case| ["AXES", "CLOCKS", "PHASES"].map(|name| number(case, name))).collect()
+    };
+    let clocks = |module: &str, is_wanted: &dyn Fn(&[u32; 3]) -> bool| {
+        let cases = cases(module);
+        let clocks: BTreeSet<u32> =
+            cases.iter().filter(|case| is_wanted(case)).map(|case| case[1]).collect();
+        clocks.iter().map(u32::to_string).collect::<Vec<_>>().join(" and ")
+    };
+    let [many, few, one] = [16, 4, 1].map(|phases| clocks("tick", &|case| case[2] == phases));
+    assert_eq!(few, one, "one sentence gives the clocks of both");
+    let [single, six] = [1, 6].map(|axes| clocks("engine", &|case| case[0] == axes));
+    let six = six.replace(" and ", " (as shipped) and in ");
+    pages::says(
+        "docs/promises.md",
+        &[
+            format!("Ticks: {many} clocks in 16 phases, {few} clocks in 4 phases and in 1."),
+            format!("with one axis in ticks of {single} clocks, and with six in {six}."),
+        ],
+    );
 }

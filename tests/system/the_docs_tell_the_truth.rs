@@ -1,24 +1,16 @@
 //! Numbers in the documentation must equal those that the product computes.
 
+use carrystep_core::link::Uart;
 use carrystep_files::MoveFile;
 use carrystep_plan::{Plan, plan};
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::{Job, Level, run};
+use carrystep_tests::pages::{self, grouped};
 use carrystep_tests::{effort, moves};
-use std::fs;
 use std::process::Command;
 
 fn page(name: &str) -> String {
-    fs::read_to_string(moves::root().join("docs").join(name))
-        .unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-/// A whole number as the page writes it, in groups of three digits.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let groups =
-        digits.as_bytes().rchunks(3).rev().map(|group| String::from_utf8_lossy(group).into_owned());
-    groups.collect::<Vec<_>>().join(" ")
+    pages::file(&format!("docs/{name}"))
 }
 
 #[test]
@@ -169,8 +161,10 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
 
 #[test]
 fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
-    let bits = 10;
-    let clocks = bits * 48_000_000 / 3_000_000;
+    // A start bit, eight data bits and a stop bit.
+    let bits = 1 + 8 + 1;
+    let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
+    let clocks = bits * uart.bit_clocks();
     assert!(
         page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud"))
     );
@@ -272,6 +266,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
         [
             "lockstep",
             "rust-hdl",
+            "repeats",
             "proofs",
             "mutants",
             "bad-line",

@@ -214,3 +214,16 @@ fn page_gives_the_first_delay_of_the_recurrence() {
         format!("right within {:.1e} in the end", 0.676 / first - 1.0),
     ]);
 }
+
+#[test]
+fn page_gives_the_share_of_the_speed_that_a_logistic_ramp_reaches() {
+    let (begun, reached) = (100.0 * SHORTFALL, 100.0 * (1.0 - SHORTFALL));
+    let parts = 1.0 / SHORTFALL;
+    says(&[
+        format!("and ends at {reached:.1} % of it"),
+        format!("missing at the end: 1/{parts:.0}."),
+        format!("T_i = ln({:.0}) / k: they begin at {begun:.1} % of w", parts - 1.0),
+        format!("and cruise at {reached:.1} %"),
+        format!("w = limit / {:.3}.", 1.0 - SHORTFALL),
+    ]);
+}

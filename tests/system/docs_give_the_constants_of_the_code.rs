@@ -1,0 +1,259 @@
+//! Figures of the documentation that are private constants of the code, of tests and of benches.
+//! They are read from the text of the source, so that no constant becomes public for a page.
+
+use carrystep_core::engine::{CAUSES, SEGMENT_WORDS};
+use carrystep_tests::pages::{self, grouped, part, says, word};
+use carrystep_tests::sources::{behind, constant, power_of_ten, whole};
+
+#[test]
+fn accuracy_page_gives_the_constants_of_planner_and_checker() {
+    let slow = |name| constant("crates/plan/src/slow.rs", name);
+    let (least, early) = (slow("LEAST"), slow("EARLY"));
+    // The bisection loses a unit for P, one for V, and one for each halving of V except the first.
+    let lost = 16_f64.log2() + 1.0;
+    let segments = constant("crates/plan/src/limits.rs", "MOST_SEGMENTS");
+    let rounding = constant("crates/check/src/axis_check.rs", "ROUNDING_PS") / 1e3;
+    let shift = constant("crates/plan/src/run.rs", "EDGE_SHIFT") * 1e9;
+    let samples = constant("crates/plan/src/corridor.rs", "SAMPLES") + 1.0;
+    let longest = power_of_ten(behind("crates/files/src/move_file.rs", "if time <= "));
+    says(
+        "docs/accuracy.md",
+        &[
+            format!("With 16 phases the loss is at most {} units", word(whole(lost))),
+            format!("by up to {:.1} ns / v", lost * 2_f64.powi(-32) * 1e9),
+            format!("under {:.2} steps/s (16 phases)", lost * 2_f64.powi(-32) / early),
+            format!("Below {least} Q units of 2^-32 step a tick"),
+            format!("at most {lost}/{least} of a phase"),
+            format!("would need over {segments} segments"),
+            format!("is a phase and {rounding} ns, plus"),
+            format!("moves no edge by more than {shift:.1} ns"),
+            format!("takes {} samples per segment", word(whole(samples))),
+            format!("for moves of up to 10^{longest} s"),
+        ],
+    );
+}
+
+#[test]
+fn machine_file_page_gives_the_limits_of_the_reader() {
+    let files = |file: &str, text| behind(&format!("crates/files/src/{file}"), text);
+    let tick = |name| constant("crates/core/src/tick.rs", name);
+    // The words of a segment, its commit, and the ticks around the start.
+    let rest = f64::from(SEGMENT_WORDS)
+        + 1.0
+        + behind("crates/plan/src/demand.rs", "SEGMENT_WORDS as u64 + 1 + ");
+    let ticks = constant("crates/plan/src/demand.rs", "MOST_TICKS").log2();
+    let longest = power_of_ten(files("move_file.rs", "if time <= "));
+    let power = files("machine/axis.rs", "BigDecimal::new(1.into(), ");
+    let least = 10_f64.powf(-power);
+    says(
+        "docs/machine-files.md",
+        &[
+            format!("digits and `_`, {} at most", files("machine/axis.rs", "name.len() > ")),
+            format!("1 to {} letters, digits", files("machine/units.rs", "LONGEST_NAME: usize = ")),
+            format!("computed to {} places", files("machine/units.rs", "PLACES: i64 = ")),
+            format!("{least} steps/s to under half a step per tick"),
+            format!("{least} steps/s^2 to under half a step per tick^2"),
+            format!("is over {} ns and fewer phases", tick("LONG_NS")),
+            format!("proposes `phases = {}`", tick("FEWER_PHASES")),
+            format!("over 0, to 10^{longest}"),
+            format!("at most 2^{ticks} ticks"),
+            format!("takes at least {} ticks", word(whole(rest))),
+        ],
+    );
+}
+
+#[test]
+fn pages_give_the_default_time_between_power_and_start() {
+    let guard = "crates/files/src/machine/guard.rs";
+    let enable = behind(guard, "name: \"enable_ms\", unit_ns: 1_000_000, default: ");
+    says("docs/drivers.md", &[format!("[`[machine.guard]`](machine-files.md), {enable} ms,")]);
+    says("docs/flow-of-a-move.md", &[format!("for `enable_ms`, {enable} ms by default")]);
+}
+
+#[test]
+fn specification_gives_the_beats_of_the_model() {
+    let model = |name| constant("crates/model/src/engine.rs", name);
+    let [sample, latch] = ["SAMPLE_BEAT", "LATCH_BEAT"].map(model);
+    says(
+        "docs/clock-by-clock.md",
+        &[
+            format!("The sample is the level of the pin in beat {sample}."),
+            format!("`latch` is 1 in beat {latch} of the time slots"),
+        ],
+    );
+}
+
+#[test]
+fn performance_page_gives_the_constants_of_fast_model_and_bench() {
+    let crossings = |name| whole(constant("crates/model/src/fast/crossings.rs", name));
+    let main = "crates/xtask/benches/levels/main.rs";
+    let least = constant(main, "VERILATOR_AT_LEAST") / 1e6;
+    let edge = constant(main, "NS_PER_EDGE_AT_MOST");
+    let slower = whole(behind(main, "theirs.megabytes_per_second() / "));
+    let causes = whole(behind("tests/rung_3_fast_model_equals_model/engine.rs", "causes >= "));
+    let (batch, dense) = (crossings("BATCH"), crossings("DENSE"));
+    says(
+        "docs/performance.md",
+        &[
+            format!("The model guesses {} roots together", word(batch)),
+            format!("exactly {} steps come before the last guessed tick", batch - 1),
+            format!("Where more than one edge in {} ticks is expected", word(dense)),
+            format!("Verilator reaches less than {least} million cycles/s"),
+            format!("costs more than {edge} ns"),
+            format!("at less than {} the speed of Verilator's", part(slower)),
+            format!("at least {} of the {} causes", word(causes), word(CAUSES.len() as u64)),
+        ],
+    );
+    // The last column of the table is the ratio below which the bench fails.
+    let page = pages::file("docs/performance.md");
+    for name in ["busy", "typical", "rest"] {
+        let row =
+            page.lines().find(|line| line.starts_with(&format!("| {name} ("))).expect("a row");
+        let shown = row.trim_end_matches(" |").rsplit(' ').next().expect("a last cell");
+        let source = pages::file("crates/xtask/benches/levels/moves.rs").replace('_', "");
+        let (_, rest) = source.split_once(&format!("name: \"{name}\"")).expect("a density");
+        let (_, rest) = rest.split_once("wanted: ").expect("a wanted ratio");
+        let (wanted, _) = rest.split_once(".0").expect("a whole ratio");
+        assert_eq!(shown, wanted, "{row}");
+    }
+}
+
+#[test]
+fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
+    let mutants = |name| constant("tests/rung_8_mutants_are_caught/mutants.rs", name);
+    let (few, all) = (mutants("FEW"), mutants("ALL"));
+    let work = |text| whole(behind("tests/support/mutants/stimuli/work.rs", text));
+    says(
+        "docs/mutants.md",
+        &[
+            format!("{all} of them are drawn"),
+            format!("# all {all}, and a table"),
+            format!("Every test run takes the first {few} mutants"),
+            format!("{} joint moves of all axes", word(work("drawn(&moves(), "))),
+            format!("up to {} segments each", word(work("ticks.prop_flat_map(row), 1..="))),
+        ],
+    );
+    let long = |name: &str| {
+        whole(behind("crates/xtask/src/long.rs", &format!("(\"CARRYSTEP_{name}\", \"")))
+    };
+    let bad_line = "crates/virtual-board/tests/bad_line.rs";
+    let usual = behind(bad_line, "asked(\"CARRYSTEP_FRAMES\", ");
+    says(
+        "README.md",
+        &[
+            format!("({few} [mutants](docs/mutants.md))"),
+            format!("does this for all {all}."),
+            format!("Every test run sends {usual} frames"),
+            format!("{} frames over the bad line", grouped(long("FRAMES"))),
+            format!("{} ends of hosts", long("DEATHS")),
+        ],
+    );
+}
+
+#[test]
+fn architecture_page_gives_the_rate_that_the_test_tries() {
+    let rates = "crates/virtual-board/tests/rates.rs";
+    let rate = behind(rates, "carries::<ModelBoard>(3_000_000, ");
+    says("docs/architecture.md", &[format!("six axes at {rate} segments/s")]);
+    let other = behind(rates, "carries::<ModelBoard>(921_600, ");
+    let spi = behind(rates, "let per_second = ");
+    says(
+        "docs/performance.md",
+        &[
+            format!("| 3 000 000 baud | {rate} |"),
+            format!("| 921 600 baud | {other} |"),
+            format!("unacknowledged writes | {spi} |"),
+        ],
+    );
+}
+
+#[test]
+fn profile_page_gives_the_tolerances_and_counts_of_its_tests() {
+    let counts = |text: &str| behind("crates/plan/tests/segment_counts.rs", text);
+    let [logistic, sine] = ["logistic", "sine"].map(|profile| {
+        [1000, 50].map(|fit_ns| counts(&format!("assert_at_most(\"{profile}\", {fit_ns}, ")))
+    });
+    let tight = constant("crates/profile/tests/golden/main.rs", "TIGHT");
+    let first = behind("crates/profile/tests/near_rest.rs", "close(ramp.crossing(x), u, ");
+    says(
+        "docs/profiles.md",
+        &[
+            format!("at most {} segments a ramp for logistic", logistic[0]),
+            format!("and {} for sine at 1 us, {} and {} at 50 ns", sine[0], logistic[1], sine[1]),
+            format!("hold to a relative {tight:e}"),
+            format!("is correct to {first:e}"),
+        ],
+    );
+}
+
+#[test]
+fn virtual_board_page_gives_the_times_of_its_pace() {
+    let pace = |name| constant("crates/virtual-board/src/pace.rs", name);
+    let (late, gone) = (pace("BEHIND"), whole(pace("GONE")));
+    let board = |name| constant("crates/cli/src/commands/virtual_board.rs", name);
+    let of_watchdog = part(whole(board("PART_OF_WATCHDOG")));
+    let ms = 1000.0 / board("PART_OF_SECOND");
+    let kept = whole(constant("crates/virtual-board/src/gateware.rs", "KEPT"));
+    says(
+        "docs/virtual-board.md",
+        &[
+            format!("It makes up for at most {late} ms of a delay."),
+            format!("If the host is silent for {} second of real time", word(gone)),
+            format!("no longer ago than a {of_watchdog} of the watchdog's time"),
+            format!("at most a {of_watchdog} of the watchdog's time has passed"),
+            format!("(without a watchdog, {ms} ms)"),
+            format!("has more than {} segments waiting", word(kept)),
+            format!("than the {} segments that wait there", word(kept)),
+            format!("keeps fewer than {} segments waiting", word(kept + 1)),
+        ],
+    );
+}
+
+#[test]
+fn protocol_page_gives_the_time_outs_of_the_rust_client() {
+    let host = |text| behind("crates/link/src/host.rs", text);
+    let patience =
+        |name| behind("crates/link/src/host/time.rs", &format!("\n            {name}: "));
+    let session = |text| behind("crates/link/src/session.rs", text);
+    let (resend, silence) = (session("Self { resend: "), patience("silence"));
+    let period = patience("status_period");
+    let watchdog =
+        behind("crates/files/src/machine/guard.rs", "unit_ns: 1_000_000,\n    default: ");
+    let (tries, share) = (word(whole((silence / resend).floor())), part(whole(watchdog / period)));
+    let serial = constant("crates/link/src/line/serial.rs", "AHEAD_MS");
+    // Ten bits for each byte that the client holds, and then the bytes that the system may hold.
+    let held = host("out: [u8; ");
+    let wait = |baud: f64| (10.0 * held / baud * 1e3 + serial).round();
+    let callers = constant("crates/cli/src/control/control_socket.rs", "CALLERS");
+    says(
+        "docs/protocol.md",
+        &[
+            format!("| unacknowledged writes | {} at most", host("const N: usize = ")),
+            format!("send again from `next` on | after {resend} ms |"),
+            format!("longer than the {resend} ms until a lost frame is sent again"),
+            format!("| busy, try again | after {} ms |", session(", pause: ")),
+            format!("give up | after {silence} ms, or {} ms once", patience("lost")),
+            format!("{tries} tries have failed;"),
+            format!("a clear | {} ms at most |", patience("change")),
+            format!("nothing to send | every {period} ms | a {share} of"),
+            format!("usual watchdog time ({watchdog} ms)"),
+            format!("at most {held} bytes and another {serial} ms of the line's time"),
+            format!("{} ms at 115 200 baud, {} ms at 921 600", wait(115_200.0), wait(921_600.0)),
+            format!("Of more than {callers} idle connections"),
+        ],
+    );
+}
+
+#[test]
+fn pages_give_the_margin_of_a_clock_and_the_length_of_an_instruction() {
+    let margin = constant("crates/boards/src/reach.rs", "MARGIN_PERCENT");
+    says("docs/flashing.md", &[format!("more than {margin} % above the recorded clock")]);
+    let clocks = whole(constant("crates/model/src/link/processor.rs", "EXECUTE") + 1.0);
+    says("docs/link.md", &[format!("Each instruction takes {} clocks", word(clocks))]);
+    let bytes = constant("crates/model/src/link/processor.rs", "SIZE");
+    says("docs/link.md", &[format!("the {bytes} received bytes that wait")]);
+    says(
+        "docs/protocol.md",
+        &[format!("up to {} received bytes", bytes - 1.0), format!("all {bytes} are lost")],
+    );
+}

@@ -1,0 +1,250 @@
+//! Figures of the documentation that follow from the public constants of the code and from the
+//! tables in `hdl-out/`.
+
+use carrystep_core::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
+use carrystep_core::engine::{
+    CAUSES, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT,
+    QUEUE, TIME_SLOT_CLOCKS,
+};
+use carrystep_core::link::registers::MOST_AXES;
+use carrystep_core::link::{
+    ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
+    MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, REQUEST_HEAD, WINDOW, WRITE, image,
+};
+use carrystep_core::tick::{FIXED_CLOCK_HZ, default_tick};
+use carrystep_core::{AXES, Timebase};
+use carrystep_tests::pages::{self, grouped, says, word};
+use carrystep_tools::resources::{EIGHT_TO_SIX, EngineRow, LINES, LINK_BUDGET, ROWS};
+
+#[test]
+fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
+    let (tick_ns, chosen) = default_tick(FIXED_CLOCK_HZ, 16, AXES).expect("a default tick");
+    assert_eq!(chosen, None, "the default clock has a fixed tick");
+    let (mhz, us) = (FIXED_CLOCK_HZ / 1_000_000, tick_ns / 1000);
+    says(
+        "README.md",
+        &[
+            format!("in every tick ({us} us by default)"),
+            format!("runs at {mhz} MHz with ticks of {us} us"),
+        ],
+    );
+    says(
+        "docs/five-minutes.md",
+        &[
+            format!("a time slot of {TIME_SLOT_CLOCKS} clocks"),
+            format!("at {mhz} MHz a tick takes {us} us"),
+        ],
+    );
+    says("docs/engine.md", &[format!("file is {mhz} MHz with ticks of {us} us.")]);
+    says(
+        "docs/machine-files.md",
+        &[format!("At the default clock of {mhz} MHz the default tick is {tick_ns} ns")],
+    );
+}
+
+#[test]
+fn pages_give_the_dimensions_of_the_engine() {
+    let (slot, last) = (TIME_SLOT_CLOCKS, TIME_SLOT_CLOCKS - 1);
+    let queue = word(QUEUE as u64);
+    let [most, in_file] = [MAX_CLOCKS, MAX_CLOCKS - 1].map(|clocks| grouped(clocks.into()));
+    let time = Timebase::new(FIXED_CLOCK_HZ, 1000, 16).expect("a timebase");
+    let (latency, tick) = (time.latency_clocks(), u64::from(time.clocks_per_tick()));
+    says(
+        "docs/clock-by-clock.md",
+        &[
+            format!("serves up to {} axes", word(MAX_AXES as u64)),
+            format!("in clocks {slot} i .. {slot} i + {last}."),
+            format!("The {slot} clocks of a time slot are its *beats* 0 .. {last}."),
+            format!("`{slot} N + 1 <= C`"),
+            format!("a phase has at least {MIN_CLOCKS_PER_PHASE} clocks"),
+            format!("a queue of up to {QUEUE} segments"),
+            format!("room = {QUEUE} - the segments in the queue"),
+            format!("(beat {PUT_BEAT} of that axis' time slot"),
+            format!("With `B` samples to debounce, 1 to {MAX_DEBOUNCE_SAMPLES}"),
+            format!("L = {} C + {}", latency / tick, latency % tick),
+        ],
+    );
+    says(
+        "docs/engine.md",
+        &[
+            format!("any number from one to {}", word(MAX_AXES as u64)),
+            format!("there are more than {}.", word(MAX_AXES as u64)),
+            format!("fewer clocks than {slot} for each axis and one more"),
+            format!("not from 1 to {most} clocks (in a machine file, up to {in_file})"),
+            format!("a queue of {queue} segments costs no logic"),
+        ],
+    );
+    let causes = word(CAUSES.len() as u64);
+    let (first, rest) = causes.split_at(1);
+    says("docs/engine.md", &[format!("{}{rest} causes stop all axes.", first.to_uppercase())]);
+    says("docs/index.md", &[format!("serves all axes, up to {}.", word(MAX_AXES as u64))]);
+    says("docs/five-minutes.md", &[format!("a queue of {queue} segments for each axis")]);
+    says("docs/flow-of-a-move.md", &[format!("Each axis has a queue of {queue} segments")]);
+    says(
+        "docs/promises.md",
+        &[
+            format!("*rounds*, of 2 to {MAX_ROUND} ticks"),
+            format!("is the {slot} clocks of a tick"),
+            format!("{most} clocks for each of STEP_HIGH"),
+        ],
+    );
+}
+
+#[test]
+fn machine_file_page_gives_the_ranges_of_the_gateware() {
+    let power = MAX_CLOCK_HZ.ilog10();
+    assert_eq!(10_u64.pow(power), MAX_CLOCK_HZ);
+    let phases = (1..=64_u32).filter(|&phases| Timebase::new(64_000_000, 1000, phases).is_ok());
+    let phases: Vec<String> = phases.map(|phases| phases.to_string()).collect();
+    let pins = format!("| up to {} clocks |", MAX_CLOCKS - 1);
+    says(
+        "docs/machine-files.md",
+        &[
+            format!("| 1 to 10^{power} | frequency"),
+            format!("| {MIN_CLOCKS_PER_TICK} to {MAX_CLOCKS} clocks, a whole number |"),
+            format!("needs {TIME_SLOT_CLOCKS} clocks per axis plus one"),
+            format!("| {}; must divide the clocks of a tick |", phases.join(", ")),
+            format!("| 1 to {MAX_AXES} tables |"),
+            format!("accept at most {}", word(AXES as u64)),
+            format!("*rounds* of 2 to {MAX_ROUND} ticks"),
+            format!("time of up to {} rounds each", MAX_ROUNDS - 1),
+            format!("time of up to {} rounds.", MAX_DEBOUNCE_SAMPLES - 1),
+            format!("over {MIN_BIT_CLOCKS} to {MAX_BIT_CLOCKS}, within {BAUD_PERCENT} %"),
+        ],
+    );
+    assert_eq!(pages::joined("docs/machine-files.md").matches(&pins).count(), 4, "{pins}");
+}
+
+/// The cells of the row of `hdl-out/resources.md` that begins with these.
+fn measured(first: &[&str]) -> Vec<String> {
+    let page = pages::file("hdl-out/resources.md");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |"));
+    let mut rows = rows.map(|row| row.split(" | ").map(str::to_owned).collect::<Vec<_>>());
+    let wanted = |row: &Vec<String>| {
+        row.len() > first.len() && row.iter().zip(first).all(|(cell, wanted)| cell == wanted)
+    };
+    rows.find(wanted).unwrap_or_else(|| panic!("no row {first:?}"))
+}
+
+/// The number with which a cell begins.
+fn number(cell: &str) -> u32 {
+    let digits = cell.split(' ').next().unwrap_or_default();
+    digits.parse().unwrap_or_else(|_| panic!("{cell}"))
+}
+
+/// The first row for this device, with six axes and this tick, ns.
+fn row_of(device: &str, tick_ns: u64) -> EngineRow {
+    let wanted =
+        |row: &EngineRow| row.part.device == device && row.axes == AXES && row.tick_ns == tick_ns;
+    ROWS.into_iter().find(wanted).expect("a row")
+}
+
+#[test]
+fn pages_give_the_sizes_of_the_resources_table() {
+    let cells = number(&measured(&["hx8k ct256", "6", "1 us"])[5]);
+    let about = format!("It takes about {} logic cells of a small FPGA", (cells + 50) / 100 * 100);
+    says("README.md", std::slice::from_ref(&about));
+    says("docs/five-minutes.md", &[about]);
+    let [two, one] = [2000, 1000].map(|tick_ns| row_of("hx8k", tick_ns).budget.logic_cells);
+    let both =
+        format!("at most {two} logic cells of an iCE40 HX8K at 2 us ticks and {one} at 1 us");
+    says("README.md", &[both]);
+    let slow = row_of("up5k", 2000);
+    assert!(slow.met && row_of("hx1k", 1000).met);
+    says(
+        "docs/engine.md",
+        &[
+            format!("An HX8K runs 1 us ticks in at most {one} logic cells."),
+            format!(
+                "A UP5K reaches the {} MHz that 2 us ticks need",
+                slow.clock_needed_hz() / 1_000_000
+            ),
+            format!("at most {:.0} % more logic than six", 100.0 * (EIGHT_TO_SIX.2 - 1.0)),
+        ],
+    );
+}
+
+#[test]
+fn pages_give_the_size_of_the_link() {
+    let [uart, spi] = LINES.map(|line| measured(&[line]));
+    let rams = number(&uart[2]);
+    assert_eq!(rams, number(&spi[2]), "one sentence gives the block RAMs of both lines");
+    let [uart, spi] = [uart, spi].map(|row| number(&row[1]));
+    let instructions = (image().program.len() + 5) / 10 * 10;
+    let budget = LINK_BUDGET.logic_cells;
+    says(
+        "docs/link.md",
+        &[
+            format!("take about {instructions} instructions"),
+            format!("{uart} logic cells with the UART, {spi} with SPI (the budget is {budget})"),
+            format!("With either line it has {} block RAMs", word(rams.into())),
+        ],
+    );
+    says(
+        "README.md",
+        &[
+            format!("about {instructions} instructions]"),
+            format!("in {uart} cells with the UART, {spi} with SPI"),
+        ],
+    );
+}
+
+#[test]
+fn protocol_page_gives_lengths_and_numbers_of_frames() {
+    let read = REQUEST_HEAD + CRC_BYTES;
+    // With an END before it and one after it.
+    let on_the_line = |bytes: usize| bytes + 2;
+    let [asked, answered] = [read, ANSWER_BYTES].map(on_the_line);
+    let causes: Vec<String> =
+        CAUSES.iter().map(|&cause| format!("{} {cause}", cause as u8)).collect();
+    let reads = word(MOST_AXES.into());
+    says(
+        "docs/protocol.md",
+        &[
+            format!("| CRC {read}, {} or {LONGEST_REQUEST} bytes", read + 4),
+            format!("data (4) | CRC {ANSWER_BYTES} bytes"),
+            format!("a frame ends with END (`{END:02X}`)"),
+            format!("the byte `{END:02X}` is sent as `{ESC:02X} {ESC_END:02X}`"),
+            format!("the byte `{ESC:02X}` as `{ESC:02X} {ESC_ESC:02X}`"),
+            format!("an address below `{WRITE:02X}`"),
+            format!("The number is one of the {WINDOW} before `next`"),
+            format!("up to {WINDOW} unacknowledged writes"),
+            format!("over {WINDOW} a number is not unique any more"),
+            format!("have at most {reads} unanswered reads"),
+            format!("| unanswered reads | {MOST_AXES} at most |"),
+            format!("a read has {asked} bytes and its answer {answered}"),
+            format!("has room, 0 to {QUEUE}"),
+            format!("is set: {} |", causes.join(", ")),
+            format!("no cause has a number above {} yet", CAUSES.len() - 1),
+            format!("the move ({QUEUE} at most)"),
+            format!("({} MHz at 48 MHz)", 48.0 / 5.0),
+        ],
+    );
+    // Ten bits a byte on a UART.
+    let bytes = on_the_line(LONGEST_REQUEST);
+    let most = 3_000_000 / 10 / bytes;
+    says(
+        "docs/performance.md",
+        &[
+            format!("A segment is {bytes} bytes on the line"),
+            format!("carry at most {most} segments a second"),
+            format!("{AXES} x 500 = {}", AXES * 500),
+        ],
+    );
+}
+
+#[test]
+fn verilog_page_gives_the_default_and_the_targets_of_the_files() {
+    let template = pages::file("hdl-out/core/carrystep_uart.veo");
+    let (_, rest) = template.split_once(".BIT_CLOCKS(").expect("a parameter");
+    let (value, _) = rest.split_once(')').expect("its value");
+    let core = pages::file("hdl-out/core/carrystep.core");
+    let lint = core.lines().filter(|line| line.starts_with("  lint") && line.ends_with(':'));
+    let lint: Vec<&str> = lint.map(|line| line.trim().trim_end_matches(':')).collect();
+    let mut texts = vec![
+        format!(".BIT_CLOCKS({value})"),
+        format!("ran all {} lint targets", word(lint.len() as u64)),
+    ];
+    texts.extend(lint.iter().map(|target| format!("`{target}`")));
+    says("docs/verilog.md", &texts);
+}
