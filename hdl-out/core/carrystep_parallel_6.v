@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_six_axis: step and direction for six axes.
+// carrystep_parallel_6: step and direction for six axes.
 // This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
@@ -682,8 +682,8 @@ module carrystep_shaper #(
     end
 endmodule
 
-// Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.
-module carrystep_six_axis #(
+// Parallel axes on one tick counter: accepts segments and starts, freezes at a fault.
+module carrystep_parallel_6 #(
     // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
     // Start value of P: 1 half a step, 0 zero; 0 or 1
@@ -721,7 +721,8 @@ module carrystep_six_axis #(
     input  wire         clock,
     // The host offers a segment and holds it until the core accepts it.
     input  wire         seg_valid,
-    // The number of the axis that the segment is for, 0 to 5.
+    // The number of the axis that the segment is for. A segment for an axis that the core does not
+    // have is a breach of the segment protocol.
     input  wire   [2:0] seg_axis,
     // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
@@ -770,7 +771,7 @@ module carrystep_six_axis #(
     output wire         started
 );
     localparam [5:0] FIRST = 6'd1;
-    localparam [2:0] SIX = 3'd6;
+    localparam [2:0] AXES = 3'd6;
     localparam [31:0] NO_TICKS = 32'd0;
 
     reg armed = 1'b0;
@@ -885,7 +886,7 @@ module carrystep_six_axis #(
 
     wire clear_now = clear & frozen & !in_flight;
     wire [5:0] selected = FIRST << seg_axis;
-    wire nobody = seg_axis >= SIX;
+    wire nobody = seg_axis >= AXES;
     wire taken = seg_valid & seg_ready;
     wire push = taken & !nobody & (seg_ticks != NO_TICKS);
     wire start = start_valid & start_ready;

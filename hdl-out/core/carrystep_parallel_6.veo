@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// An instance of carrystep_six_axis to be copied into a design. The values of the parameters are
+// An instance of carrystep_parallel_6 to be copied into a design. The values of the parameters are
 // the defaults, and may be left out. Ports without a comment on their width have one bit; the
-// comments in carrystep_six_axis.v describe the ports. An output that is not used stays empty; each
-// input needs a value. This file is generated: change the generator instead.
-carrystep_six_axis #(
+// comments in carrystep_parallel_6.v describe the ports. An output that is not used stays empty;
+// each input needs a value. This file is generated: change the generator instead.
+carrystep_parallel_6 #(
     .CLOCKS_PER_TICK(32'd80),
     .START_HALF(32'd1),
     .STEP_HIGH_0(32'd8),
@@ -31,7 +31,7 @@ carrystep_six_axis #(
     .DIR_HOLD_3(32'd400),
     .DIR_HOLD_4(32'd2),
     .DIR_HOLD_5(32'd120)
-) six_axis (
+) parallel_6 (
     .clock(),       // input
     .seg_valid(),   // input
     .seg_axis(),    // input [2:0]
