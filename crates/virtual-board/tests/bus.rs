@@ -36,12 +36,12 @@ fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
 
 #[test]
 fn pulses_on_a_bad_bus_equal_those_of_models_on_a_clean_bus() {
-    let (clean, _) = moves::<ModelBoard>(10_000_000, 0);
+    let (clean, _) = moves::<ModelBoard>(9_600_000, 0);
     assert!(clean.len() > 500, "{} edges are no move", clean.len());
     for (name, (edges, harmed)) in [
         ("models at an odd rate", moves::<ModelBoard>(3_456_789, 0)),
-        ("models on a bad bus", moves::<ModelBoard>(10_000_000, BAD)),
-        ("the Verilog", moves::<VerilatedBoard>(10_000_000, 0)),
+        ("models on a bad bus", moves::<ModelBoard>(9_600_000, BAD)),
+        ("the Verilog", moves::<VerilatedBoard>(9_600_000, 0)),
         ("the Verilog on a bad bus", moves::<VerilatedBoard>(6_500_000, BAD)),
     ] {
         assert_eq!(edges, clean, "{name}");

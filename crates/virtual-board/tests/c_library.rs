@@ -134,7 +134,7 @@ fn c_client_works_over_spi() {
 }
 
 fn over_bus<B: Kind>(client: &mut dyn Client) -> Vec<Edge> {
-    let bus = Bus::<B>::new(10_000_000);
+    let bus = Bus::<B>::new(9_600_000);
     let id = LineKind::Spi.build_id(&build()).0;
     let mut host =
         WordHost::connect(client, SpiLine::new(bus.clone()), bus.clone(), 12, id).unwrap();

@@ -48,7 +48,7 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
 /// (docs/protocol.md).
 #[test]
 fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
-    let bus = Bus::<ModelBoard>::new(10_000_000);
+    let bus = Bus::<ModelBoard>::new(9_600_000);
     let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
@@ -66,7 +66,7 @@ fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
     let took = (world.board.cycle() - begun) as f64 / CLOCK_HZ as f64;
     assert_eq!(ended, Ok(Ended::Done));
     eprintln!(
-        "FIGURES SPI at 10 MHz: 6 x {per_second} segments/s, {} segments in {took:.3} s, at least {} waiting",
+        "FIGURES SPI at 9.6 MHz: 6 x {per_second} segments/s, {} segments in {took:.3} s, at least {} waiting",
         commands.len() - 1,
         world.least_waiting,
     );
