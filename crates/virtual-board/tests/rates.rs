@@ -47,7 +47,7 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
 /// The same over SPI with the embedded-hal driver and at most six unacknowledged segments
 /// (docs/protocol.md).
 #[test]
-fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
+fn spi_carries_500_segments_per_second_for_six_axes() {
     let bus = Bus::<ModelBoard>::new(9_600_000);
     let mut host = bus.connect();
     host.enable().unwrap();
