@@ -112,33 +112,10 @@ fn two_hundred(profile: ProfileKind) {
 }
 
 #[test]
-fn slow_constant_moves_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Constant);
-}
-
-#[test]
-fn slow_trapezoids_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Trapezoid);
-}
-
-#[test]
-fn slow_moves_by_ranades_rule_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Ranade);
-}
-
-#[test]
-fn slow_scurves_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Scurve);
-}
-
-#[test]
-fn slow_sines_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Sine);
-}
-
-#[test]
-fn slow_logistic_moves_keep_the_edge_bound() {
-    two_hundred(ProfileKind::Logistic);
+fn slow_moves_of_every_kind_keep_the_edge_bound() {
+    for &kind in ProfileKind::ALL {
+        two_hundred(kind);
+    }
 }
 
 /// 400 steps in either direction on a machine with a4988 timing.

@@ -176,9 +176,8 @@ pub fn build(
         enable: 2,
         limits,
         limit_freezes: limits == LimitWiring::Each,
-        estop_low: low,
-        limits_low: low,
-        stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
+        ..Guard::minimal((0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect())
+            .active_low(low)
     };
     build
 }

@@ -110,8 +110,7 @@ impl LinkBench {
             }
         }
         let asked = self.wire.settle(&seen).0;
-        let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
-        let told = EngineInputs { estop, limit_min, limit_max, ..asked.engine };
+        let told = asked.engine.with_pins(&self.pins);
         let (axis, item) = (asked.get_axis.into(), asked.get_item.into());
         self.engine.get(axis, item);
         let before = std::mem::replace(&mut self.outputs, self.engine.settle(&told)).step;

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::switches::SwitchPanel;
+use crate::switches::{KNOWN, SwitchPanel};
 use carrystep_virtual_board::{Edges, RealTimeBoard, RealTimeError, SimulatedBoard};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
@@ -30,10 +30,7 @@ impl<B: SimulatedBoard> OperatedBoard<B> {
         let look = self.panel.look(|axis| self.real_time.board.position(axis));
         for line in look.unknown {
             // If this write fails, there is no channel left to report it.
-            let _ = writeln!(
-                std::io::stderr(),
-                "not understood: {line:?}; known are: estop 1, min x 1, max x 0, end"
-            );
+            let _ = writeln!(std::io::stderr(), "not understood: {line:?}; known are: {KNOWN}");
         }
         if look.ends || interrupt::watch().load(Ordering::Relaxed) {
             return Ok(false);

@@ -13,6 +13,9 @@ use carrystep_virtual_board::Switches;
 use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 
+/// The lines that the panel knows, each as an example.
+pub const KNOWN: &str = "estop 1, min x 1, max x 0, end";
+
 /// One end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {

@@ -136,6 +136,27 @@ pub struct EngineInputs {
     pub limit_max: u8,
 }
 
+impl EngineInputs {
+    /// These inputs, with the levels of the pins from `other`.
+    #[must_use]
+    pub const fn with_pins(self, other: &Self) -> Self {
+        let Self { estop, limit_min, limit_max, .. } = *other;
+        Self { estop, limit_min, limit_max, ..self }
+    }
+
+    /// Converts what is active at the pins into their levels, by the polarity of the guard.
+    #[must_use]
+    pub const fn levels(self, guard: &Guard) -> Self {
+        let low = if guard.limits_low { 0xff } else { 0 };
+        Self {
+            estop: self.estop != guard.estop_low,
+            limit_min: self.limit_min ^ low,
+            limit_max: self.limit_max ^ low,
+            ..self
+        }
+    }
+}
+
 /// Output values of the engine in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EngineOutputs {

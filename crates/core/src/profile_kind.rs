@@ -1,7 +1,7 @@
 //! The kinds of profiles by name. The names are those of move files and of the command line.
 //!
-//! A new kind is added here, in `kinds.rs` of the crate `profile`, and on the page
-//! docs/profiles.md.
+//! A new kind is added here, at the end, in the crate `profile` (its curve, `kinds.rs`, `lib.rs`),
+//! and on the page docs/profiles.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

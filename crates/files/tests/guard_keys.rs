@@ -31,10 +31,7 @@ fn missing_keys_have_their_defaults() {
         enable: 33,
         debounce: 17,
         limits: LimitWiring::Pair,
-        limit_freezes: false,
-        estop_low: false,
-        limits_low: false,
-        stop: vec![461_168_601_842],
+        ..Guard::minimal(vec![461_168_601_842])
     };
     let absent = read(&format!("[machine]\n{AXIS}")).unwrap().guard;
     // 25000 steps/s^2 x (10^-6 s)^2 x 2^64 = 461168601842.7...

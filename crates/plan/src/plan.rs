@@ -47,8 +47,8 @@ pub struct PlannedAxis {
     pub segments: Vec<Segment>,
     /// The float reference, in steps and seconds, in the direction of travel.
     pub profile: SharedProfile,
-    /// The name of the profile's shape: triangle, trapezoid, scurve, logistic, sine, constant or
-    /// rest.
+    /// The name of the profile's shape: that of its kind, or triangle, constant or rest where the
+    /// kind makes such a move.
     pub shape: &'static str,
     /// Greatest speed, acceleration and jerk, and the start speed, computed from the integers.
     pub peaks: Peaks,

@@ -239,7 +239,7 @@ impl<'a> Planner<'a> {
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
             // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
-            // that are curved and belong to a sine or a logistic profile are fitted. The rest are
+            // that are curved and belong to a fitted kind of profile are fitted. The rest are
             // exact.
             if piece.by_pulse {
                 writer.placed(piece, &pulses)?;

@@ -1,17 +1,15 @@
-//! A single ramp up to a given speed: as steep as the limits allow, or in a given time.
+//! A single ramp up to a given speed: as steep as the limits allow, or in a given time. Those of
+//! fitted curves are with their curves.
 //!
 //! The limits are those of a move, except for their speed, which is replaced by `top` (steps/s,
-//! over 0). The start speed is the speed to which the motor may jump. The sine and the trapezoid do
-//! not use it; Ranade's rule and the seven-segment curve do. `time` is in seconds; `None` stands
-//! for the least time.
+//! over 0). The start speed is the speed to which the motor may jump. The
+//! trapezoid does not use it; Ranade's rule and the seven-segment curve do. `time` is in seconds;
+//! `None` stands for the least time.
 
-use crate::bad_ramp::BadRamp;
 use crate::curve::Curve;
-use crate::logistic::{self, LogisticRamp, SHORTFALL};
-use crate::profile::{Profile, Real, real};
+use crate::profile::{Real, real};
 use crate::refusal::{Limit, LimitRefusal, Limits};
 use crate::scurve::ScurveRamp;
-use crate::sine::SineRamp;
 use crate::solve::smallest;
 
 /// The ramp of constant acceleration from rest.
@@ -66,58 +64,8 @@ pub fn scurve_ramp<F: Real>(
     in_time(time, limits, |limits| ramp(limits.acceleration, limits.jerk), lasting)
 }
 
-/// The sinusoidal ramp from rest.
-///
-/// # Errors
-/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
-pub fn sine_ramp<F: Real>(
-    top: F,
-    time: Option<F>,
-    limits: &Limits<F>,
-) -> Result<SineRamp<F>, LimitRefusal> {
-    in_time(
-        time,
-        limits,
-        |limits| SineRamp::within(limits, top),
-        |time| SineRamp::lasting(top, time),
-    )
-}
-
-/// The logistic ramp with the asymptote `top`. As in its source, it ends at 99.5 % of the
-/// asymptote.
-///
-/// It starts at 0.5 %, or at the start speed if that is over 0 and smaller.
-///
-/// # Errors
-/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
-pub fn logistic_ramp<F: Real>(
-    top: F,
-    time: Option<F>,
-    limits: &Limits<F>,
-) -> Result<LogisticRamp<F>, LimitRefusal> {
-    let start = logistic::start_fraction(limits, top);
-    let ramp = |steepness| LogisticRamp::between(top, steepness, start);
-    // With a steepness of 1/s, the duration of the ramp is the product k T.
-    let lasting = |time| ramp(ramp(F::one()).duration() / time);
-    in_time(time, limits, |limits| ramp(logistic::steepest(limits, top)), lasting)
-}
-
-/// [`logistic_ramp`] with the start of its source: the ramp starts T_i seconds before it has half
-/// its speed.
-///
-/// # Errors
-/// A [`BadRamp`] if the centre is so early that the ramp would end before it starts.
-pub fn logistic_ramp_about<F: Real>(
-    top: F,
-    centre: F,
-    limits: &Limits<F>,
-) -> Result<LogisticRamp<F>, BadRamp> {
-    let acceleration = logistic::steepest(limits, top) * (top / real(4.0));
-    LogisticRamp::new(top, acceleration, centre, real(SHORTFALL))
-}
-
 /// The `steepest` ramp of the limits, or the ramp that lasts `time` seconds.
-fn in_time<F: Real, R: Curve<F>>(
+pub(crate) fn in_time<F: Real, R: Curve<F>>(
     time: Option<F>,
     limits: &Limits<F>,
     steepest: impl Fn(&Limits<F>) -> R,

@@ -49,13 +49,11 @@ pub use widened::Widened;
 /// that return the least time. The functions whose names end in `_ramp` return a single ramp up to
 /// a given top speed.
 pub mod rule {
-    pub use crate::alone::{
-        logistic_ramp, logistic_ramp_about, ranade_ramp, scurve_ramp, sine_ramp, trapezoid_ramp,
-    };
+    pub use crate::alone::{ranade_ramp, scurve_ramp, trapezoid_ramp};
     pub use crate::constant::{constant, constant_least_time};
-    pub use crate::logistic::{logistic, logistic_least_time};
+    pub use crate::logistic::{logistic, logistic_least_time, logistic_ramp, logistic_ramp_about};
     pub use crate::ranade::{ranade, ranade_least_time};
     pub use crate::scurve::{scurve, scurve_least_time, scurve_to, scurve_to_least_time};
-    pub use crate::sine::{sine, sine_least_time};
+    pub use crate::sine::{sine, sine_least_time, sine_ramp};
     pub use crate::trapezoid::{trapezoid, trapezoid_least_time};
 }

@@ -5,6 +5,7 @@
 //!
 //! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
+use crate::alone;
 use crate::bad_ramp::{BadRamp, in_range, positive, wide};
 use crate::curve::Curve;
 use crate::numeric::{ln_exp_m1, softplus};
@@ -295,4 +296,37 @@ pub fn logistic_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
 fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (LogisticRamp<F>, LogisticRamp<F>) {
     let ramp = LogisticRamp::within(limits, top);
     (ramp, ramp)
+}
+
+/// The logistic ramp with the asymptote `top`. As in its source, it ends at 99.5 % of the
+/// asymptote.
+///
+/// It starts at 0.5 %, or at the start speed if that is over 0 and smaller.
+///
+/// # Errors
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn logistic_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, LimitRefusal> {
+    let start = start_fraction(limits, top);
+    let ramp = |steepness| LogisticRamp::between(top, steepness, start);
+    // With a steepness of 1/s, the duration of the ramp is the product k T.
+    let lasting = |time| ramp(ramp(F::one()).duration() / time);
+    alone::in_time(time, limits, |limits| ramp(steepest(limits, top)), lasting)
+}
+
+/// [`logistic_ramp`] with the start of its source: the ramp starts T_i seconds before it has half
+/// its speed.
+///
+/// # Errors
+/// A [`BadRamp`] if the centre is so early that the ramp would end before it starts.
+pub fn logistic_ramp_about<F: Real>(
+    top: F,
+    centre: F,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, BadRamp> {
+    let acceleration = steepest(limits, top) * (top / real(4.0));
+    LogisticRamp::new(top, acceleration, centre, real(SHORTFALL))
 }

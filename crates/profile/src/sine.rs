@@ -4,6 +4,7 @@
 //!
 //! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
+use crate::alone;
 use crate::bad_ramp::{BadRamp, positive};
 use crate::curve::Curve;
 use crate::numeric::x_minus_sin;
@@ -196,4 +197,21 @@ pub fn sine_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
 fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (SineRamp<F>, SineRamp<F>) {
     let ramp = SineRamp::within(limits, top);
     (ramp, ramp)
+}
+
+/// The sinusoidal ramp from rest.
+///
+/// # Errors
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
+pub fn sine_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<SineRamp<F>, LimitRefusal> {
+    alone::in_time(
+        time,
+        limits,
+        |limits| SineRamp::within(limits, top),
+        |time| SineRamp::lasting(top, time),
+    )
 }

@@ -1,12 +1,14 @@
 // A board in Verilator that runs for as many clocks as its input requests.
 //
-// A line `COUNT PINS MIN MAX` on standard input requests COUNT clocks with these levels. PINS, MIN
-// and MAX are hexadecimal; bit 0 of PINS is RX or MOSI, followed by SCK, chip select and e-stop. A
-// line `0 ...` requests the state.
+// A line `COUNT LINE PINS...` on standard input requests COUNT clocks with these levels. LINE and
+// the pins are hexadecimal; bit 0 of LINE is RX or MOSI, followed by SCK and chip select. A line
+// `0 ...` requests the state.
 //
 // Lines on standard output, each with the first cycle in which the change is visible: `t CYCLE TX`,
 // `p CYCLE STEP DIR`, `l CYCLE` when a start has loaded, `f CYCLE CAUSE` when a stop comes into
 // force, and for the state `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
+//
+// A template: `pins` are the engine's inputs from pins, in the order of their table.
 #include "Vboard_bench.h"
 #include "verilated.h"
 #include <cinttypes>
@@ -36,14 +38,15 @@ int main() {
     board.rx = board.select_n = 1;
     board.eval();
     uint64_t cycle = 0, count;
-    unsigned pins, limit_min, limit_max;
-    while (std::scanf("%" SCNu64 " %x %x %x", &count, &pins, &limit_min, &limit_max) == 4) {
-        board.rx = pins & 1;
-        board.sck = pins >> 1 & 1;
-        board.select_n = pins >> 2 & 1;
-        board.estop = pins >> 3 & 1;
-        board.limit_min = limit_min;
-        board.limit_max = limit_max;
+    unsigned line{% for port in pins %}, {{ port.name }}{% endfor %};
+    while (std::scanf("%" SCNu64 " %x{% for port in pins %} %x{% endfor %}", &count, &line
+{%- for port in pins %}, &{{ port.name }}{% endfor %}) == {{ pins | length + 2 }}) {
+        board.rx = line & 1;
+        board.sck = line >> 1 & 1;
+        board.select_n = line >> 2 & 1;
+{% for port in pins %}
+        board.{{ port.name }} = {{ port.name }};
+{% endfor %}
         board.eval();
         if (count == 0) {
             std::printf(". %" PRIu64 " %u %u %u %u %x\n", cycle, unsigned{board.idle}, unsigned{board.halted},

@@ -10,6 +10,7 @@ use minijinja::{Environment, UndefinedBehavior, Value, context};
 const ICARUS: &str = include_str!("../bench/engine_bench.v");
 const VERILATOR: &str = include_str!("../bench/engine_bench.cpp");
 const BOARD: &str = include_str!("../bench/board_bench.v");
+const BOARD_PROCESS: &str = include_str!("../bench/board_bench.cpp");
 
 /// The bench that replays a recording in Icarus.
 pub(crate) fn icarus() -> Result<String, LevelError> {
@@ -24,6 +25,11 @@ pub(crate) fn verilator() -> Result<String, LevelError> {
 /// Line, link and engine of a board as one module.
 pub(crate) fn board() -> Result<String, LevelError> {
     rendered(BOARD)
+}
+
+/// The bench that runs a board in Verilator as a process.
+pub(crate) fn board_process() -> Result<String, LevelError> {
+    rendered(BOARD_PROCESS)
 }
 
 fn rendered(template: &str) -> Result<String, LevelError> {
@@ -41,6 +47,10 @@ fn rendered(template: &str) -> Result<String, LevelError> {
         ports => ENGINE_PORTS.iter().map(row).collect::<Vec<_>>(),
         bytes => BYTE_PORTS.iter().map(row).collect::<Vec<_>>(),
         inputs => rows(Direction::Input),
+        pins => recorded_ports(Direction::Input)
+            .filter(|port| port.peer == Peer::Pins)
+            .map(row)
+            .collect::<Vec<_>>(),
         outputs => rows(Direction::Output),
     };
     environment

@@ -5,13 +5,12 @@ use crate::tool::{self, VERILATOR};
 use crate::verilator::Simulation;
 use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::Cause;
+use carrystep_core::engine::{Cause, EngineInputs, recorded_ports};
 use carrystep_core::link::LineKind;
+use carrystep_core::ports::{Direction, Peer};
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-
-const BENCH: &str = include_str!("../bench/board_bench.cpp");
 
 /// Levels of a board's input pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,12 +19,8 @@ pub struct Levels {
     pub rx: bool,
     /// Levels of SCK and of the active-low chip select.
     pub spi: [bool; 2],
-    /// Level of the e-stop pin.
-    pub estop: bool,
-    /// Levels of the limit pins at the low ends, a bit for each axis.
-    pub limit_min: u8,
-    /// Levels of the limit pins at the high ends, a bit for each axis.
-    pub limit_max: u8,
+    /// Levels of the engine's pins; its other inputs have no effect.
+    pub pins: EngineInputs,
 }
 
 /// An event of a board, with the first cycle in which it is visible.
@@ -84,7 +79,8 @@ impl BoardProcess {
         let axes = format!("-GAXES={}", build.axes());
         let define = if line == LineKind::Spi { "-DSPI" } else { "-DUART" };
         let options: &[&str] = &[&axes, define];
-        let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
+        let bench = bench::board_process()?;
+        let board = Simulation { name: "board", top: "board_bench", bench: &bench, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn().map_err(tool::io("cannot start the simulation"))?;
@@ -107,14 +103,17 @@ impl BoardProcess {
         to: &mut dyn FnMut(Did),
     ) -> Result<Standing, LevelError> {
         let last = stimuli.last().map(|&(_, levels)| (0, levels));
-        for (count, Levels { rx, spi: [sck, select_n], estop, limit_min, limit_max }) in
+        for (count, Levels { rx, spi: [sck, select_n], pins }) in
             stimuli.iter().copied().chain(last)
         {
-            let bits = [estop, select_n, sck, rx]
-                .into_iter()
-                .fold(0, |bits, pin| bits << 1 | u8::from(pin));
-            writeln!(self.to, "{count} {bits:x} {limit_min:x} {limit_max:x}")
-                .map_err(tool::io("the simulation is gone"))?;
+            let bits =
+                [select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
+            let mut line = format!("{count} {bits:x}");
+            let levels = recorded_ports(Direction::Input).zip(pins.at_ports());
+            for (_, (_, level)) in levels.filter(|(port, _)| port.peer == Peer::Pins) {
+                line += &format!(" {:x}", level.unwrap_or(0));
+            }
+            writeln!(self.to, "{line}").map_err(tool::io("the simulation is gone"))?;
         }
         self.to.flush().map_err(tool::io("the simulation is gone"))?;
         let mut line = String::new();

@@ -101,8 +101,7 @@ pub struct EngineHost {
     fault: bool,
     /// The inputs other than those of the program.
     around: EngineInputs,
-    estop_low: bool,
-    limits_low: u8,
+    guard: Guard,
     word_error: u8,
 }
 
@@ -135,8 +134,6 @@ impl EngineHost {
         let current = acts.next();
         let events = events.into_iter().peekable();
         let around = EngineInputs { enable: true, ..EngineInputs::default() };
-        let limits_low = if guard.limits_low { 0xff } else { 0 };
-        let estop_low = guard.estop_low;
         let mut host = Self {
             acts,
             current,
@@ -145,8 +142,7 @@ impl EngineHost {
             awake,
             fault: false,
             around,
-            estop_low,
-            limits_low,
+            guard: guard.clone(),
             word_error: 0,
         };
         host.happen();
@@ -174,12 +170,7 @@ impl EngineHost {
 
     /// The inputs of this cycle. During a fault the program only clears and waits.
     pub fn inputs(&self, fault: bool) -> EngineInputs {
-        let inputs = EngineInputs {
-            estop: self.around.estop != self.estop_low,
-            limit_min: self.around.limit_min ^ self.limits_low,
-            limit_max: self.around.limit_max ^ self.limits_low,
-            ..self.around
-        };
+        let inputs = self.around.levels(&self.guard);
         match self.current {
             Some(Act::Put(put)) if !fault => {
                 let put = Put { word: put.word ^ self.word_error, ..put };

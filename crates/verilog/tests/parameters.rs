@@ -5,6 +5,7 @@
 use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_hdl::parameters::PARAMETERS;
 use carrystep_verilog::{
     ENGINE_NAME, engine_verilog, line_verilog, link_verilog, parallel_verilog,
 };
@@ -35,8 +36,8 @@ fn second() -> EngineBuild {
     second.guard.limits = LimitWiring::Each;
     second.guard.round = 1024;
     (second.guard.watchdog, second.guard.enable, second.guard.debounce) = (4095, 17, 127);
-    (second.guard.limit_freezes, second.guard.limits_low, second.guard.estop_low) =
-        (true, true, true);
+    second.guard.limit_freezes = true;
+    second.guard = second.guard.active_low(true);
     second
 }
 
@@ -114,10 +115,6 @@ fn value_out_of_range_is_refused_by_name_and_the_ends_of_the_range_are_not() {
         ("ENABLE_ROUNDS", ["0", "4095"], ["4096", "65536"], "enable_rounds_out_of_range"),
         ("DEBOUNCE_SAMPLES", ["1", "127"], ["0", "128"], "debounce_samples_out_of_range"),
         ("LIMITS", ["0", "3"], ["4", "5"], "limits_out_of_range"),
-        ("LIMITS_LOW", ["0", "1"], ["2", "3"], "limits_low_out_of_range"),
-        ("LIMIT_FREEZES", ["0", "1"], ["2", "3"], "limit_freezes_out_of_range"),
-        ("ESTOP_LOW", ["0", "1"], ["2", "3"], "estop_low_out_of_range"),
-        ("START_HALF", ["0", "1"], ["2", "3"], "start_half_out_of_range"),
         (
             "EVENT_MEMORY",
             ["\"block\"", "\"distributed\""],
@@ -128,7 +125,12 @@ fn value_out_of_range_is_refused_by_name_and_the_ends_of_the_range_are_not() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("core.v"), engine_verilog(&first(), "a test").unwrap())
         .unwrap();
-    for (parameter, good, bad, error) in cases {
+    let bits = PARAMETERS.iter().filter(|known| known.range == "0 or 1").map(|known| {
+        let error = format!("{}_out_of_range", known.name.to_lowercase());
+        (known.name, ["0", "1"], ["2", "3"], error)
+    });
+    let cases = cases.map(|(parameter, good, bad, error)| (parameter, good, bad, error.to_owned()));
+    for (parameter, good, bad, error) in cases.into_iter().chain(bits) {
         for value in good {
             let (fine, said) = elaborated(folder.path(), ENGINE_NAME, parameter, value);
             assert!(fine, "{parameter} = {value}: {said}");

@@ -22,13 +22,8 @@ pub struct Switches {
 impl Switches {
     /// Levels of the input pins, with the polarity of the build.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
-        let low = if guard.limits_low { 0xff } else { 0 };
-        EngineInputs {
-            estop: self.estop != guard.estop_low,
-            limit_min: self.limit_min ^ low,
-            limit_max: self.limit_max ^ low,
-            ..EngineInputs::default()
-        }
+        let Self { estop, limit_min, limit_max } = self;
+        EngineInputs { estop, limit_min, limit_max, ..EngineInputs::default() }.levels(guard)
     }
 }
 
@@ -200,8 +195,7 @@ impl ModelBoard {
     }
 
     fn inputs(&self, asks: &LinkOutputs) -> EngineInputs {
-        let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
-        EngineInputs { estop, limit_min, limit_max, ..asks.engine }
+        asks.engine.with_pins(&self.pins)
     }
 
     fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {

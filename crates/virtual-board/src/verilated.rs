@@ -4,7 +4,7 @@ use crate::board::Switches;
 use crate::gateware::SimulatedBoard;
 use crate::wire::{Driven, Wire};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{Cause, MAX_AXES};
+use carrystep_core::engine::{Cause, EngineInputs, MAX_AXES};
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_model::fast::{Change, Edge, Edges};
 use carrystep_simulators::LevelError;
@@ -65,12 +65,13 @@ impl VerilatedBoard {
         let pins = self.switches.pins(&self.build.guard);
         let axes = u8::MAX >> (MAX_AXES - self.build.axes());
         let (limit_min, limit_max) = (pins.limit_min & axes, pins.limit_max & axes);
+        let pins = EngineInputs { limit_min, limit_max, ..pins };
         let mut stimuli = Vec::new();
         let mut cycle = self.cycle();
         while cycle < end {
             let Driven { rx, spi, stays } = self.wire.drive(cycle);
             let count = stays.min(end - cycle);
-            stimuli.push((count, Levels { rx, spi, estop: pins.estop, limit_min, limit_max }));
+            stimuli.push((count, Levels { rx, spi, pins }));
             cycle += count;
         }
         let Self { process, wire, loads, stops, pins, travelled, .. } = self;

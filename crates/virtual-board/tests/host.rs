@@ -133,7 +133,7 @@ fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 8);
     end.0.borrow_mut().meanwhile = Box::new(|board| {
         let reached = u8::from(board.position(2).abs() > 30) << 2;
-        board.press(Switches { limit_min: reached, limit_max: reached, estop: false });
+        board.press(Switches { limit_min: reached, limit_max: reached, ..Switches::default() });
     });
     let error = host.stream(program(&moves(8)), go_on).unwrap_err();
     assert_eq!(error, HostError::Fault { cause: Cause::Limit as u8, culprits: 1 << 2 });

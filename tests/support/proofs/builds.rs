@@ -78,9 +78,7 @@ pub fn small_engine(
         enable: 2,
         limits,
         limit_freezes: low,
-        estop_low: low,
-        limits_low: low,
-        ..minimal.guard.clone()
+        ..minimal.guard.clone().active_low(low)
     };
     let build = EngineBuild { guard, ..minimal };
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();

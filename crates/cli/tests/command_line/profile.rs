@@ -1,6 +1,7 @@
 //! `carrystep profile` reproduces the examples of the sources in the sources' units.
 
 use crate::curves::{close, golden, json, names, stdout};
+use carrystep_core::ProfileKind;
 use serde_json::{Value, json};
 
 const SORN: &str =
@@ -183,9 +184,15 @@ fn csv_has_the_same_numbers_as_the_json() {
 fn pictures_are_well_formed() {
     let folder = tempfile::tempdir().unwrap();
     let plot = folder.path().join("new/plot.svg");
+    let kinds = |of: fn(&ProfileKind) -> bool| {
+        let named = ProfileKind::ALL.iter().filter(|&kind| of(kind));
+        named.map(|kind| kind.name()).collect::<Vec<_>>().join(" ")
+    };
+    let limits = "--accel 5000 --jerk 1e5 --start-speed 100";
+    let ramps = kinds(|&kind| kind != ProfileKind::Constant);
     let asked = [
-        "trapezoid logistic sine scurve ranade --speed 2000 --accel 5000 --jerk 1e5 --start-speed 100",
-        "trapezoid logistic sine scurve ranade constant --steps 500 --accel 5000 --jerk 1e5 --start-speed 100",
+        &format!("{ramps} --speed 2000 {limits}"),
+        &format!("{} --steps 500 {limits}", kinds(|_| true)),
         "constant --steps 3 --start-speed 100",
         "scurve --mm 20 --travel-per-rev 8 --microsteps 16 --speed-mm-s 50 --accel-mm-s2 500 --jerk-mm-s3 9000",
     ];

@@ -83,6 +83,12 @@ impl Guard {
             stop,
         }
     }
+
+    /// This guard with the active level of every switch: low, or else high.
+    #[must_use]
+    pub fn active_low(self, low: bool) -> Self {
+        Self { estop_low: low, limits_low: low, ..self }
+    }
 }
 
 impl EngineBuild {

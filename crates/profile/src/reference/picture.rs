@@ -133,17 +133,23 @@ fn right_label(size: u32, colour: RGBColor) -> TextStyle<'static> {
     label(size, colour).pos(Pos::new(HPos::Right, VPos::Top))
 }
 
-/// The colour of a kind. The colours can be distinguished with every kind of colour vision (Okabe
-/// and Ito).
+/// The colours of the kinds, in their order; the last two are spare. They can be distinguished with
+/// every kind of colour vision (Okabe and Ito).
+const COLOURS: [RGBColor; 8] = [
+    RGBColor(230, 159, 0),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(160, 60, 140),
+    RGBColor(0, 114, 178),
+    RGBColor(90, 98, 108),
+    RGBColor(86, 180, 233),
+    RGBColor(240, 228, 66),
+];
+
+const _: () = assert!(ProfileKind::ALL.len() <= COLOURS.len());
+
 fn colour(kind: ProfileKind) -> RGBColor {
-    match kind {
-        ProfileKind::Trapezoid => RGBColor(213, 94, 0),
-        ProfileKind::Ranade => RGBColor(230, 159, 0),
-        ProfileKind::Scurve => RGBColor(0, 158, 115),
-        ProfileKind::Sine => RGBColor(0, 114, 178),
-        ProfileKind::Logistic => RGBColor(160, 60, 140),
-        ProfileKind::Constant => RGBColor(90, 98, 108),
-    }
+    COLOURS[kind as usize]
 }
 
 /// A unit of time that gives short labels.

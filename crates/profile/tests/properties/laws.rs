@@ -20,14 +20,14 @@ fn float<F: Real>(x: f64) -> F {
 
 /// Checks all laws of a move or a ramp.
 #[track_caller]
-pub fn hold<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
+pub fn hold<F: Real>(curve: &dyn Curve<F>, slack: &Slack) {
     ends(curve, slack);
     integrals(curve, slack);
     crossings(curve, slack);
 }
 
 #[track_caller]
-fn ends<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
+fn ends<F: Real>(curve: &dyn Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), curve.distance());
     assert!(duration >= F::zero() && duration.is_finite() && distance.is_finite());
     assert_eq!(curve.crossing(F::zero()), F::zero());
@@ -61,7 +61,7 @@ fn mean<F: Real>(from: F, to: F, f: impl Fn(F) -> F) -> f64 {
 /// Checks that between breakpoints each quantity is the integral of the next: position of speed,
 /// speed of acceleration, acceleration of jerk.
 #[track_caller]
-fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
+fn integrals<F: Real>(curve: &dyn Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), wide(curve.distance()));
     let mut ends = vec![F::zero()];
     ends.extend(curve.breakpoints());
@@ -116,7 +116,7 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
 /// Checks that `crossing` is the inverse of `position`, even very near to rest, and that later
 /// positions are passed later.
 #[track_caller]
-fn crossings<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
+fn crossings<F: Real>(curve: &dyn Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), curve.distance());
     let tolerance = slack.rounding * wide(F::epsilon());
     let parts = [

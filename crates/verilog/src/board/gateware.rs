@@ -10,9 +10,9 @@ use crate::parameters::overrides;
 use crate::prefix::Prefix;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{ENGINE_PORTS, EngineInputs, LimitWiring};
 use carrystep_core::link::{BuildId, LineKind, Uart, line_pins};
-use carrystep_core::ports::{Direction, Port};
+use carrystep_core::ports::{Direction, Peer, Port, Width};
 use carrystep_core::{ChosenTick, EngineBuild};
 use carrystep_files::{Machine, SourceText};
 use carrystep_hdl::parameters::EVENT_MEMORY;
@@ -175,13 +175,14 @@ impl<'a> Gateware<'a> {
         let bits =
             |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
-        let fixed = ["enable_n", "estop"].map(str::to_owned);
+        let switches = self.switches().filter(|(_, pin)| *pin).map(|(port, _)| port.name);
+        let fixed = ["enable_n"].into_iter().chain(switches).map(str::to_owned);
         let line = self.line_pins().map(|(_, pin)| pin.to_owned());
         let led = self.has_led().then(|| "led".to_owned());
         [
             bits("step", axes),
             bits("dir", axes),
-            fixed.to_vec(),
+            fixed.collect(),
             line.collect(),
             bits("limit_min", low),
             bits("limit_max", high),
@@ -199,6 +200,16 @@ impl<'a> Gateware<'a> {
             LineKind::Spi => &["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"],
         };
         line_pins(self.line).iter().zip(board.iter().copied())
+    }
+
+    /// The switches of the engine that are not switches of an axis, and whether the board has a pin
+    /// for each. One without a pin is tied to its inactive level.
+    fn switches(&self) -> impl Iterator<Item = (&'static Port, bool)> {
+        let single = |port: &&Port| {
+            let of_all = port.width == Width::Bits(1);
+            of_all && port.peer == Peer::Pins && port.direction == Direction::Input
+        };
+        ENGINE_PORTS.iter().filter(single).map(|port| (port, self.board.bits(port.name) > 0))
     }
 
     fn has_led(&self) -> bool {
@@ -249,6 +260,11 @@ impl<'a> Gateware<'a> {
             one_for_all => low == 1 && axes > 1,
             others => axes - 1,
             count => axes,
+            switches => self.switches().map(|(port, pin)| {
+                let inactive = EngineInputs::default().levels(&self.build.guard).at_ports();
+                let level = inactive.iter().find(|(name, _)| *name == port.name);
+                context! { name => port.name, pin, inactive => level.and_then(|(_, level)| *level) }
+            }).collect::<Vec<Value>>(),
             led => self.has_led(),
             led_low => self.board.led_low,
             line_pins => self.line_pins().map(|(port, pin)| {

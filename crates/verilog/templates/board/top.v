@@ -14,7 +14,9 @@ module {{ top }} (
 {% if gate %}
     input wire {{ gate.port }},
 {% endif %}
-    input wire estop,
+{% for switch in switches if switch.pin %}
+    input wire {{ switch.name }},
+{% endfor %}
 {% if low is not none %}
     input wire {{ low }}limit_min,
 {% endif %}
@@ -84,7 +86,9 @@ module {{ top }} (
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
         .clock(clock),
-        .estop(estop),
+{% for switch in switches %}
+        .{{ switch.name }}({{ switch.name if switch.pin else "1'b" ~ switch.inactive }}),
+{% endfor %}
 {% if low is none %}
         .limit_min({{ count }}'d0),
 {% elif one_for_all %}
