@@ -1537,19 +1537,19 @@ module carrystep_stops #(
     // This tick clears the state of all axes.
     output wire         clearing,
     // The first cause.
-    output wire   [2:0] cause,
+    output wire   [3:0] cause,
     // The axes that caused the stop; bit i is axis i.
     output wire   [5:0] culprits
 );
     localparam LIMITS_FREEZE = LIMIT_FREEZES[0];
-    localparam [2:0] E_STOP = 3'd0;
-    localparam [2:0] OVERRUN = 3'd1;
-    localparam [2:0] PROTOCOL = 3'd2;
-    localparam [2:0] WATCHDOG = 3'd3;
-    localparam [2:0] OVERSPEED = 3'd4;
-    localparam [2:0] LIMITED = 3'd5;
-    localparam [2:0] UNDERRUN = 3'd6;
-    localparam [2:0] HOST = 3'd7;
+    localparam [3:0] E_STOP = 4'd0;
+    localparam [3:0] OVERRUN = 4'd1;
+    localparam [3:0] PROTOCOL = 4'd2;
+    localparam [3:0] WATCHDOG = 4'd3;
+    localparam [3:0] OVERSPEED = 4'd4;
+    localparam [3:0] LIMITED = 4'd5;
+    localparam [3:0] UNDERRUN = 4'd6;
+    localparam [3:0] HOST = 4'd7;
 
     generate
         if (LIMIT_FREEZES > 32'd1) begin : limit_freezes_out_of_range
@@ -1563,10 +1563,10 @@ module carrystep_stops #(
     reg still = 1'b0;
     reg settled = 1'b0;
     reg wiping = 1'b0;
-    reg [2:0] first = 3'd0;
+    reg [3:0] first = 4'd0;
     reg [5:0] axes = 6'd0;
     reg found = 1'b0;
-    reg [2:0] kind = 3'd0;
+    reg [3:0] kind = 4'd0;
     reg found_freezing = 1'b0;
     reg ran = 1'b0;
 
@@ -2146,10 +2146,9 @@ module carrystep_engine #(
     output wire         halted,
     // The engine is returning to its state at configuration, after `reset`.
     output wire         resetting,
-    // The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog, 4
-    // overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
-    // asserted.
-    output wire   [2:0] cause,
+    // The first cause of the stop: 0 e-stop, 1 overrun, 2 protocol, 3 watchdog, 4 overspeed, 5
+    // limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not asserted.
+    output wire   [3:0] cause,
     // The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
     // asserted.
     output wire   [5:0] culprits,
@@ -2255,7 +2254,7 @@ module carrystep_engine #(
     wire stops_halted;
     wire stops_settles;
     wire stops_clearing;
-    wire [2:0] stops_cause;
+    wire [3:0] stops_cause;
     wire [5:0] stops_culprits;
     wire resets_ending;
     wire resets_stage_2;

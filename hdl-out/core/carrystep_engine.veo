@@ -82,7 +82,7 @@ carrystep_engine #(
     .fault(),       // output
     .halted(),      // output
     .resetting(),   // output
-    .cause(),       // output [2:0]
+    .cause(),       // output [3:0]
     .culprits(),    // output [5:0]
     .armed(),       // output
     .ready(),       // output

@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     ba2608fc03d32853
+// Build id     dc28579ec9280efe
 
 `default_nettype none
 
@@ -473,7 +473,7 @@ module carrystep_processor (
     input  wire         armed,
     // The first cause of the stop. Without a fault its value and that of `culprits` have no
     // meaning.
-    input  wire   [2:0] cause,
+    input  wire   [3:0] cause,
     // The number of segments for which the queue of the axis in A has space.
     input  wire   [2:0] room,
     // `room` is valid in this clock.
@@ -561,7 +561,7 @@ module carrystep_processor (
     always @(*) begin
         state = NONE;
         if (fault) begin
-            state = ({5'b0, cause} << AT_5) | BIT_0;
+            state = ({4'b0, cause} << AT_5) | BIT_0;
         end
         if (halted) begin
             state = state | BIT_1;
@@ -619,6 +619,9 @@ module carrystep_processor (
         port = state;
         if (code[0]) begin
             port = {5'b0, space};
+            if (fault & cause[3]) begin
+                port = {5'b0, space} | BIT_4;
+            end
         end
         if (code[1]) begin
             port = NONE;
@@ -750,7 +753,7 @@ endmodule
 // axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
+    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -802,7 +805,7 @@ endmodule
 // What the host can read: constants of the build, and the last known state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
+    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -892,7 +895,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
+    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -972,7 +975,7 @@ module carrystep_link #(
     // A start is armed.
     input  wire         armed,
     // The first cause of the stop, numbered as at the port `cause` of the engine.
-    input  wire   [2:0] cause,
+    input  wire   [3:0] cause,
     // The axes that caused the stop; bit i is axis i.
     input  wire   [5:0] culprits,
     // The axes that wait for their limit; bit i is axis i.

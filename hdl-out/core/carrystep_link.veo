@@ -5,7 +5,7 @@
 // in carrystep_link.v describe the ports. An output that is not used stays empty; each input needs
 // a value. This file is generated: change the generator instead.
 carrystep_link #(
-    .BUILD_ID(64'hba2608fc03d32853),
+    .BUILD_ID(64'hdc28579ec9280efe),
     .CLOCK_HZ(32'h4c4b400),
     .TICK_NS(32'd1000),
     .ROUND_TICKS(32'd32),
@@ -45,7 +45,7 @@ carrystep_link #(
     .idle(),           // input
     .ready(),          // input
     .armed(),          // input
-    .cause(),          // input [2:0]
+    .cause(),          // input [3:0]
     .culprits(),       // input [5:0]
     .homing()          // input [5:0]
 );

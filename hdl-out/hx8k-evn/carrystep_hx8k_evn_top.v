@@ -55,7 +55,7 @@ module carrystep_hx8k_evn_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h64727a8259ea8439),
+        .BUILD_ID(64'hf584339ae5e07008),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),

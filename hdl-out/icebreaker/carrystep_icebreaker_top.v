@@ -55,7 +55,7 @@ module carrystep_icebreaker_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_icebreaker_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'ha378d1134a7d3f66),
+        .BUILD_ID(64'hb6e9e061bc0a988),
         .CLOCK_HZ(32'h23c3460),
         .TICK_NS(32'd2560),
         .ROUND_TICKS(32'd16),

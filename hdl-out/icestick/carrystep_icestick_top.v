@@ -55,7 +55,7 @@ module carrystep_icestick_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_icestick_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h504f66e75b91b70c),
+        .BUILD_ID(64'h7a7691ce31246be1),
         .CLOCK_HZ(32'h2dc6c00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

@@ -55,7 +55,7 @@ module carrystep_icesugar_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_icesugar_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h74c346ad2df0a6df),
+        .BUILD_ID(64'h337df904d041dc86),
         .CLOCK_HZ(32'h1c9c380),
         .TICK_NS(32'd3200),
         .ROUND_TICKS(32'd8),

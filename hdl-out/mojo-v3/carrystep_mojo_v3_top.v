@@ -56,7 +56,7 @@ module carrystep_mojo_v3_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -88,7 +88,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'h3a3295ce2c11b8b),
+        .BUILD_ID(64'h4b2bd2ab8d90e406),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),

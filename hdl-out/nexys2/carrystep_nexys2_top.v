@@ -55,7 +55,7 @@ module carrystep_nexys2_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_nexys2_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h9932dedab97a6731),
+        .BUILD_ID(64'h97348085a55f6186),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

@@ -54,7 +54,7 @@ module carrystep_papilio_one_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -72,7 +72,7 @@ module carrystep_papilio_one_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h922beed8bb78e091),
+        .BUILD_ID(64'h5ea785005c33df0e),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

@@ -55,7 +55,7 @@ module carrystep_papilio_pro_top (
     wire idle;
     wire ready;
     wire armed;
-    wire [2:0] cause;
+    wire [3:0] cause;
     wire [5:0] culprits;
     wire [5:0] homing;
 
@@ -73,7 +73,7 @@ module carrystep_papilio_pro_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h24132307d3114e03),
+        .BUILD_ID(64'h1711363e71c41483),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),

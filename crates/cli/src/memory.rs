@@ -17,7 +17,6 @@
 //! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
 
 use crate::connection::{ConnectedBoard, Connection};
-use crate::found;
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
 use serde::{Deserialize, Serialize};

@@ -123,8 +123,8 @@
 #define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
 /* a start is armed; another start is refused as busy */
 #define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
-/* the cause of the stop, if `fault` is set */
-#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)((answer)[3] >> 5 & 7u))
+/* the cause of the stop, if `fault` is set; otherwise 0 */
+#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)(((answer)[3] >> 5 & 7u) | ((answer)[4] >> 4 & 1u) << 3))
 /* number of segments for which the queue of the addressed axis has room */
 #define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
 /* this write was not executed: out of sequence, or busy */

@@ -85,8 +85,7 @@ pub const POSITION: u8 = 0x42;
 pub const DISCARDED: u8 = 0x43;
 /// Position in steps at which the limit was reached in homing (read, axis 0).
 pub const LATCHED: u8 = 0x44;
-/// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its
-/// move, else 0 (write, 8 words, axis 0).
+/// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;
 
 /// The causes of a stop, by their number in the field `cause` of an answer.
@@ -133,9 +132,9 @@ pub const fn armed(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 4 & 1 == 1
 }
 
-/// Of an answer: the cause of the stop, if `fault` is set.
+/// Of an answer: the cause of the stop, if `fault` is set; otherwise 0.
 pub const fn cause(answer: &[u8; ANSWER_BYTES]) -> u8 {
-    answer[3] >> 5
+    answer[3] >> 5 | (answer[4] >> 4 & 1) << 3
 }
 
 /// Of an answer: number of segments for which the queue of the addressed axis has room.
