@@ -134,7 +134,6 @@ impl<B: Make> World<B> {
             estop: self.estop,
             limit_min,
             limit_max,
-            ..Switches::default()
         });
     }
 
