@@ -121,3 +121,37 @@ impl Timeline {
         ((tick - leg.start_tick as f64) * self.tick_seconds).min(leg.profile.duration())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Constant;
+    use std::sync::Arc;
+
+    /// Ten legs of 1 to 10 steps, each 100 ticks of 10 us long and 50 ticks behind the one before.
+    fn legs() -> Vec<Leg> {
+        let leg = |i: u64| Leg {
+            start_tick: 150 * i,
+            backward: i % 3 == 1,
+            steps: i + 1,
+            profile: Arc::new(Constant::new((i + 1) as f64, 1e-3)),
+            fit_seconds: 0.0,
+        };
+        (0..10).map(leg).collect()
+    }
+
+    #[test]
+    fn a_position_is_the_sum_of_what_all_legs_have_travelled() {
+        let timeline = Timeline::new(1e-5, legs());
+        for tick in (-20..1700).map(|tick| f64::from(tick) + 0.25) {
+            let travelled = |leg: &Leg| {
+                let seconds = (tick - leg.start_tick as f64).clamp(0.0, 100.0) * 1e-5;
+                leg.sign() * leg.profile.position(seconds)
+            };
+            let sum: f64 = legs().iter().map(travelled).sum();
+            let found = timeline.position_at(tick);
+            assert!((found - sum).abs() < 1e-9, "tick {tick}: {found} is not {sum}");
+        }
+        assert!(Timeline::new(1e-5, Vec::new()).position_at(7.0).abs() < 1e-9);
+    }
+}
