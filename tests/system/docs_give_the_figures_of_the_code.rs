@@ -3,8 +3,8 @@
 
 use carrystep_core::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
 use carrystep_core::engine::{
-    CAUSES, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT,
-    QUEUE, TIME_SLOT_CLOCKS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT, QUEUE,
+    TIME_SLOT_CLOCKS,
 };
 use carrystep_core::link::registers::MOST_AXES;
 use carrystep_core::link::{
@@ -74,9 +74,6 @@ fn pages_give_the_dimensions_of_the_engine() {
             format!("a queue of {queue} segments costs no logic"),
         ],
     );
-    let causes = word(CAUSES.len() as u64);
-    let (first, rest) = causes.split_at(1);
-    says("docs/engine.md", &[format!("{}{rest} causes stop all axes.", first.to_uppercase())]);
     says("docs/index.md", &[format!("serves all axes, up to {}.", word(MAX_AXES as u64))]);
     says("docs/five-minutes.md", &[format!("a queue of {queue} segments for each axis")]);
     says("docs/flow-of-a-move.md", &[format!("Each axis has a queue of {queue} segments")]);
@@ -195,8 +192,6 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
     // With an END before it and one after it.
     let on_the_line = |bytes: usize| bytes + 2;
     let [asked, answered] = [read, ANSWER_BYTES].map(on_the_line);
-    let causes: Vec<String> =
-        CAUSES.iter().map(|&cause| format!("{} {cause}", cause as u8)).collect();
     let reads = word(MOST_AXES.into());
     says(
         "docs/protocol.md",
@@ -214,8 +209,6 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!("| unanswered reads | {MOST_AXES} at most |"),
             format!("a read has {asked} bytes and its answer {answered}"),
             format!("has room, 0 to {QUEUE}"),
-            format!("is set: {} |", causes.join(", ")),
-            format!("no cause has a number above {} yet", CAUSES.len() - 1),
             format!("the move ({QUEUE} at most)"),
             format!("({} MHz at 48 MHz)", 48.0 / 5.0),
         ],

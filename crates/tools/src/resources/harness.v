@@ -4,7 +4,7 @@
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 53 + 4 * AXES;
-    localparam OUTPUTS = 53 + 4 * AXES;
+    localparam OUTPUTS = 54 + 4 * AXES;
 
     reg [INPUTS - 1:0] inputs = 0;
     always @(posedge clock) inputs <= {inputs[INPUTS - 2:0], in};
@@ -12,7 +12,7 @@ module budget_harness (input wire clock, input wire in, output reg out);
     wire [31:0] get_data;
     wire [AXES - 1:0] step, dir, culprits, homing;
     wire [2:0] latch_axis, room;
-    wire [3:0] cause; // bit 3 is always 0: no cause has a number above 7 yet
+    wire [3:0] cause;
     wire latch, room_valid, armed, ready, put_ready, start_ready, idle, fault, halted, started, enabled, get_valid;
     carrystep_engine core (
         .clock(clock), .put_valid(inputs[0]), .put_axis(inputs[3:1]), .put_word(inputs[6:4]), .put_data(inputs[38:7]),
@@ -27,7 +27,7 @@ module budget_harness (input wire clock, input wire in, output reg out);
 
     reg [OUTPUTS - 1:0] outputs = 0;
     always @(posedge clock) begin
-        outputs <= inputs[50] ? {get_data, step, dir, culprits, cause[2:0], put_ready, start_ready, idle, fault, halted,
+        outputs <= inputs[50] ? {get_data, step, dir, culprits, cause, put_ready, start_ready, idle, fault, halted,
                                  started, enabled, get_valid, latch, latch_axis, room, room_valid, armed, ready, homing} : {outputs[OUTPUTS - 2:0], 1'b0};
         out <= outputs[OUTPUTS - 1];
     end
