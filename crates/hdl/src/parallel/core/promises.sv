@@ -99,13 +99,13 @@ module promises (
         promise_6_start_on_one_tick: assert (!started || strobe && (mask & ~load) == 0);
         promise_6_no_start_is_missed: assert (started == (expected && !fault && strobe && (mask & ~startable) == 0));
 
-        promise_8_idle: assert (idle == (!armed && drained == {`AXES{1'b1}} && held_back == 0 && step == 0));
+        promise_8_idle: assert (idle == (!armed && &drained && held_back == 0 && step == 0));
 
         promise_12_any_fault_stops_all: assert (fault == (protocol || {overrun, overspeed, underrun} != 0));
         promise_12_all_at_once: assert (axis_frozen == {`AXES{fault}} && shaper_frozen == {`AXES{fault}});
         promise_12_one_beat: assert (strobes == {`AXES{strobe}} && phase_starts == {`AXES{phase_start}}
             && phases == {`AXES{phase}});
-        promise_12_one_clear: assert (axis_clear == shaper_clear && (axis_clear == 0 || axis_clear == {`AXES{1'b1}}));
+        promise_12_one_clear: assert (axis_clear == shaper_clear && (axis_clear == 0 || &axis_clear));
         promise_12_cleared_at_rest: assert (axis_clear == 0 || clear && fault && in_flight == 0 && step == 0);
         promise_12_go_is_the_start: assert (go == (started ? mask : 0));
         promise_12_segment_as_offered: assert (ticks == {`AXES{seg_ticks}} && v == {`AXES{seg_v}} && a == {`AXES{seg_a}}
@@ -122,7 +122,7 @@ module promises (
         assumed_by_axis_push: assert ((push & waiting) == 0 && (push == 0 || !fault && seg_ticks != 0));
         assumed_by_axis_go: assert (go == 0 || !fault && strobe);
         assumed_by_axis_clear: assert (axis_clear == 0 || fault && in_flight == 0);
-        assumed_by_shaper: assert ((overrun == 0 || shaper_frozen == {`AXES{1'b1}}) && (shaper_clear == 0 || fault));
+        assumed_by_shaper: assert ((overrun == 0 || &shaper_frozen) && (shaper_clear == 0 || fault));
     end
 
     // ---- The invariant that makes the promises inductive: the start that is armed is the one that
@@ -141,7 +141,7 @@ module promises (
     always_comb begin
         cover_6_two_start_as_one: cover (started && mask == (FIRST | FIRST << (`AXES - 1)));
         cover_5_protocol_fault: cover (fault && was_fault && protocol);
-        cover_12_cleared: cover (axis_clear == {`AXES{1'b1}});
+        cover_12_cleared: cover (axis_clear != 0);
         cover_8_idle_again: cover (was_fault && idle && !fault);
     end
 endmodule
