@@ -38,33 +38,19 @@ const RUNS: [Run; 12] = [
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
         asks: &[("CARRYSTEP_CLOCKS", "10000000")],
-        cargo: &[
-            "-p",
-            "carrystep-tests",
-            "--test",
-            "rung_5_model_equals_verilog",
-            "engine::random_programs_in_verilator",
-        ],
+        cargo: &["--test", "rung_5_model_equals_verilog", "engine::random_programs_in_verilator"],
     },
     Run {
         name: "rust-hdl",
         what: "the same against Rust-HDL's own simulation",
         asks: &[("CARRYSTEP_CLOCKS", "1000000")],
-        cargo: &[
-            "-p",
-            "carrystep-tests",
-            "--test",
-            "rung_4_model_equals_rust_hdl",
-            "engine::random_programs_at_16_phases",
-        ],
+        cargo: &["--test", "rung_4_model_equals_rust_hdl", "engine::random_programs_at_16_phases"],
     },
     Run {
         name: "repeats",
         what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model",
         asks: &[("CARRYSTEP_REPEATS", "all")],
         cargo: &[
-            "-p",
-            "carrystep-tests",
             "--test",
             "rung_3_fast_model_equals_model",
             "--test",
@@ -83,45 +69,37 @@ const RUNS: [Run; 12] = [
         name: "proofs",
         what: "the [promises](promises.md), their covers and planted bugs",
         asks: &[],
-        cargo: &["-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"],
+        cargo: &["--test", "rung_7_promises_are_proved"],
     },
     Run {
         name: "mutants",
         what: "all [mutants](mutants.md), with the proofs that survivors are harmless",
         asks: &[("CARRYSTEP_MUTANTS", "all")],
-        cargo: &["-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught"],
+        cargo: &["--test", "rung_8_mutants_are_caught"],
     },
     Run {
         name: "bad-line",
         what: "moves over a line that flips, drops, doubles, cuts and delays bytes, to a board of models: pulses are those of a clean line, or a stop says why",
         asks: &[("CARRYSTEP_FRAMES", "100000")],
-        cargo: &["-p", "carrystep-virtual-board", "--test", "bad_line", "pulses_on_a_bad_line"],
+        cargo: &["--test", "bad_line", "pulses_on_a_bad_line"],
     },
     Run {
         name: "garbage",
         what: "an hour of garbage at 921 600 baud, then a move",
         asks: &[("CARRYSTEP_GARBAGE", "3600000")],
-        cargo: &["-p", "carrystep-virtual-board", "--test", "bad_line", "garbage_hangs_nothing"],
+        cargo: &["--test", "bad_line", "garbage_hangs_nothing"],
     },
     Run {
         name: "dead-host",
         what: "hosts that die in the middle of a move: the board stops in time, its positions are true, the next host goes on",
         asks: &[("CARRYSTEP_DEATHS", "50")],
-        cargo: &["-p", "carrystep-virtual-board", "--test", "dead_host", "the_board_stops"],
+        cargo: &["--test", "dead_host", "the_board_stops"],
     },
     Run {
         name: "verilog-board",
         what: "the exported Verilog as a board: a second of garbage, then a move; a second of six axes at 500 segments/s over 3 Mbaud",
         asks: &[("CARRYSTEP_VERILOG_MS", "1000")],
-        cargo: &[
-            "-p",
-            "carrystep-virtual-board",
-            "--test",
-            "bad_line",
-            "--test",
-            "rates",
-            "verilog_at",
-        ],
+        cargo: &["--test", "bad_line", "--test", "rates", "verilog_at"],
     },
     Run {
         name: "resources",
@@ -139,7 +117,7 @@ const RUNS: [Run; 12] = [
         name: "equivalence",
         what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
-        cargo: &["-p", "carrystep-tests", "--test", "a_board_is_its_verilog"],
+        cargo: &["--test", "a_board_is_its_verilog"],
     },
 ];
 
@@ -203,7 +181,9 @@ impl Run {
     /// Whether it passed, and what it came to; all that it says goes to the terminal.
     fn make(&self) -> Result<(bool, String), String> {
         let is_test = self.cargo.contains(&"--test");
-        let first: &[&str] = if is_test { &["test", "--release"] } else { &["run", "--release"] };
+        // With `--workspace`, tests have the features, and so the binaries, of a test run.
+        let first: &[&str] =
+            if is_test { &["test", "--release", "--workspace"] } else { &["run", "--release"] };
         let last: &[&str] = match (is_test, self.cargo.contains(&"--")) {
             (true, false) => &["--", "--nocapture"],
             (true, true) => &["--nocapture"],
