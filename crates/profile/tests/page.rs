@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 
+#[path = "support/pages.rs"]
+mod pages;
+
 use carrystep_core::ProfileKind;
 use carrystep_profile::rule::{
     logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
@@ -9,30 +12,15 @@ use carrystep_profile::rule::{
 use carrystep_profile::{
     Curve, CurveFigures, Limits, LogisticRamp, Profile, RampedMove, SHORTFALL, SineRamp, kinds,
 };
+use pages::grouped;
 use std::f64::consts::PI;
 
-fn page() -> String {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/profiles.md");
-    std::fs::read_to_string(path).unwrap().split_whitespace().collect::<Vec<_>>().join(" ")
-}
+const PAGE: &str = include_str!("../../../docs/profiles.md");
 
 /// Asserts that the page contains each of these texts, regardless of line breaks.
 #[track_caller]
 fn says(texts: &[String]) {
-    let page = page();
-    for text in texts {
-        assert!(page.contains(text.as_str()), "docs/profiles.md does not say: {text}");
-    }
-}
-
-/// Groups digits in threes: 61468.3 becomes "61 468".
-fn grouped(x: f64) -> String {
-    let digits = format!("{x:.0}");
-    let group = |(i, c): (usize, char)| {
-        let first_of_three = i > 0 && (digits.len() - i).is_multiple_of(3);
-        first_of_three.then_some(' ').into_iter().chain([c])
-    };
-    digits.chars().enumerate().flat_map(group).collect()
+    pages::says("docs/profiles.md", PAGE, texts);
 }
 
 const STEPS: f64 = 20_000.0;

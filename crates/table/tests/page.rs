@@ -3,6 +3,10 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+#[path = "../../profile/tests/support/pages.rs"]
+#[allow(dead_code)]
+mod pages;
+
 use carrystep_table::austin::{ConstantAcceleration, IntegerRecurrence};
 use carrystep_table::logistic::Logistic;
 use carrystep_table::sine::Sine;
@@ -10,26 +14,13 @@ use carrystep_table::{
     Arithmetic, InverseTable, Kind, Motor, PLAYER, Pulses, Speed, Table, TableRequest, Timer,
     TimerMode,
 };
+use pages::grouped;
 use serde_json::Value;
 
 /// Asserts that the page contains each of these texts, regardless of line breaks.
 #[track_caller]
 fn says(texts: &[String]) {
-    let page = include_str!("../../../docs/tables.md");
-    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
-    for text in texts {
-        assert!(page.contains(text.as_str()), "docs/tables.md does not say: {text}");
-    }
-}
-
-/// A number in groups of three digits.
-fn grouped(x: f64) -> String {
-    let digits = format!("{x:.0}");
-    let group = |(i, c): (usize, char)| {
-        let first_of_three = i > 0 && (digits.len() - i).is_multiple_of(3);
-        first_of_three.then_some(' ').into_iter().chain([c])
-    };
-    digits.chars().enumerate().flat_map(group).collect()
+    pages::says("docs/tables.md", include_str!("../../../docs/tables.md"), texts);
 }
 
 /// The motor of the look-up method.

@@ -1,33 +1,21 @@
 //! Writes a core as one file: a header, and then every module once, children first.
 
 use crate::docs::{self, wrapped};
+use crate::header::{Facts, header};
 use crate::module::{COLUMNS, module_text};
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
 use crate::prefix::Prefix;
+use crate::purposes::{ENGINE_NAME, LINK_NAME, parallel_name, purpose};
 use crate::synchronizers::{self, Synchronizer};
 use crate::write::{TextFile, write};
 use crate::{ExportError, guard, instances, parameters};
 use carrystep_core::link::{BYTE_PORTS, LineKind};
-use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_core::{Build, EngineBuild};
 use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, Spi, UartLine, engine, link, parallel_core};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
-
-/// Name of the parallel core's top module and of its files, without the number of axes.
-pub(crate) const PARALLEL: &str = "carrystep_parallel";
-
-/// Name of the parallel core's top module and of its files, for a core of this number of axes.
-pub fn parallel_name(axes: usize) -> String {
-    format!("{PARALLEL}_{axes}")
-}
-
-/// Name of the engine's top module and of its files.
-pub const ENGINE_NAME: &str = "carrystep_engine";
-
-/// Name of the host link's top module and of its file.
-pub const LINK_NAME: &str = "carrystep_link";
 
 /// Verilator's waivers for the parallel core of any number of axes, each with its reason.
 pub const PARALLEL_WAIVERS: &str = include_str!("carrystep_parallel.vlt");
@@ -40,123 +28,6 @@ const LINK_WAIVERS: &str = include_str!("carrystep_link.vlt");
 
 /// Verilator's waivers for the UART, each with its reason.
 const UART_WAIVERS: &str = include_str!("carrystep_uart.vlt");
-
-/// The version that the workspace pins.
-const RUST_HDL: &str = "0.46.0";
-
-/// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 35] = [
-    (
-        "carrystep_tick",
-        "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
-    ),
-    ("carrystep_sequencer", "Holds the running segment of an axis and one waiting segment."),
-    (
-        "carrystep_step_edge",
-        "Finds the phase of a step in its tick by bisection; requests the step in that phase.",
-    ),
-    (
-        "carrystep_axis",
-        "One axis: P, V, A, J. Each carry of P is a step. The last five ports are for observation.",
-    ),
-    (
-        "carrystep_shaper",
-        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
-    ),
-    (
-        PARALLEL,
-        "Parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
-    ),
-    (
-        "carrystep_time_slot",
-        "The schedule: in each tick every axis has a time slot of thirteen clocks (beats).",
-    ),
-    (
-        "carrystep_adder",
-        "The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.",
-    ),
-    ("carrystep_control", "Memory of the control words: the queue state and flags of each axis."),
-    ("carrystep_lasts", "Memory of one bit per segment: the segment is the last of its move."),
-    (
-        "carrystep_queue",
-        "The segment queue of each axis: which segment runs, and which segments wait.",
-    ),
-    (
-        "carrystep_segments",
-        "Memory of the segments, also used as registers, and of an axis' state between moves.",
-    ),
-    (
-        "carrystep_store",
-        "The segment memory with its address selection: reads and writes the words of a time slot.",
-    ),
-    (
-        "carrystep_event_memory",
-        "Memory of the event wheel: the steps of all axes in each phase of four ticks.",
-    ),
-    (
-        "carrystep_event_wheel",
-        "The event wheel: holds the pending steps of all axes, ordered by tick and phase.",
-    ),
-    (
-        "carrystep_pulser",
-        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
-    ),
-    (
-        "carrystep_switches",
-        "Memory of the debounced state of each limit switch, and its count of deviating samples.",
-    ),
-    (
-        "carrystep_limits",
-        "Samples and debounces the limit switches, each in the time slot of its axis.",
-    ),
-    (
-        "carrystep_resets",
-        "The reset: freezes the engine, waits for rest, and restores the state at configuration.",
-    ),
-    (
-        "carrystep_homing_control",
-        "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
-    ),
-    (
-        "carrystep_stops",
-        "Latches the first cause of a stop, and controls the stop until the host clears it.",
-    ),
-    (
-        "carrystep_supervisor",
-        "Monitors the e-stop and the host (watchdog), and times the power of the drivers.",
-    ),
-    ("carrystep_uart_in", "The UART receiver: eight data bits, no parity, one stop bit."),
-    ("carrystep_uart_out", "The UART transmitter: eight data bits, no parity, one stop bit."),
-    ("carrystep_uart", "A UART: receiver and transmitter."),
-    ("carrystep_spi", "An SPI peripheral in mode 0; SCK may be up to a fifth of the clock."),
-    (
-        "carrystep_crc",
-        "Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.",
-    ),
-    (
-        "carrystep_processor",
-        "A small processor that reads the host's requests, executes them and writes the answers.",
-    ),
-    ("carrystep_instructions", "Program memory of the processor carrystep_processor."),
-    (
-        "carrystep_register_mirror",
-        "What the host can read: constants of the build, and the last known state of each axis.",
-    ),
-    (
-        "carrystep_known",
-        "Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.",
-    ),
-    (
-        "carrystep_data",
-        "Data memory of carrystep_processor: the request, its answer, constants and variables.",
-    ),
-    ("carrystep_ring", "Ring buffer of the received bytes that the processor has not read yet."),
-    (
-        LINK_NAME,
-        "The host link: receives requests, passes segments to the engine and sends answers.",
-    ),
-    (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
-];
 
 /// The parallel core of this build with this number of axes, 1 to 6, as Verilog-2005 with the top
 /// module [`parallel_name`]. `description` is a line that names the source of the build. The same
@@ -316,21 +187,6 @@ pub(crate) fn link_ports(
     Ok(ports.partition(|(name, _)| BYTE_PORTS.iter().any(|port| port.name == name.as_str())))
 }
 
-/// The name of a module without its number of axes, if it has one: `carrystep_parallel` for
-/// `carrystep_parallel_3`.
-fn without_axes(usual: &str) -> &str {
-    match usual.rsplit_once('_') {
-        Some((name, axes)) if axes.parse::<usize>().is_ok() => name,
-        _ => usual,
-    }
-}
-
-/// Contents of the header.
-struct Facts {
-    title: String,
-    lines: String,
-}
-
 /// A top module that can be exported.
 struct Top<'a> {
     /// Its usual name.
@@ -370,10 +226,7 @@ impl Exported {
         let name = library.add(&top)?;
         let mut text = header(&name, build, description);
         for Written { usual, text: module, .. } in &library.modules {
-            let (_, purpose) = PURPOSES
-                .iter()
-                .find(|(kind, _)| without_axes(usual) == *kind)
-                .ok_or_else(|| ExportError::undescribed(usual, "the module"))?;
+            let purpose = purpose(usual)?;
             let purpose = wrapped(&prefix.in_text(purpose), "// ", COLUMNS).join("\n");
             text.push_str(&format!("\n{purpose}\n{module}"));
         }
@@ -466,75 +319,4 @@ impl Library<'_> {
         }
         Ok(name)
     }
-}
-
-impl Facts {
-    fn of_axes<'a>(
-        time: &Timebase,
-        phase: StartPhase,
-        pins: impl ExactSizeIterator<Item = &'a PinTiming>,
-        guard: &str,
-    ) -> Self {
-        let start = match phase {
-            StartPhase::Half => "half a step",
-            StartPhase::Zero => "0",
-        };
-        let mut lines = format!(
-            "\
-// Clock        {clock} Hz
-// Tick         {tick} ns, {clocks} clocks in {phases} phases
-// Latency      {latency} clocks from the load of a move to the edge of its tick 1, phase 0
-// P starts at  {start}
-// Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-",
-            clock = time.clock_hz(),
-            tick = time.tick_ns(),
-            clocks = time.clocks_per_tick(),
-            phases = time.phases(),
-            latency = time.latency_clocks(),
-        );
-        let axes = match pins.len() {
-            1 => "one axis".to_owned(),
-            count => {
-                let numbers = ["two", "three", "four", "five", "six", "seven", "eight"];
-                let number = count.checked_sub(2).and_then(|place| numbers.get(place));
-                format!("{} axes", number.unwrap_or(&"many"))
-            }
-        };
-        for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in pins.enumerate() {
-            lines.push_str(&format!(
-                "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
-            ));
-        }
-        Self { title: format!("step and direction for {axes}"), lines: lines + guard }
-    }
-}
-
-fn header(name: &str, facts: &Facts, description: &str) -> String {
-    let description = description.replace(['\n', '\r'], " ");
-    let Facts { title, lines } = facts;
-    format!(
-        "\
-// SPDX-License-Identifier: MIT OR Apache-2.0
-//
-// {name}: {title}.
-// This file is generated: change the generator instead.
-//
-// Made from    {description}
-// Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
-//
-// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
-// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
-// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
-// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
-//
-// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
-// the host link too: by this id the host knows the parameters for which it plans moves. With the id
-// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
-//
-{lines}
-`default_nettype none
-",
-        version = env!("CARGO_PKG_VERSION"),
-    )
 }

@@ -1,10 +1,11 @@
 //! Describes the folder of the cores to FuseSoC, in its format CAPI2.
 
 use crate::ExportError;
-use crate::core::{ENGINE_NAME, Exported, PARALLEL};
+use crate::core::Exported;
 use crate::docs::wrapped;
 use crate::module::COLUMNS;
 use crate::parameters;
+use crate::purposes::{ENGINE_NAME, PARALLEL};
 use crate::write::TextFile;
 use carrystep_hdl::parameters::described;
 use std::collections::BTreeMap;

@@ -17,6 +17,7 @@ mod expression;
 mod fusesoc;
 mod generated;
 mod guard;
+mod header;
 mod instances;
 mod kernel;
 mod module;
@@ -24,6 +25,7 @@ mod names;
 mod netlist;
 mod parameters;
 mod prefix;
+mod purposes;
 mod registers;
 mod synchronizers;
 #[cfg(test)]
@@ -32,11 +34,12 @@ mod write;
 
 pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
 pub use crate::core::{
-    ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, PARALLEL_WAIVERS, engine_verilog, line_name,
-    line_verilog, link_verilog, parallel_name, parallel_verilog, write_engine, write_parallel,
+    ENGINE_WAIVERS, PARALLEL_WAIVERS, engine_verilog, line_name, line_verilog, link_verilog,
+    parallel_verilog, write_engine, write_parallel,
 };
 pub use crate::generated::{generated_files, write_generated_files};
 pub use crate::prefix::{Prefix, PrefixError};
+pub use crate::purposes::{ENGINE_NAME, LINK_NAME, parallel_name};
 pub use crate::write::{TextFile, write};
 
 use carrystep_boards::BoardError;

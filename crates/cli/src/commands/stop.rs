@@ -45,8 +45,8 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let mut found = read_status(connection)?;
     found.stopped = stopped;
     if arguments.off && !found.idle {
-        let why = "the drivers keep their power as long as segments of the stopped move wait; `carrystep stop \
-                   --clear --off` drops these and switches the drivers off";
+        let why = "the drivers keep their power as long as segments of the stopped move wait; \
+                   `carrystep stop --clear --off` drops these and switches the drivers off";
         return Err(Failure::Run(why.to_owned()));
     }
     tell(&found, arguments.json)

@@ -75,7 +75,8 @@ causes! {
         stops_by: StopKind::Freeze,
         rank: 1,
         has_culprits: false,
-        meaning: "the e-stop was pressed; all axes stopped at once, without ramps, so motors may have slipped",
+        meaning: "the e-stop was pressed; all axes stopped at once, without ramps, so motors may \
+                  have slipped",
         remedy: "release it, then `carrystep stop --clear`, and home if the axes were fast",
     };
     /// A second step arrived on an axis that already held one back for its pin timing (promise 6).
@@ -84,8 +85,10 @@ causes! {
         stops_by: StopKind::Freeze,
         rank: 0,
         has_culprits: true,
-        meaning: "an axis got its steps faster than its driver's pulse times allow; all axes stopped without ramps",
-        remedy: "`carrystep stop --clear`, home, and send planned moves only: the planner keeps these times",
+        meaning: "an axis got its steps faster than its driver's pulse times allow; all axes \
+                  stopped without ramps",
+        remedy: "`carrystep stop --clear`, home, and send planned moves only: the planner keeps \
+                 these times",
     };
     /// The host violated the segment protocol.
     Protocol = 2, CauseFacts {
@@ -93,9 +96,10 @@ causes! {
         stops_by: StopKind::Freeze,
         rank: 2,
         has_culprits: false,
-        meaning: "a host broke the segment protocol (a segment for a full queue, a START without a segment, or a \
-                 segment of no ticks); all axes stopped without ramps",
-        remedy: "end every other host of this board, then `carrystep stop --clear`, and home if the axes were fast",
+        meaning: "a host broke the segment protocol (a segment for a full queue, a START without a \
+                  segment, or a segment of no ticks); all axes stopped without ramps",
+        remedy: "end every other host of this board, then `carrystep stop --clear`, and home if \
+                 the axes were fast",
     };
     /// No valid request arrived within the watchdog's time.
     Watchdog = 3, CauseFacts {
@@ -103,9 +107,10 @@ causes! {
         stops_by: StopKind::Ramp,
         rank: 4,
         has_culprits: false,
-        meaning: "the board heard no host for longer than its watchdog's time, and ramped the axes down",
-        remedy: "see that the host runs and its cable holds, then `carrystep stop --clear`; plan anew from the \
-                 positions, for the rest of the moves was dropped",
+        meaning: "the board heard no host for longer than its watchdog's time, and ramped the axes \
+                  down",
+        remedy: "see that the host runs and its cable holds, then `carrystep stop --clear`; plan \
+                 anew from the positions, for the rest of the moves was dropped",
     };
     /// V of an axis would have left (-2^63, 2^63).
     Overspeed = 4, CauseFacts {
@@ -113,8 +118,10 @@ causes! {
         stops_by: StopKind::Freeze,
         rank: 3,
         has_culprits: true,
-        meaning: "a segment drove an axis beyond half a step in a tick; all axes stopped without ramps",
-        remedy: "`carrystep stop --clear`, home, and send planned moves only: the planner keeps this limit",
+        meaning: "a segment drove an axis beyond half a step in a tick; all axes stopped without \
+                  ramps",
+        remedy: "`carrystep stop --clear`, home, and send planned moves only: the planner keeps \
+                 this limit",
     };
     /// A limit switch was reached.
     Limit = 5, CauseFacts {
@@ -131,8 +138,10 @@ causes! {
         stops_by: StopKind::Ramp,
         rank: 3,
         has_culprits: true,
-        meaning: "a queue ran dry in the middle of a move, and the axes ramped down: the host sent too slowly",
-        remedy: "`carrystep stop --clear`, plan anew from the positions, and relieve the computer or raise the baud rate",
+        meaning: "a queue ran dry in the middle of a move, and the axes ramped down: the host sent \
+                  too slowly",
+        remedy: "`carrystep stop --clear`, plan anew from the positions, and relieve the computer \
+                 or raise the baud rate",
     };
     /// The host requested the stop.
     Stop = 7, CauseFacts {

@@ -85,7 +85,12 @@ fn mirrored(ramped: &dyn Curve<f64>) {
 
 proptest! {
     #[test]
-    fn fitted_moves_obey_all_laws_and_limits(kind in fitted(), distance in steps(), limits in limits(), patience in patience()) {
+    fn fitted_moves_obey_all_laws_and_limits(
+        kind in fitted(),
+        distance in steps(),
+        limits in limits(),
+        patience in patience(),
+    ) {
         let time = kinds::least_time(kind, distance, &limits).unwrap() * patience;
         let curve = kinds::whole(kind, distance, time, &limits).unwrap();
         check(&*curve, distance, time, &limits);
@@ -93,7 +98,11 @@ proptest! {
     }
 
     #[test]
-    fn logistic_moves_start_below_the_start_speed(distance in steps(), limits in limits(), patience in patience()) {
+    fn logistic_moves_start_below_the_start_speed(
+        distance in steps(),
+        limits in limits(),
+        patience in patience(),
+    ) {
         let time = logistic_least_time(distance, &limits) * patience;
         let ramped = logistic(distance, time, &limits).unwrap();
         let start = ramped.figures().start_speed;

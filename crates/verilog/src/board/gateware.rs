@@ -3,11 +3,10 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{
-    ENGINE_NAME, LINK_NAME, Overrides, engine_of, line_name, line_of, link_of, link_ports,
-};
+use crate::core::{Overrides, engine_of, line_name, line_of, link_of, link_ports};
 use crate::parameters::overrides;
 use crate::prefix::Prefix;
+use crate::purposes::{ENGINE_NAME, LINK_NAME};
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
 use carrystep_core::engine::{ENGINE_PORTS, EngineInputs, LimitWiring};
