@@ -1,7 +1,7 @@
 //! Figures of the documentation that are private constants of the code, of tests and of benches.
 //! They are read from the text of the source, so that no constant becomes public for a page.
 
-use carrystep_core::engine::{CAUSES, SEGMENT_WORDS};
+use carrystep_core::engine::{CAUSES, QUEUE, SEGMENT_WORDS};
 use carrystep_tests::pages::{self, grouped, part, says, word};
 use carrystep_tests::sources::{behind, constant, power_of_ten, whole};
 
@@ -157,12 +157,18 @@ fn architecture_page_gives_the_rate_that_the_test_tries() {
     says("docs/architecture.md", &[format!("six axes at {rate} segments/s")]);
     let other = behind(rates, "carries::<ModelBoard>(921_600, ");
     let spi = behind(rates, "let per_second = ");
+    let waiting = |text: &str| behind(rates, text);
+    let (fast, slow) = (
+        waiting(&format!("carries::<ModelBoard>(3_000_000, {rate}, 1500, ")),
+        waiting(&format!("carries::<ModelBoard>(921_600, {other}, 1500, ")),
+    );
+    let of_spi = constant(rates, "OVER_SPI");
     says(
         "docs/performance.md",
         &[
-            format!("| 3 000 000 baud | {rate} |"),
-            format!("| 921 600 baud | {other} |"),
-            format!("unacknowledged writes | {spi} |"),
+            format!("| 3 000 000 baud | {rate} | {fast} of {QUEUE} |"),
+            format!("| 921 600 baud | {other} | {slow} of {QUEUE} |"),
+            format!("unacknowledged writes | {spi} | {of_spi} of {QUEUE} |"),
         ],
     );
 }
@@ -184,6 +190,28 @@ fn profile_page_gives_the_tolerances_and_counts_of_its_tests() {
             format!("is correct to {first:e}"),
         ],
     );
+}
+
+#[test]
+fn promises_page_gives_the_width_of_the_counts_of_pulses() {
+    // One half counts pulses, the other one discarded steps.
+    let bits = behind("crates/hdl/src/engine/pulser.rs", "pub counts: Signal<Out, Word<") / 2.0;
+    let counted = whole(bits.exp2());
+    let lag = word(counted / 2 - 1);
+    says(
+        "docs/promises.md",
+        &[
+            format!("counts pulses modulo {counted}."),
+            format!("lags the pins by at most {lag} pulses"),
+            format!("may lag by up to {lag} edges"),
+        ],
+    );
+}
+
+#[test]
+fn homing_page_gives_the_reserve_of_the_approach() {
+    let reserve = behind("crates/link/src/host/homing.rs", "saturating_add(accepted + ");
+    says("docs/homing.md", &[format!("accepts the level, plus {} steps", word(whole(reserve)))]);
 }
 
 #[test]

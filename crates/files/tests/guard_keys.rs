@@ -120,6 +120,21 @@ fn figures_are_the_counted_times() {
     assert!((figures.stop_accel_steps_per_s2[0] - 25_000.0).abs() < 0.1);
 }
 
+/// As docs/homing.md says of the time until the guard accepts a switch.
+#[test]
+fn longest_debounce_exceeds_its_key_by_less_than_two_rounds_and_a_tick() {
+    for tick_ns in [1000, 2000] {
+        for given in [0.0, 0.5, 1.0, 33.3, 100.0, 500.0, 4096.0, 100_000.0] {
+            let machine =
+                format!("[machine]\ntick_ns = {tick_ns}\n[machine.guard]\ndebounce_us = {given:?}");
+            let figures = read(&format!("{machine}\n{AXIS}")).unwrap().engine().guard_figures();
+            let longer = figures.debounce_us.unwrap().most - given;
+            let bound = 2.0 * figures.round_us + tick_ns as f64 / 1e3;
+            assert!(longer > 0.0 && longer < bound, "{given} us: {longer} us longer, not {bound}");
+        }
+    }
+}
+
 #[test]
 fn stop_accel_sets_the_ramp() {
     let stop = |line: &str| {
