@@ -2,9 +2,11 @@
 //!
 //! Transcripts in tests/ quote the messages.
 
+use crate::ahead::Ahead;
 use crate::edge::{Pin, PinChange};
-use crate::ideal::{Due, NS, PS, curvature_ps, moment, phase_ps, tick_ps};
+use crate::ideal::{Due, NS, PS, curvature_ps, moment, nearest, phase_ps, tick_ps};
 use crate::line_check::Off;
+use crate::origin::Base;
 use crate::pins::{PinWatch, Shortest, Stretch};
 use crate::report::AxisReport;
 use crate::spread::Spread;
@@ -46,6 +48,16 @@ struct Paired {
     crossing: Crossing,
 }
 
+/// An edge beside the next two crossings.
+struct Compared {
+    /// The lateness of the edge, if it belongs to the one or to the other crossing, ps.
+    lateness_ps: [Option<f64>; 2],
+    /// The time since the last paired pulse on the pins, and the period that the profile has up to
+    /// each of the two crossings, all in ps; `None` before the first paired pulse of a capture
+    /// whose origin is only an estimate.
+    period: Option<(f64, [Option<f64>; 2])>,
+}
+
 fn greater(old: Option<f64>, new: f64) -> Option<f64> {
     Some(old.map_or(new, |old| old.max(new)))
 }
@@ -57,11 +69,7 @@ pub(crate) struct AxisCheck<'a> {
     slack_ps: f64,
     /// The greatest tolerance of a fit, ps.
     fit_ps: f64,
-    crossings: Box<dyn Iterator<Item = (Crossing, Due)> + 'a>,
-    /// The next two crossings. If an edge is nearer to the second one, a pulse is missing.
-    next: [Option<(Crossing, Due)>; 2],
-    /// Number of the crossing in `next[0]`, counted from 1.
-    number: u64,
+    ahead: Ahead<'a>,
     watch: PinWatch,
     position: i64,
     wrong_direction: u64,
@@ -85,11 +93,7 @@ impl<'a> AxisCheck<'a> {
         timebase: Timebase,
         slack_ps: u64,
     ) -> Self {
-        let tick = tick_ps(&timebase);
-        let with_due = move |crossing: Crossing| (crossing, Due::of(&crossing, tick));
-        let mut crossings: Box<dyn Iterator<Item = (Crossing, Due)> + 'a> =
-            Box::new(setup.timeline.crossings(phase).map(with_due));
-        let next = [crossings.next(), crossings.next()];
+        let ahead = Ahead::new(setup.timeline, phase, tick_ps(&timebase));
         let fit_ps = setup
             .timeline
             .legs()
@@ -101,9 +105,7 @@ impl<'a> AxisCheck<'a> {
             timebase,
             slack_ps: slack_ps as f64,
             fit_ps,
-            crossings,
-            next,
-            number: 1,
+            ahead,
             watch: PinWatch::default(),
             position: 0,
             wrong_direction: 0,
@@ -131,15 +133,9 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    fn advance(&mut self) {
-        self.next = [self.next[1], self.crossings.next()];
-        self.number += 1;
-    }
-
-    /// The origin for which an edge at `ps` would be exactly at the first crossing of this axis.
-    pub(crate) fn origin_for(&self, ps: u64) -> Option<i64> {
-        let (_, first) = self.next[0].filter(|_| self.number == 1)?;
-        i64::try_from(i128::from(ps) - first.at_ps(0)).ok()
+    /// When the first pulse is due; `None` if there is none, or after it.
+    pub(crate) fn first(&self) -> Option<Due> {
+        self.ahead.next()[0].filter(|_| self.ahead.number() == 1).map(|(_, due)| *due)
     }
 
     pub(crate) fn initial(&mut self, pin: Pin, level: bool) {
@@ -149,58 +145,62 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    /// Takes a change, and returns whether it is a pulse. `origin_ps` is the same for all axes;
-    /// unless `sure`, it is only an estimate.
-    pub(crate) fn change(&mut self, change: PinChange, origin_ps: i64, sure: bool) -> bool {
-        let pulse = self.watch.change(change);
-        if pulse {
-            self.pulse(change, origin_ps, sure);
+    /// Takes a change of a pin.
+    pub(crate) fn change(&mut self, change: PinChange, base: Base) {
+        if self.watch.change(change) {
+            self.pulse(change, base);
         }
-        pulse
     }
 
-    fn pulse(&mut self, change: PinChange, origin_ps: i64, sure: bool) {
+    fn pulse(&mut self, change: PinChange, base: Base) {
         let backward = self.watch.backward();
         self.position += if backward { -1 } else { 1 };
-        if self.is_extra(change.ps, origin_ps, sure) {
-            let after = match self.number - 1 {
+        let mut compared = self.compare(change.ps, base);
+        if self.is_extra(&compared) {
+            let after = match self.ahead.number() - 1 {
                 0 => "before pulse 1".to_owned(),
-                k if self.next[0].is_none() => format!("after pulse {k}, the last"),
+                k if self.ahead.next()[0].is_none() => format!("after pulse {k}, the last"),
                 k => format!("after pulse {k}"),
             };
             self.fail_pulse(&format!("one pulse too many at {}, {after}", moment(change.ps)));
             return;
         }
-        while self.is_missing(change.ps, origin_ps, sure) {
-            self.miss(origin_ps);
+        while self.is_missing(&compared) {
+            self.miss(base.ps);
+            compared = self.compare(change.ps, base);
         }
-        let Some((crossing, due)) = self.next[0] else { return };
+        let (Some(&(crossing, _)), [Some(lateness_ps), _]) =
+            (self.ahead.next()[0], compared.lateness_ps)
+        else {
+            return;
+        };
         if crossing.backward != backward {
             self.wrong_direction += 1;
             let way = |back| if back { "backward" } else { "forward" };
             self.fail_pulse(&format!(
                 "pulse {} at {} goes {}, the profile {}",
-                self.number,
+                self.ahead.number(),
                 moment(change.ps),
                 way(backward),
                 way(crossing.backward)
             ));
         }
-        self.pair(change.ps, backward, crossing, due.lateness_ps(change.ps, origin_ps));
-        self.advance();
+        self.pair(change.ps, backward, crossing, lateness_ps);
+        self.ahead.advance();
     }
 
-    /// The time since the last paired pulse on the pins, and the period that the profile has up to
-    /// each of the next two crossings, all in ps.
-    fn period(&self, ps: u64, origin_ps: i64, sure: bool) -> Option<(f64, [Option<f64>; 2])> {
-        let (since, lateness) = match self.last {
-            Some(last) => (ps.saturating_sub(last.ps) as f64, last.lateness_ps),
-            None if sure => ((i128::from(ps) - i128::from(origin_ps)) as f64, 0.0),
-            None => return None,
+    /// Compares an edge with the next two crossings.
+    fn compare(&self, ps: u64, base: Base) -> Compared {
+        let lateness_ps = self.ahead.next().map(|next| Some(next?.1.lateness_ps(ps, base.ps)));
+        let last = match self.last {
+            Some(last) => Some((ps.saturating_sub(last.ps) as f64, last.lateness_ps)),
+            None if base.is_sure => Some((nearest(i128::from(ps) - i128::from(base.ps)), 0.0)),
+            None => None,
         };
         // The period of the profile is the period on the pins minus the change of the lateness.
-        let ideal = |(_, due): (Crossing, Due)| since - (due.lateness_ps(ps, origin_ps) - lateness);
-        Some((since, self.next.map(|c| c.map(ideal))))
+        let period = last
+            .map(|(since, before)| (since, lateness_ps.map(|late| Some(since - (late? - before)))));
+        Compared { lateness_ps, period }
     }
 
     /// The allowed deviation of a period, ps, before its edge counts as an extra or a missing
@@ -209,16 +209,16 @@ impl<'a> AxisCheck<'a> {
         phase_ps(&self.timebase) + self.slack_ps + 2.0 * self.fit_ps
     }
 
-    fn is_extra(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
-        match self.period(ps, origin_ps, sure) {
-            _ if self.next[0].is_none() => true,
+    fn is_extra(&self, compared: &Compared) -> bool {
+        match compared.period {
+            _ if self.ahead.next()[0].is_none() => true,
             Some((since, [Some(ideal), _])) => since < ideal / 2.0 - self.tolerance_ps(),
             _ => false,
         }
     }
 
-    fn is_missing(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
-        match self.period(ps, origin_ps, sure) {
+    fn is_missing(&self, compared: &Compared) -> bool {
+        match compared.period {
             Some((since, [Some(this), Some(after)])) => {
                 since > f64::midpoint(this, after) + self.tolerance_ps()
             }
@@ -228,18 +228,18 @@ impl<'a> AxisCheck<'a> {
 
     /// Records that the next crossing has no pulse.
     fn miss(&mut self, origin_ps: i64) {
-        if let Some((_, due)) = self.next[0] {
+        if let Some((_, due)) = self.ahead.next()[0] {
             let due = moment(due.at_ps(origin_ps));
-            self.fail_pulse(&format!("pulse {} is missing, due at {due}", self.number));
-            self.advance();
+            self.fail_pulse(&format!("pulse {} is missing, due at {due}", self.ahead.number()));
+            self.ahead.advance();
         }
     }
 
     /// Records the crossings that are left when the capture ends.
     fn miss_rest(&mut self, origin_ps: i64) {
-        match self.next {
+        match self.ahead.next() {
             [Some((_, first)), Some(_)] => {
-                let (number, due) = (self.number, moment(first.at_ps(origin_ps)));
+                let (number, due) = (self.ahead.number(), moment(first.at_ps(origin_ps)));
                 self.fail_pulse(&format!(
                     "pulse {number} and all behind it are missing, due from {due}"
                 ));
@@ -249,7 +249,7 @@ impl<'a> AxisCheck<'a> {
     }
 
     fn pair(&mut self, ps: u64, backward: bool, crossing: Crossing, lateness_ps: f64) {
-        self.errors.add(lateness_ps, self.number, ps);
+        self.errors.add(lateness_ps, self.ahead.number(), ps);
         self.curvature_ps = self.curvature_ps.max(curvature_ps(&crossing, &self.timebase));
         if let Some(last) = self.last.filter(|last| last.backward == backward) {
             let since = ps.saturating_sub(last.ps) as f64;

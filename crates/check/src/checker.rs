@@ -11,30 +11,13 @@
 use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
+use crate::ideal::{NS, PS, phase_ps};
 use crate::line_check::LinesCheck;
+use crate::origin::{Frame, Origin};
 use crate::report::{CheckReport, OriginKind};
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::StraightLine;
 use std::fmt;
-
-/// The time of a capture from which all times are counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
-    /// The origin of a capture by carrystep: the load of the first move plus the latency L.
-    Known {
-        /// Time of the origin, ps of the capture.
-        ps: i64,
-    },
-    /// The origin of a foreign capture: one offset for all axes, chosen as the midpoint of the
-    /// least and the greatest error of all axes together. An offset for each axis would hide an
-    /// axis that is late.
-    Midpoint,
-    /// An origin that the user gives.
-    Fixed {
-        /// Time of the origin, ps of the capture.
-        ps: i64,
-    },
-}
 
 /// The values against which a capture is checked.
 #[derive(Debug, Clone)]
@@ -56,22 +39,16 @@ pub struct Setup<'a> {
 
 /// Checks a capture from a stream of pin changes.
 pub struct Checker<'a> {
-    axes: Vec<AxisCheck<'a>>,
-    lines: LinesCheck,
-    origin: Origin,
-    /// The origin from which errors are counted while the capture is read, ps. For a foreign
-    /// capture it is estimated from the first pulse, and `finish` corrects it at the end.
-    base_ps: Option<i64>,
-    slack_ps: u64,
-    phase_ns: f64,
+    pub(crate) axes: Vec<AxisCheck<'a>>,
+    pub(crate) lines: LinesCheck,
+    pub(crate) frame: Frame,
+    pub(crate) slack_ps: u64,
+    pub(crate) phase_ns: f64,
 }
 
 impl fmt::Debug for Checker<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Checker")
-            .field("origin", &self.origin)
-            .field("base_ps", &self.base_ps)
-            .finish_non_exhaustive()
+        f.debug_struct("Checker").field("frame", &self.frame).finish_non_exhaustive()
     }
 }
 
@@ -82,27 +59,23 @@ impl<'a> Checker<'a> {
         let lines = LinesCheck::new(lines, phase, axes.len());
         let axes =
             axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
-        let base_ps = match origin {
-            Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
-            Origin::Midpoint => None,
-        };
-        let phase_ns = crate::ideal::phase_ps(&timebase) / crate::ideal::NS;
-        Self { axes, lines, origin, base_ps, slack_ps, phase_ns }
+        Self {
+            axes,
+            lines,
+            frame: Frame::new(origin),
+            slack_ps,
+            phase_ns: phase_ps(&timebase) / NS,
+        }
     }
 
     /// Ends the check and returns the report.
     pub fn finish(self) -> CheckReport {
-        let base = self.base_ps.unwrap_or(0);
-        let kind = match self.origin {
-            Origin::Known { .. } => OriginKind::Known,
-            Origin::Midpoint => OriginKind::Midpoint,
-            Origin::Fixed { .. } => OriginKind::Fixed,
-        };
+        let (base, kind) = (self.frame.base().ps, self.frame.kind());
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
         // The greatest bound of all axes for e, in seconds. `LinesCheck::off` allows each axis the
         // distance that it travels in this time; `finish` makes the result a part of the axis'
         // `passed`.
-        let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
+        let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / PS;
         let axes = self.axes.into_iter().enumerate();
         let axes: Vec<_> =
             axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
@@ -110,7 +83,7 @@ impl<'a> Checker<'a> {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,
             origin_ps: base.saturating_add(shift),
-            slack_ns: self.slack_ps as f64 / crate::ideal::NS,
+            slack_ns: self.slack_ps as f64 / NS,
             phase_ns: self.phase_ns,
             axes,
         }
@@ -129,18 +102,16 @@ impl PinSink for Checker<'_> {
         if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
             axis.initial(level.pin, level.level);
         }
+        self.lines.initial(level);
         Ok(())
     }
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
+        self.frame.see(change, |axis| self.axes.get(axis)?.first());
         if let Some(axis) = self.axes.get_mut(usize::from(change.axis)) {
-            if self.base_ps.is_none() && change.pin == crate::edge::Pin::Step && change.level {
-                self.base_ps = axis.origin_for(change.ps);
-            }
-            if axis.change(change, self.base_ps.unwrap_or(0), self.origin != Origin::Midpoint) {
-                self.lines.pulse(usize::from(change.axis));
-            }
+            axis.change(change, self.frame.base());
         }
+        self.lines.change(change);
         Ok(())
     }
 }

@@ -36,7 +36,8 @@ pub struct PinChange {
 /// A consumer of pin changes. Its memory stays bounded, however long the capture is.
 ///
 /// The calls come in this order: any number of [`initial`](Self::initial), any number of
-/// [`change`](Self::change) in which `ps` never falls, and one [`end`](Self::end).
+/// [`change`](Self::change) and [`changes`](Self::changes) in which `ps` never falls, and one
+/// [`end`](Self::end).
 pub trait PinSink {
     /// Sets the level of a pin at the start of the capture. This is not an edge; a pin without such
     /// a call is low.
@@ -53,6 +54,14 @@ pub trait PinSink {
     /// # Errors
     /// A [`TraceError`] if the sink cannot write.
     fn change(&mut self, change: PinChange) -> Result<(), TraceError>;
+
+    /// Takes several changes of pins, in order.
+    ///
+    /// # Errors
+    /// A [`TraceError`] if the sink cannot write.
+    fn changes(&mut self, changes: &[PinChange]) -> Result<(), TraceError> {
+        changes.iter().try_for_each(|change| self.change(*change))
+    }
 
     /// Ends the capture at `ps`.
     ///
@@ -71,6 +80,10 @@ impl<S: PinSink + ?Sized> PinSink for &mut S {
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
         (**self).change(change)
+    }
+
+    fn changes(&mut self, changes: &[PinChange]) -> Result<(), TraceError> {
+        (**self).changes(changes)
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
@@ -111,6 +124,10 @@ impl PinSink for Tee<'_> {
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
         self.sinks.iter_mut().try_for_each(|sink| sink.change(change))
+    }
+
+    fn changes(&mut self, changes: &[PinChange]) -> Result<(), TraceError> {
+        self.sinks.iter_mut().try_for_each(|sink| sink.changes(changes))
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {

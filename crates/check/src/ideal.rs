@@ -23,31 +23,62 @@ pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
 /// ps. It is computed once for each crossing, because an edge is compared with it several times.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Due {
-    whole: i128,
+    whole: i64,
     rest: f64,
 }
 
 impl Due {
     /// When a crossing is due. `tick_ps` is the length of a tick.
     pub(crate) fn of(crossing: &Crossing, tick_ps: u64) -> Self {
-        let whole = (crossing.seconds * PS).round();
+        let whole = rounded(crossing.seconds * PS);
         let rest = crossing.seconds.mul_add(PS, -whole);
-        // 64 bits hold 106 days in ps. A longer time saturates in the cast.
-        let start = i128::from(crossing.start_tick) * i128::from(tick_ps);
-        Self { whole: start + i128::from(whole as i64), rest }
+        // 64 bits hold 106 days in ps. A longer time saturates.
+        let start = crossing.start_tick.saturating_mul(tick_ps);
+        let whole = (whole as i64).saturating_add_unsigned(start);
+        Self { whole, rest }
     }
 
     /// The lateness e = m - t of a rising edge, ps; negative is early. Integers are subtracted
     /// first and floats last, so that the result is exact to a fraction of a ps.
     pub(crate) fn lateness_ps(self, rise_ps: u64, origin_ps: i64) -> f64 {
-        let late = i128::from(rise_ps) - i128::from(origin_ps) - self.whole;
-        // The difference nearly always fits into 64 bits, whose conversion to a float is faster.
-        i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - self.rest
+        let late = i128::from(rise_ps) - i128::from(origin_ps) - i128::from(self.whole);
+        nearest(late) - self.rest
+    }
+
+    /// The origin for which an edge at `ps` would be exactly at this crossing, ps.
+    pub(crate) fn origin_for(self, ps: u64) -> Option<i64> {
+        i64::try_from(i128::from(ps) - self.at_ps(0)).ok()
     }
 
     /// The time of the capture, in whole ps.
     pub(crate) fn at_ps(self, origin_ps: i64) -> i128 {
-        i128::from(origin_ps) + self.whole
+        i128::from(origin_ps) + i128::from(self.whole)
+    }
+}
+
+/// The whole number nearest to a float, as [`f64::round`] gives it, but without a call where the
+/// float has a fraction.
+fn rounded(x: f64) -> f64 {
+    const ALL_WHOLE: f64 = (1_u64 << 52) as f64;
+    if x.abs() >= ALL_WHOLE {
+        return x;
+    }
+    let truncated = x as i64 as f64;
+    let rest = x - truncated;
+    if rest.abs() >= 0.5 { truncated + rest.signum() } else { truncated }
+}
+
+/// The float nearest to a whole number, which nearly always fits into 64 bits: their conversion is
+/// faster.
+pub(crate) fn nearest(whole: i128) -> f64 {
+    #[cold]
+    #[inline(never)]
+    fn of_128_bits(whole: i128) -> f64 {
+        whole as f64
+    }
+    match i64::try_from(whole) {
+        Ok(whole) => whole as f64,
+        Err(_) => of_128_bits(whole),
     }
 }
 
@@ -91,6 +122,16 @@ mod tests {
         }
         let due = Due::of(&crossing(hour, 0.5, 1.0, 0.0), tick);
         assert_eq!(due.at_ps(-7), 3_600_500_000_000_000 - 7);
+    }
+
+    #[test]
+    fn rounded_is_what_the_standard_library_rounds_to() {
+        let around =
+            [0.0, 0.25, 0.499_999_999_999_999_94, 0.5, 0.75, 1.0, 1.5, 2.5, 1e9 + 0.5, 4e15 + 0.5];
+        let large = [(1_u64 << 52) as f64, (1_u64 << 53) as f64, 1e300, f64::INFINITY];
+        for x in around.into_iter().chain(large).flat_map(|x| [x, -x]) {
+            assert_eq!(rounded(x) as i128, x.round() as i128, "{x}");
+        }
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
+//! [`PinSink`]s: the [`Checker`] (or [`check_beside`], which uses other cores), the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
 //! [`Plot`]. The modules are private; the public items are listed below.
 
+mod ahead;
 mod axis_check;
+mod beside;
 mod checker;
 mod csv_out;
 mod edge;
@@ -14,6 +16,7 @@ mod fst_out;
 mod gtkw;
 mod ideal;
 mod line_check;
+mod origin;
 mod pins;
 mod plot;
 mod report;
@@ -28,13 +31,15 @@ mod vcd_pins;
 mod waves;
 
 pub use axis_check::AxisSetup;
-pub use checker::{Checker, Origin, Setup};
+pub use beside::check_beside;
+pub use checker::{Checker, Setup};
 pub use csv_out::CsvWriter;
 pub use edge::{Pin, PinChange, PinSink, Tee};
 pub use error::{ReadError, TraceError};
 pub use follow::{Follower, Pulse};
 pub use fst_out::{FstFormat, FstWriter};
 pub use gtkw::save_file;
+pub use origin::Origin;
 pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
 pub use report::{AxisReport, CheckReport, OriginKind};

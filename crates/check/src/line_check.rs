@@ -5,24 +5,32 @@
 //! all axes if there is such a point for each pair of axes. The pairs are compared after every
 //! pulse, in whole numbers.
 
+use crate::edge::{Pin, PinChange};
+use crate::ideal::nearest;
 use carrystep_core::StartPhase;
 use carrystep_profile::StraightLine;
 
-/// The greatest deviation of an axis on one line.
+/// The greatest deviation of two axes from each other on one line.
 #[derive(Debug, Clone, Copy)]
 struct Worst {
-    /// Deviation beyond half a step of both axes, as a fraction of the line; negative if they are
-    /// nearer.
-    beyond: f64,
-    /// Number of the pulse of this axis or of the other one after which it occurred.
+    /// Deviation beyond half a step of both axes, in 1 / (4 n m) of the line for axes of n and m
+    /// steps; negative if they are nearer.
+    apart: i128,
+    /// Number of the pulse of one of the two axes after which it occurred.
     pulse: u64,
+    /// Number of pulses that all axes had made together.
+    all_pulses: u64,
 }
 
 /// Follows all axes along one line.
 #[derive(Debug)]
 struct LineCheck {
     line: StraightLine,
-    worst: Vec<Option<Worst>>,
+    /// For each pair of axes, at the place that [`pair`] gives, while the axes are on the line.
+    pairs: Vec<Option<Worst>>,
+    /// For each axis, when all axes have travelled the line: its greatest deviation as
+    /// [`Self::worst`] gives it.
+    done: Vec<Option<(f64, u64)>>,
 }
 
 /// How far an axis was off its line.
@@ -41,6 +49,8 @@ pub(crate) struct Off {
 pub(crate) struct LinesCheck {
     lines: Vec<LineCheck>,
     phase: StartPhase,
+    /// Whether the STEP of each axis is high.
+    high: Vec<bool>,
     pulses: Vec<u64>,
     /// Of each axis, the number of the first line that its pulses have not passed.
     reached: Vec<usize>,
@@ -49,13 +59,38 @@ pub(crate) struct LinesCheck {
 impl LinesCheck {
     /// The lines are in the order of the moves.
     pub(crate) fn new(lines: Vec<StraightLine>, phase: StartPhase, axes: usize) -> Self {
-        let lines =
-            lines.into_iter().map(|line| LineCheck { worst: vec![None; axes], line }).collect();
-        Self { lines, phase, pulses: vec![0; axes], reached: vec![0; axes] }
+        let lines = lines
+            .into_iter()
+            .map(|line| LineCheck { line, pairs: Vec::new(), done: Vec::new() })
+            .collect();
+        Self {
+            lines,
+            phase,
+            high: vec![false; axes],
+            pulses: vec![0; axes],
+            reached: vec![0; axes],
+        }
+    }
+
+    /// Takes the level of a pin at the start of the capture.
+    pub(crate) fn initial(&mut self, level: PinChange) {
+        if let (Pin::Step, Some(high)) = (level.pin, self.high.get_mut(usize::from(level.axis))) {
+            *high = level.level;
+        }
+    }
+
+    /// Takes the change of a pin.
+    pub(crate) fn change(&mut self, change: PinChange) {
+        let axis = usize::from(change.axis);
+        let (Pin::Step, Some(high)) = (change.pin, self.high.get_mut(axis)) else { return };
+        if change.level && !*high {
+            self.pulse(axis);
+        }
+        self.high[axis] = change.level;
     }
 
     /// Takes a pulse of an axis.
-    pub(crate) fn pulse(&mut self, axis: usize) {
+    fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
         let place = &mut self.reached[axis];
@@ -72,10 +107,10 @@ impl LinesCheck {
     /// The deviation of an axis that came nearest to its bound, if edges may be off by up to
     /// `seconds`; `None` if the axis is not part of any line.
     pub(crate) fn off(&self, axis: usize, seconds: f64) -> Option<Off> {
-        let offs = self.lines.iter().filter_map(|LineCheck { line, worst }| {
-            let Worst { beyond, pulse } = worst[axis]?;
-            let n = line.steps[axis].unsigned_abs() as f64;
-            Some(Off { steps: 0.5 + n * beyond, bound: 0.5 + n * line.speed * seconds, pulse })
+        let offs = self.lines.iter().filter_map(|check| {
+            let (beyond, pulse) = check.worst(axis)?;
+            let (n, speed) = (check.line.steps[axis].unsigned_abs() as f64, check.line.speed);
+            Some(Off { steps: 0.5 + n * beyond, bound: 0.5 + n * speed * seconds, pulse })
         });
         offs.max_by(|a, b| (a.steps - a.bound).total_cmp(&(b.steps - b.bound)))
     }
@@ -84,27 +119,52 @@ impl LinesCheck {
 impl LineCheck {
     /// Compares the axis that has stepped with every other axis.
     fn measure(&mut self, axis: usize, pulses: &[u64], phase: StartPhase) {
+        if self.pairs.is_empty() {
+            self.pairs = vec![None; pulses.len() * pulses.len()];
+        }
         let (here, n) = self.place(axis, pulses, phase);
         for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0)
         {
             let (there, m) = self.place(other, pulses, phase);
-            let [whole_n, whole_m] = [n, m].map(i128::from);
-            let apart = (here * whole_m - there * whole_n).abs() - (whole_n + whole_m);
-            // The difference nearly always fits into 64 bits, whose conversion to a float is
-            // faster.
-            let apart = i64::try_from(apart).map_or_else(|_| apart as f64, |apart| apart as f64);
-            let worst = Worst { beyond: apart / (4.0 * n as f64 * m as f64), pulse: pulses[axis] };
-            for axis in [axis, other] {
-                if self.worst[axis].is_none_or(|old| old.beyond < worst.beyond) {
-                    self.worst[axis] = Some(worst);
-                }
+            let apart = (here * m - there * n).abs() - (n + m);
+            let worst = &mut self.pairs[pair(axis, other, pulses.len())];
+            if worst.is_none_or(|old| old.apart < apart) {
+                let all_pulses = pulses.iter().sum();
+                *worst = Some(Worst { apart, pulse: pulses[axis], all_pulses });
             }
         }
+        if self.is_over(axis, pulses) && (0..pulses.len()).all(|axis| self.is_over(axis, pulses)) {
+            self.done = (0..pulses.len()).map(|axis| self.worst(axis)).collect();
+            self.pairs = Vec::new();
+        }
+    }
+
+    /// Whether the axis has made all its pulses on this line.
+    fn is_over(&self, axis: usize, pulses: &[u64]) -> bool {
+        pulses[axis].saturating_sub(self.line.before[axis]) >= self.line.steps[axis].unsigned_abs()
+    }
+
+    /// The greatest deviation of an axis from any other one, as a fraction of the line, and the
+    /// pulse after which it occurred; the first one of equal ones.
+    fn worst(&self, axis: usize) -> Option<(f64, u64)> {
+        if let Some(worst) = self.done.get(axis) {
+            return *worst;
+        }
+        let steps = &self.line.steps;
+        let of = |axis: usize| steps[axis].unsigned_abs() as f64;
+        let each = (0..steps.len()).filter(|&other| other != axis).filter_map(|other| {
+            let worst = (*self.pairs.get(pair(axis, other, steps.len()))?)?;
+            Some((nearest(worst.apart) / (4.0 * of(axis) * of(other)), worst))
+        });
+        let first_of_greatest = each.max_by(|(a, before), (b, after)| {
+            a.total_cmp(b).then(after.all_pulses.cmp(&before.all_pulses))
+        });
+        first_of_greatest.map(|(beyond, worst)| (beyond, worst.pulse))
     }
 
     /// The middle of an axis' current place on the line, in half steps, and the number of its
     /// steps.
-    fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, u64) {
+    fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, i128) {
         let steps = self.line.steps[axis];
         let n = steps.unsigned_abs();
         let done = i128::from(pulses[axis].saturating_sub(self.line.before[axis]).min(n));
@@ -114,8 +174,13 @@ impl LineCheck {
             StartPhase::Half => 0,
             StartPhase::Zero => i128::from(steps.signum()),
         };
-        (2 * done + middle, n)
+        (2 * done + middle, n.into())
     }
+}
+
+/// The place of a pair of axes, in either order, in a list of all pairs.
+fn pair(axis: usize, other: usize, axes: usize) -> usize {
+    axis.min(other) * axes + axis.max(other)
 }
 
 #[cfg(test)]

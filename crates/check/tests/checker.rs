@@ -6,6 +6,7 @@
 mod common;
 
 use carrystep_check::*;
+use carrystep_profile::StraightLine;
 use common::*;
 
 fn sorted(mut train: Vec<PinChange>) -> Vec<PinChange> {
@@ -206,13 +207,39 @@ fn step_left_high_at_the_end_is_named() {
 #[test]
 fn pulse_that_is_high_at_the_start_is_named() {
     let machine = Machine::there_and_back(1);
+    let make = |sink: &mut dyn PinSink| {
+        sink.initial(PinChange { ps: 0, axis: 0, pin: Pin::Step, level: true }).unwrap();
+        sink.change(PinChange { ps: 10, axis: 0, pin: Pin::Step, level: false }).unwrap();
+        play(&machine.train(), sink);
+    };
     let mut checker = Checker::new(machine.setup(KNOWN));
-    checker.initial(PinChange { ps: 0, axis: 0, pin: Pin::Step, level: true }).unwrap();
-    checker.change(PinChange { ps: 10, axis: 0, pin: Pin::Step, level: false }).unwrap();
-    play(&machine.train(), &mut checker);
+    make(&mut checker);
     let report = checker.finish();
+    let ((), beside) = check_beside(machine.setup(KNOWN), make);
+    assert_eq!(report, beside);
     let found: Vec<&str> = report.failures().collect();
     assert_eq!(found, ["axis x: STEP is high when the capture begins"]);
+}
+
+/// [`Machine::check_setup`] compares the line in the thread that has it with that of the checker.
+#[test]
+fn axes_are_compared_with_their_line() {
+    let machine = Machine::there_and_back(3);
+    let steps = vec![1000, -500, 333];
+    let out = StraightLine { before: vec![0; 3], steps, speed: 8.0 };
+    let setup = Setup { lines: vec![out], ..machine.setup(KNOWN) };
+    let train = machine.train();
+    let correct = machine.check_setup(&train, setup.clone());
+    assert!(correct.passed, "{correct}");
+    assert!(correct.axes.iter().all(|axis| axis.line_off_max_steps.is_some()));
+    // Axis y is 2 ms late.
+    let late = |mut change: PinChange| {
+        change.ps += if change.axis == 1 { 2_000_000_000 } else { 0 };
+        change
+    };
+    let found = machine.check_setup(&sorted(train.into_iter().map(late).collect()), setup);
+    let off = found.failures().filter(|failure| failure.contains("steps off its line"));
+    assert_eq!(off.count(), 3, "{found}");
 }
 
 #[test]

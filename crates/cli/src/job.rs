@@ -9,8 +9,8 @@ use crate::progress::RunProgress;
 use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
-    AxisSetup, AxisWaves, CheckReport, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis,
-    PlotSetup, Setup, Tee, VcdWriter, Waves, save_file,
+    AxisSetup, AxisWaves, CheckReport, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup,
+    Setup, Tee, VcdWriter, Waves, check_beside, save_file,
 };
 use carrystep_files::MoveFile;
 use carrystep_plan::Plan;
@@ -166,8 +166,7 @@ pub fn run(
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
 
-    let mut checker =
-        Checker::new(check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps }));
+    let setup = check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps });
     let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
     let waves = || Waves {
         timebase,
@@ -197,9 +196,9 @@ pub fn run(
     });
 
     let started = Instant::now();
-    let outcome = {
+    let (outcome, check) = check_beside(setup, |checker| -> Result<_, Failure> {
         let mut tee = Tee::new();
-        tee.add(&mut checker);
+        tee.add(checker);
         if let Some(sink) = vcd.as_mut() {
             tee.add(sink);
         }
@@ -227,13 +226,13 @@ pub fn run(
         }
         let outcome = outcome?;
         feed.end(outcome.clocks)?;
-        outcome
-    };
+        Ok(outcome)
+    });
+    let outcome = outcome?;
     let run_s = started.elapsed().as_secs_f64();
     drop(progress);
     drop((vcd, fst, csv));
 
-    let check = checker.finish();
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {
         let names: Vec<&str> = named().map(|(name, _)| name).collect();
         let end_ps = timebase.clock_to_ps(outcome.clocks);

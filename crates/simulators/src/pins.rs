@@ -5,13 +5,17 @@ use carrystep_check::{Pin, PinChange, PinSink, TraceError};
 use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Timebase};
 
-/// Sends every change of STEP and DIR of the first `axes` axes to a sink.
+/// The number of changes that are sent together.
+const BATCH: usize = 1 << 14;
+
+/// Sends every change of STEP and DIR of the first `axes` axes to a sink, in batches.
 pub struct PinFeed<'a> {
     timebase: Timebase,
     axes: u8,
     sink: &'a mut dyn PinSink,
     step: u8,
     dir: u8,
+    batch: Vec<PinChange>,
     failed: Option<TraceError>,
 }
 
@@ -19,7 +23,8 @@ impl<'a> PinFeed<'a> {
     /// A feed with all pins low, as after configuration.
     pub fn new(timebase: Timebase, axes: usize, sink: &'a mut dyn PinSink) -> Self {
         let axes = axes.min(AXES) as u8;
-        Self { timebase, axes, sink, step: 0, dir: 0, failed: None }
+        let batch = Vec::with_capacity(BATCH + 2 * AXES);
+        Self { timebase, axes, sink, step: 0, dir: 0, batch, failed: None }
     }
 
     /// Processes the outputs of a cycle. A new level of a pin begins with the cycle.
@@ -36,16 +41,21 @@ impl<'a> PinFeed<'a> {
         // DIR comes first: if both change in one cycle, the new direction applies to the step.
         for (pin, now, before) in [(Pin::Dir, dir, self.dir), (Pin::Step, step, self.step)] {
             for axis in (0..self.axes).filter(|axis| (now ^ before) >> axis & 1 == 1) {
-                let change = PinChange { ps, axis, pin, level: now >> axis & 1 == 1 };
-                if let Err(error) = self.sink.change(change) {
-                    self.failed.get_or_insert(error);
-                }
+                self.batch.push(PinChange { ps, axis, pin, level: now >> axis & 1 == 1 });
             }
         }
         (self.step, self.dir) = (step, dir);
+        if self.batch.len() >= BATCH {
+            self.send();
+        }
     }
 
-    /// Whether the sink has failed. It receives no more changes.
+    fn send(&mut self) {
+        self.failed = self.sink.changes(&self.batch).err();
+        self.batch.clear();
+    }
+
+    /// Whether the sink has failed; it then receives no more changes.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
@@ -54,7 +64,10 @@ impl<'a> PinFeed<'a> {
     ///
     /// # Errors
     /// The sink failed, now or before.
-    pub fn end(self, clocks: u64) -> Result<(), TraceError> {
+    pub fn end(mut self, clocks: u64) -> Result<(), TraceError> {
+        if self.failed.is_none() {
+            self.send();
+        }
         match self.failed {
             Some(error) => Err(error),
             None => self.sink.end(self.timebase.clock_to_ps(clocks)),

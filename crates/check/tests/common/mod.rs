@@ -109,10 +109,17 @@ impl Machine {
         self.check_setup(train, self.setup(origin))
     }
 
+    /// Checks a train in this thread, and twice in threads beside it, which must find the same.
     pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> CheckReport {
+        let ((), one_by_one) = check_beside(setup.clone(), |sink| play(train, sink));
+        let (sent, together) = check_beside(setup.clone(), |sink| sink.changes(train));
+        sent.unwrap();
         let mut checker = Checker::new(setup);
         play(train, &mut checker);
-        checker.finish()
+        let report = checker.finish();
+        assert_eq!(report, one_by_one);
+        assert_eq!(report, together);
+        report
     }
 
     /// Arbitrary segments that fill the run. V follows from them and is independent of the profile.

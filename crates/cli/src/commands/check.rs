@@ -4,7 +4,7 @@ use crate::arguments::CheckArguments;
 use crate::failure::{Failure, refused};
 use crate::junit::JunitFile;
 use crate::{job, output};
-use carrystep_check::{CheckReport, Checker, Origin, SignalMap, TraceError, VcdReader};
+use carrystep_check::{CheckReport, Origin, SignalMap, TraceError, VcdReader, check_beside};
 use carrystep_core::Timebase;
 use carrystep_files::MoveFile;
 use carrystep_plan::plan;
@@ -81,15 +81,15 @@ fn read(
     uncertain_by_less_than_a_period(arguments.slack_ns, plan)?;
     let mut setup = job::check_setup(file, plan, timelines, origin);
     setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
-    let mut checker = Checker::new(setup);
-    let played = reader.play(&mut checker).map_err(|error| match error {
+    let (played, report) = check_beside(setup, |mut checker| reader.play(&mut checker));
+    let played = played.map_err(|error| match error {
         TraceError::Read(error) => unusable(error.to_string()),
         other => other.into(),
     })?;
     if let Origin::Fixed { ps } = origin {
         overlap(ps, played.end_ps, plan).map_err(unusable)?;
     }
-    Ok(checker.finish())
+    Ok(report)
 }
 
 /// Refuses a slack of more than half of the shortest period, because a pulse could then match the
