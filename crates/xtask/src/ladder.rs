@@ -14,7 +14,17 @@ pub fn climb() -> TaskResult {
     let tests = testing::build()?;
     readme::check()?;
     accuracy::check()?;
+    bench(false, true)?;
     tests.run()
+}
+
+/// Times everything; what is printed is the bench's own.
+pub fn bench(json: bool, smoke: bool) -> TaskResult {
+    tools::install()?;
+    let mut arguments = vec!["bench", "--quiet", "--workspace", "--bench", "levels", "--"];
+    arguments.extend(json.then_some("--json"));
+    arguments.extend(smoke.then_some("--smoke"));
+    shell::run("cargo", &arguments)
 }
 
 /// Rung 7 by itself, with its table.

@@ -66,6 +66,9 @@ enum Chore {
         /// One JSON document instead of the table.
         #[arg(long)]
         json: bool,
+        /// Only see that everything runs: about a second for each row, and no figure is judged.
+        #[arg(long)]
+        smoke: bool,
     },
     /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, the
     /// boards' pages, and the JSON Schemas.
@@ -77,14 +80,6 @@ enum Chore {
     Accuracy,
     /// Measure the engine on every part and write `hdl-out/resources.md` anew (some minutes).
     Resources,
-}
-
-/// Times everything; what is printed is the bench's own.
-fn bench(json: bool) -> shell::TaskResult {
-    tools::install()?;
-    let arguments =
-        ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
-    shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
 }
 
 /// Size and speed of every row of the table.
@@ -107,7 +102,7 @@ fn main() -> ExitCode {
         Chore::Decisions => decisions::write(),
         Chore::Lint => ladder::lint(),
         Chore::Bare => ladder::bare(),
-        Chore::Bench { json } => bench(json),
+        Chore::Bench { json, smoke } => ladder::bench(json, smoke),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
         Chore::Accuracy => accuracy::write(),

@@ -9,6 +9,8 @@ use std::fmt;
 #[derive(Debug, Serialize)]
 pub struct BenchReport {
     pub passed: bool,
+    /// Whether figures were compared with what is wanted; a smoke run does not.
+    pub judged: bool,
     pub machine: String,
     /// Clock cycles per second of the fast model divided by those of Verilator, in the same run.
     pub ratio_busy: f64,
@@ -104,6 +106,9 @@ impl fmt::Display for BenchReport {
             self.vcd_mb_per_s, self.verilator_vcd_mb_per_s, self.waveform_mb_per_s
         )?;
         writeln!(f, "measured in {:.0} s", self.measured_s)?;
+        if !self.judged {
+            writeln!(f, "a smoke run: nothing was judged")?;
+        }
         self.failures.iter().try_for_each(|failure| writeln!(f, "FAILED: {failure}"))
     }
 }

@@ -24,8 +24,9 @@ pub struct Run {
 }
 
 impl Verilated {
-    /// Compiles Verilog, with or without the code that writes a trace.
-    pub fn compile(verilog: &str, trace: bool) -> Result<Self, String> {
+    /// Compiles Verilog, with or without the code that writes a trace. A run that is `smoke` is
+    /// compiled sooner and runs slower.
+    pub fn compile(verilog: &str, trace: bool, smoke: bool) -> Result<Self, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let write = |name: &str, text: &str| {
             std::fs::write(folder.path().join(name), text)
@@ -33,7 +34,8 @@ impl Verilated {
         };
         write("core.v", verilog)?;
         write("toggle.cpp", HARNESS)?;
-        let flags = format!("-O3 -march=native {NO_SLP}");
+        let level = if smoke { "-O1" } else { "-O3" };
+        let flags = format!("{level} -march=native {NO_SLP}");
         let mut command = Command::new(VERILATOR.name);
         command.args([
             "--cc",

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     };
     const std::clock_t begin = std::clock();
     for (const Feed& f : feed) {
+        if (f.cycle >= clocks) break;
         run_to(f.cycle);
         core.seg_valid = f.kind == 0;
         core.start_valid = f.kind == 1;
