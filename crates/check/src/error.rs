@@ -57,6 +57,11 @@ pub enum ReadError {
         /// The part that is missing, in words.
         missing: &'static str,
     },
+    /// The file is a waveform of carrystep that does not show the whole run.
+    #[error(
+        "it shows only a part of a run (--from, --to or --axes of simulate); a check needs all pulses"
+    )]
+    Part,
     /// The file has no `$timescale`.
     #[error("the capture has no $timescale: its unit of time is unknown")]
     NoTimescale,

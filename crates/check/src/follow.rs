@@ -76,6 +76,11 @@ impl<'a> Follower<'a> {
         }
     }
 
+    /// Steps forward minus steps backward so far.
+    pub fn position(&self) -> i64 {
+        self.last.map_or(0, |pulse| pulse.position)
+    }
+
     /// Takes a change of this axis. Returns the pulse if STEP rises.
     pub fn change(&mut self, change: PinChange) -> Option<Pulse> {
         let rises = change.pin == Pin::Step && change.level && !self.step;

@@ -3,7 +3,8 @@
 //! `waves.rs` decides what is written and when; this file only holds the file format.
 
 use crate::vcd_own::OwnCapture;
-use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
+use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
+use crate::waves::{WaveWriter, Waves};
 use fst_writer::{
     FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType,
     FstVarDirection, FstVarType, FstWriteError,
@@ -101,10 +102,19 @@ impl<W: Write + Seek> Format for FstFormat<W> {
         Ok(all)
     }
 
-    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
-        // A block begins with the values that are written before its first time.
+    fn initial(
+        &mut self,
+        ps: u64,
+        values: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> io::Result<()> {
+        // A block begins with the values that are written before its first time, and the first one
+        // begins at 0. Before a window the values are unknown.
+        if ps > 0 {
+            self.time(ps)?;
+            return values(self);
+        }
         values(self)?;
-        self.time(0)
+        self.time(ps)
     }
 
     fn time(&mut self, ps: u64) -> io::Result<()> {

@@ -4,7 +4,7 @@
 //! from the writer's own table, with its range.
 
 use crate::error::TraceError;
-use crate::waves::{SCOPE, SIGNALS};
+use crate::wave_format::{SCOPE, SIGNALS};
 use minijinja::{Environment, Value, context};
 
 const TEMPLATE: &str = include_str!("../templates/gtkwave.gtkw");
@@ -29,20 +29,20 @@ fn trace(axis: &str, name: &str, bits: u32) -> Value {
     context! { name => format!("{SCOPE}.{axis}.{name}{range}"), flags, colour, rows }
 }
 
-/// Returns the text of the save file. It has a group for each axis, and its zoom shows the time up
-/// to `end_ps`.
+/// Returns the text of the save file. It has a group for each axis, and its zoom shows `length_ps`
+/// from the beginning of the VCD.
 ///
 /// `vcd` is the name of the VCD, relative to the folder of the save file.
 ///
 /// # Errors
 /// [`TraceError::Template`] if the template cannot be rendered.
-pub fn save_file(vcd: &str, axes: &[&str], end_ps: u64) -> Result<String, TraceError> {
+pub fn save_file(vcd: &str, axes: &[&str], length_ps: u64) -> Result<String, TraceError> {
     let traces =
         |axis| SIGNALS.iter().map(|&(name, bits)| trace(axis, name, bits)).collect::<Vec<Value>>();
     let groups: Vec<Value> =
         axes.iter().map(|&axis| context! { name => axis, traces => traces(axis) }).collect();
     // GTKWave draws 2^-zoom units of time in a frame.
-    let zoom = -(end_ps.max(1) as f64 / FRAMES).log2();
+    let zoom = -(length_ps.max(1) as f64 / FRAMES).log2();
     let text = Environment::new().render_str(
         TEMPLATE,
         context! { vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") },

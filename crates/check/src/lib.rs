@@ -28,6 +28,8 @@ mod vcd_in;
 mod vcd_out;
 mod vcd_own;
 mod vcd_pins;
+mod view;
+mod wave_format;
 mod waves;
 
 pub use axis_check::AxisSetup;
@@ -48,4 +50,6 @@ pub use vcd_in::{Played, VcdReader};
 pub use vcd_out::{VcdFormat, VcdWriter};
 pub use vcd_own::OwnCapture;
 pub use vcd_pins::PinsVcd;
-pub use waves::{AxisWaves, Format, WaveWriter, Waves};
+pub use view::View;
+pub use wave_format::Format;
+pub use waves::{AxisWaves, WaveWriter, Waves};

@@ -102,8 +102,8 @@ impl<R: BufRead> VcdReader<R> {
     /// Reads the header and finds STEP and DIR of every axis.
     ///
     /// # Errors
-    /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, or lacks
-    /// a signal.
+    /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, lacks a
+    /// signal, or shows only a part of a run.
     pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
         let mut parser = Parser::new(reader.chain(&b" "[..]));
@@ -142,6 +142,9 @@ impl<R: BufRead> VcdReader<R> {
                     return Err(ReadError::Syntax { line, message });
                 }
             }
+        }
+        if own.is_some_and(|own| own.is_part) {
+            return Err(ReadError::Part);
         }
         let unit = unit.ok_or(ReadError::NoTimescale)?;
         let mut pins: HashMap<IdCode, Vec<(u32, usize)>> = HashMap::new();

@@ -3,7 +3,8 @@
 //! `waves.rs` decides what is written and when; this file only holds the file format.
 
 use crate::vcd_own::{self, OwnCapture};
-use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
+use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
+use crate::waves::{WaveWriter, Waves};
 use std::io::{self, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType};
 
@@ -57,8 +58,12 @@ impl<W: Write> Format for VcdFormat<W> {
         Ok(all)
     }
 
-    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
-        self.0.timestamp(0)?;
+    fn initial(
+        &mut self,
+        ps: u64,
+        values: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> io::Result<()> {
+        self.0.timestamp(ps)?;
         self.0.begin(SimulationCommand::Dumpvars)?;
         values(self)?;
         self.0.end()

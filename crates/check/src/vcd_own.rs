@@ -9,14 +9,20 @@ use std::fmt;
 /// The last comment of a capture by carrystep. A file without it was cut off.
 pub(crate) const END: &str = "carrystep end";
 
+/// The last word of the header of a file that shows a part of a run.
+const PART: &str = " part";
+
 /// The header of a capture by carrystep: a comment `carrystep origin_ps=... clock_hz=...
-/// tick_ns=... phases=...`.
+/// tick_ns=... phases=...`, and ` part` if the file does not show the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OwnCapture {
     /// The load of the first move plus the latency L, ps of the capture.
     pub origin_ps: i64,
     /// Clock, tick and phases of the gateware.
     pub timebase: Timebase,
+    /// Whether the file shows only a part of the run, or some of its axes. Its pulses are then not
+    /// all.
+    pub is_part: bool,
 }
 
 impl fmt::Display for OwnCapture {
@@ -28,7 +34,8 @@ impl fmt::Display for OwnCapture {
             self.timebase.clock_hz(),
             self.timebase.tick_ns(),
             self.timebase.phases()
-        )
+        )?;
+        f.write_str(if self.is_part { PART } else { "" })
     }
 }
 
@@ -45,8 +52,9 @@ impl OwnCapture {
         let clock_hz = field("clock_hz")?.parse().ok()?;
         let tick_ns = field("tick_ns")?.parse().ok()?;
         let phases = field("phases")?.parse().ok()?;
+        let is_part = words.next() == Some(PART.trim_start());
         let timebase = Timebase::new(clock_hz, tick_ns, phases).ok()?;
-        Some(Self { origin_ps, timebase })
+        Some(Self { origin_ps, timebase, is_part })
     }
 }
 
@@ -56,9 +64,11 @@ mod tests {
 
     #[test]
     fn comment_reads_back_and_foreign_comments_are_ignored() {
-        let own =
-            OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
-        assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        for is_part in [false, true] {
+            let own = OwnCapture { origin_ps: -5, timebase, is_part };
+            assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
+        }
         for foreign in [
             "",
             "carrystep",

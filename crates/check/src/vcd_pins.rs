@@ -5,7 +5,7 @@
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::vcd_own::{self, OwnCapture};
-use crate::waves::{SCOPE, VERSION};
+use crate::wave_format::{SCOPE, VERSION};
 use std::fmt;
 use std::io::{self, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType, Writer};

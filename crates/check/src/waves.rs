@@ -3,8 +3,6 @@
 //! Integers are values of the gateware, and reals those of the profile, so that a viewer can draw
 //! one over the other. All times are those of the pins: V is shown by the latency L later than in
 //! the register, directly above the edges that it causes.
-//!
-//! The names of the signals may not change: signal maps and save files refer to them.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
@@ -12,6 +10,8 @@ use crate::follow::Follower;
 use crate::ideal::tick_ps;
 use crate::speed_register::SpeedRegister;
 use crate::vcd_own::OwnCapture;
+use crate::view::{Place, View};
+use crate::wave_format::{Format, SIGNALS};
 use carrystep_core::{Segment, StartPhase, Timebase};
 use carrystep_profile::Timeline;
 use std::fmt;
@@ -20,77 +20,6 @@ use std::io;
 /// Number of samples of the slow signals over a run, in addition to those at edges and segment
 /// boundaries.
 const SAMPLES: u64 = 500;
-
-/// The signals of one axis, in order: name and bits, with 0 bits for a real.
-pub(crate) const SIGNALS: [(&str, u32); 7] = [
-    ("step", 1),
-    ("dir", 1),
-    ("position", 32),
-    ("v", 64),
-    ("profile_position", 0),
-    ("profile_speed", 0),
-    ("error_ns", 0),
-];
-
-/// The scope that contains a scope for each axis.
-pub(crate) const SCOPE: &str = "carrystep";
-
-/// The program that wrote the file, with its version.
-pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
-
-/// A file format of waveforms, with times in ps.
-pub trait Format {
-    /// The identifier of a signal.
-    type Id: Copy;
-    /// The name of the format in error messages.
-    const NAME: &'static str;
-
-    /// Declares the signals of each axis, in scopes with the names of the axes.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn declare(
-        &mut self,
-        own: &OwnCapture,
-        axes: &[&str],
-    ) -> io::Result<Vec<[Self::Id; SIGNALS.len()]>>;
-
-    /// Writes the values at time 0.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()>;
-
-    /// Sets the time of the changes that follow, ps. It must be later than the previous time.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn time(&mut self, ps: u64) -> io::Result<()>;
-
-    /// Writes the level of a pin.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn bit(&mut self, id: Self::Id, level: bool) -> io::Result<()>;
-
-    /// Writes a number of `bits` bits in two's complement.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn vector(&mut self, id: Self::Id, value: u64, bits: u32) -> io::Result<()>;
-
-    /// Writes a real number.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn real(&mut self, id: Self::Id, value: f64) -> io::Result<()>;
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// The error of the system if the file cannot be written.
-    fn end(&mut self) -> io::Result<()>;
-}
 
 /// The values that the waveform shows beside the pins.
 pub struct Waves<'a> {
@@ -121,8 +50,9 @@ pub struct WaveWriter<'a, F: Format> {
     out: F,
     own: OwnCapture,
     total_ps: u64,
+    view: View,
     axes: Vec<AxisWriter<'a>>,
-    /// The signals of each axis, after they have been declared.
+    /// The signals of each axis that is shown, after they have been declared.
     ids: Vec<[F::Id; SIGNALS.len()]>,
     /// Index of the next sample of the regular grid.
     grid: u64,
@@ -131,6 +61,8 @@ pub struct WaveWriter<'a, F: Format> {
 }
 
 struct AxisWriter<'a> {
+    /// Number of the axis.
+    number: usize,
     name: &'a str,
     timeline: &'a Timeline,
     follower: Follower<'a>,
@@ -152,7 +84,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     /// A writer that has not written anything. It writes the header with the first change.
     pub(crate) fn of(out: F, waves: Waves<'a>) -> Self {
         let Waves { timebase, phase, origin_ps, total_ticks, axes } = waves;
-        let axes = axes.into_iter().map(|axis| AxisWriter {
+        let axes = axes.into_iter().enumerate().map(|(number, axis)| AxisWriter {
+            number,
             name: axis.name,
             timeline: axis.timeline,
             follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
@@ -162,7 +95,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         });
         Self {
             out,
-            own: OwnCapture { origin_ps, timebase },
+            own: OwnCapture { origin_ps, timebase, is_part: false },
+            view: View::default(),
             total_ps: total_ticks.saturating_mul(tick_ps(&timebase)),
             axes: axes.collect(),
             ids: Vec::new(),
@@ -171,22 +105,49 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         }
     }
 
+    /// Writes only what is in view. This is called before the first change.
+    #[must_use]
+    pub fn within(mut self, view: View) -> Self {
+        self.own.is_part = view != View::default();
+        self.axes.retain(|axis| view.shows(axis.number));
+        self.view = view;
+        self
+    }
+
     fn header(&mut self) -> io::Result<()> {
+        let from = self.view.from_ps();
+        if let Some(from) = from {
+            let tick = self.tick_at(from);
+            self.axes.iter_mut().for_each(|axis| axis.v = axis.register.at(tick as u64));
+        }
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name).collect();
         self.ids = self.out.declare(&self.own, &names)?;
-        let (axes, ids) = (&self.axes, &self.ids);
-        self.out.initial(|out| {
-            for (axis, &[step, dir, position, v, ref reals @ ..]) in axes.iter().zip(ids) {
+        let tick = from.map_or(0.0, |from| self.tick_at(from));
+        let (axes, ids, begin) = (&self.axes, &self.ids, from.unwrap_or(0));
+        self.out.initial(begin, |out| {
+            for (axis, &[step, dir, position, v, travelled, speed, error]) in axes.iter().zip(ids) {
                 out.bit(step, axis.levels[0])?;
                 out.bit(dir, axis.levels[1])?;
-                vector(out, position, 0, 32)?;
-                vector(out, v, 0, 64)?;
-                reals.iter().try_for_each(|&id| out.real(id, 0.0))?;
+                vector(out, position, axis.follower.position(), 32)?;
+                vector(out, v, axis.v, 64)?;
+                let (at, moves) = match from {
+                    Some(_) => (axis.timeline.position_at(tick), axis.timeline.speed_at(tick)),
+                    None => (0.0, 0.0),
+                };
+                real(out, travelled, at)?;
+                real(out, speed, moves)?;
+                out.real(error, 0.0)?;
             }
             Ok(())
         })?;
-        self.time = Some(0);
+        self.time = Some(begin);
         Ok(())
+    }
+
+    /// Ticks from the origin to `ps` of the capture, not before the origin.
+    fn tick_at(&self, ps: u64) -> f64 {
+        let since = i128::from(ps) - i128::from(self.own.origin_ps);
+        since.max(0) as f64 / tick_ps(&self.own.timebase) as f64
     }
 
     /// Advances the file to `ps`, and writes all samples up to then.
@@ -218,20 +179,25 @@ impl<'a, F: Format> WaveWriter<'a, F> {
 
     /// The time `ps` after the origin in ps of the capture, but not before the start of the
     /// capture.
-    fn after_origin(&self, ps: u128) -> Option<u64> {
-        let at = i128::try_from(ps).ok()? + i128::from(self.own.origin_ps);
-        u64::try_from(at.max(0)).ok()
+    fn after_origin(&self, ps: i128) -> Option<u64> {
+        u64::try_from((ps + i128::from(self.own.origin_ps)).max(0)).ok()
     }
 
+    /// The time of the next sample of the regular grid, which divides what is in view.
     fn grid_time(&self) -> Option<u64> {
-        let exact = u128::from(self.total_ps) * u128::from(self.grid) / u128::from(SAMPLES);
-        self.after_origin(exact).filter(|_| self.grid <= SAMPLES)
+        let since = |ps: u64| i128::from(ps) - i128::from(self.own.origin_ps);
+        let total = i128::from(self.total_ps);
+        let begin = self.view.from_ps().map_or(0, since);
+        let end = self.view.to_ps().map_or(total, |to| since(to).min(total));
+        let length = u128::try_from(end - begin).ok()?;
+        let exact = i128::try_from(length * u128::from(self.grid) / u128::from(SAMPLES)).ok()?;
+        self.after_origin(begin + exact).filter(|_| self.grid <= SAMPLES)
     }
 
     /// The time at which the next segment of the axis starts or the running one ends.
     fn boundary(&self, index: usize) -> Option<u64> {
         let tick = self.axes.get(index)?.register.next_change()?;
-        self.after_origin(u128::from(tick) * u128::from(tick_ps(&self.own.timebase)))
+        self.after_origin(i128::from(tick) * i128::from(tick_ps(&self.own.timebase)))
     }
 
     fn next_sample(&self) -> Option<u64> {
@@ -257,10 +223,26 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         real(&mut self.out, profile_speed, axis.timeline.speed_at(tick))
     }
 
+    /// The place of an axis among those that are shown.
+    fn index(&self, axis: u8) -> Option<usize> {
+        let number = usize::from(axis);
+        match self.axes.get(number) {
+            Some(axis) if axis.number == number => Some(number),
+            _ => self.axes.iter().position(|axis| axis.number == number),
+        }
+    }
+
     fn write(&mut self, change: PinChange) -> io::Result<()> {
-        let index = usize::from(change.axis);
-        if index >= self.axes.len() {
-            return Ok(());
+        let Some(index) = self.index(change.axis) else { return Ok(()) };
+        match self.view.place(change.ps) {
+            Place::Before => {
+                let axis = &mut self.axes[index];
+                axis.levels[usize::from(change.pin == Pin::Dir)] = change.level;
+                axis.follower.change(change);
+                return Ok(());
+            }
+            Place::Within => {}
+            Place::After => return Ok(()),
         }
         self.advance(change.ps)?;
         let axis = &mut self.axes[index];
@@ -276,8 +258,10 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         Ok(())
     }
 
+    /// Completes the file. A run that ended before the window leaves its last levels there.
     fn close(&mut self, ps: u64) -> io::Result<()> {
-        self.advance(ps)?;
+        let last = ps.min(self.view.to_ps().unwrap_or(u64::MAX));
+        self.advance(last.max(self.view.from_ps().unwrap_or(0)))?;
         self.out.end()
     }
 }
@@ -298,7 +282,8 @@ fn real<F: Format>(out: &mut F, id: F::Id, value: f64) -> io::Result<()> {
 
 impl<F: Format> PinSink for WaveWriter<'_, F> {
     fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
-        if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
+        if let Some(index) = self.index(level.axis) {
+            let axis = &mut self.axes[index];
             axis.levels[usize::from(level.pin == Pin::Dir)] = level.level;
             axis.follower.initial(level.pin, level.level);
         }

@@ -29,12 +29,14 @@ fn open(bytes: Vec<u8>) -> (Waveform, BTreeMap<String, SignalRef>) {
 enum Shown {
     Bits(u64),
     Real(f64),
+    Unknown,
 }
 
 fn changes(waveform: &mut Waveform, signal: SignalRef) -> Vec<(u64, Shown)> {
     waveform.load_signals(&[signal]);
     let shown = |value: SignalValueRef<'_>| match value {
         SignalValueRef::Real(x) => Shown::Real(x),
+        unknown if unknown.to_bit_string().is_some_and(|bits| bits.contains('x')) => Shown::Unknown,
         other => Shown::Bits(u64::from_str_radix(&other.to_bit_string().unwrap(), 2).unwrap()),
     };
     let found = waveform.get_signal(signal).unwrap();
@@ -138,6 +140,76 @@ fn fst_contains_the_same_changes_as_the_vcd() {
     }
 }
 
+/// The value of a signal at a time.
+fn at(changes: &[(u64, Shown)], ps: u64) -> Option<Shown> {
+    changes.iter().rev().find(|(time, _)| *time <= ps).map(|(_, value)| *value)
+}
+
+/// Part of a run as VCD and as FST.
+fn parts(machine: &Machine, train: &[PinChange], view: &View) -> [Vec<u8>; 2] {
+    let (mut vcd, mut fst) = (Vec::new(), Cursor::new(Vec::new()));
+    play(train, &mut VcdWriter::new(&mut vcd, machine.waves()).within(view.clone()));
+    play(train, &mut FstWriter::new(&mut fst, machine.waves()).within(view.clone()));
+    [vcd, fst.into_inner()]
+}
+
+#[test]
+fn window_shows_what_the_whole_waveform_shows_there() {
+    let machine = Machine::there_and_back(3);
+    let train = machine.train();
+    let (mut whole, of_whole) = open(machine.vcd(&train));
+    let last = train.last().unwrap().ps + 1_000_000;
+    let rise = train[rise(&train, 2, 100)].ps;
+    let origin = ORIGIN_PS as u64;
+    let windows = [
+        (Some(0), Some(1)),
+        (Some(origin / 2), Some(origin + 1_000_000)),
+        (Some(rise), Some(rise + 10_000_000_000)),
+        (Some(rise + 1), None),
+        (None, Some(rise)),
+        (Some(last - 1), None),
+    ];
+    for (from, to) in windows {
+        let view = View::default().between(from, to).of_axes(vec![0, 2]);
+        for (bytes, is_fst) in parts(&machine, &train, &view).into_iter().zip([false, true]) {
+            let (mut part, of_part) = open(bytes);
+            assert_eq!(of_part.len(), 14);
+            let (begin, end) = (from.unwrap_or(0), to.unwrap_or(last));
+            // The FST says from 0 on that nothing is known.
+            let first = if is_fst { 0 } else { begin };
+            assert_eq!(part.time_table().first(), Some(&first), "{view:?}");
+            assert_eq!(part.time_table().last(), Some(&end), "{view:?}");
+            let rises = train.iter().filter(|c| c.axis != 1 && c.pin == Pin::Step && c.level);
+            let rises: Vec<u64> =
+                rises.map(|c| c.ps).filter(|ps| (begin..=end).contains(ps)).collect();
+            for (name, signal) in of_part {
+                let (seen, wanted) =
+                    (changes(&mut part, signal), changes(&mut whole, of_whole[&name]));
+                let is_pin_or_position =
+                    !["v[", "profile", "error"].iter().any(|n| name.contains(n));
+                if is_pin_or_position {
+                    assert_eq!(at(&seen, begin), at(&wanted, begin), "{name} {view:?}");
+                    let within = |all: &[(u64, Shown)]| -> Vec<(u64, Shown)> {
+                        all.iter().copied().filter(|(ps, _)| *ps > begin && *ps <= end).collect()
+                    };
+                    assert_eq!(within(&seen), within(&wanted), "{name} {view:?}");
+                }
+                // V and the profile are also sampled on a grid of the window; they are the same at
+                // the pulses of their axis.
+                let axis = NAMES.iter().position(|axis| name.contains(&format!(".{axis}.")));
+                let own = train.iter().filter(|c| Some(usize::from(c.axis)) == axis);
+                for pulse in own.filter(|c| rises.contains(&c.ps) && c.pin == Pin::Step && c.level)
+                {
+                    assert_eq!(at(&seen, pulse.ps), at(&wanted, pulse.ps), "{name} {view:?}");
+                }
+            }
+        }
+        let [vcd, _] = parts(&machine, &train, &view);
+        let refused = VcdReader::new(vcd.as_slice(), machine.names(), &SignalMap::default());
+        assert!(matches!(refused, Err(ReadError::Part)), "{view:?}");
+    }
+}
+
 #[test]
 fn every_name_of_the_save_file_is_in_the_vcd() {
     let machine = Machine::there_and_back(6);
@@ -159,7 +231,10 @@ fn carrystep_capture_is_recognised_and_passes() {
     let bytes = machine.vcd(&machine.train());
     let reader = VcdReader::new(bytes.as_slice(), machine.names(), &SignalMap::default()).unwrap();
     let own = reader.own().unwrap();
-    assert_eq!(own, OwnCapture { origin_ps: ORIGIN_PS, timebase: machine.timebase });
+    assert_eq!(
+        own,
+        OwnCapture { origin_ps: ORIGIN_PS, timebase: machine.timebase, is_part: false }
+    );
     let mut checker = Checker::new(machine.setup(Origin::Known { ps: own.origin_ps }));
     let played = reader.play(&mut checker).unwrap();
     let report = checker.finish();

@@ -10,7 +10,7 @@ use carrystep_simulators::Level;
 use carrystep_sweep::Shard;
 use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser};
+use clap::{ArgGroup, Args, Parser};
 pub use machine::{MachineArguments, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
@@ -147,6 +147,7 @@ pub struct PlanArguments {
 
 /// The arguments of `carrystep simulate`.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("waves").args(["vcd", "fst"]).multiple(true))]
 pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
@@ -172,6 +173,27 @@ pub struct Simulate {
     /// Write a GTKWave save file for the waveform (needs --vcd).
     #[arg(long, value_name = "FILE", requires = "vcd")]
     pub save: Option<PathBuf>,
+    /// The waveform begins this long after the start of the first move, s (needs --vcd or --fst).
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = seconds,
+        allow_negative_numbers = true,
+        requires = "waves"
+    )]
+    pub from: Option<f64>,
+    /// The waveform ends this long after the start of the first move, s (needs --vcd or --fst).
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = seconds,
+        allow_negative_numbers = true,
+        requires = "waves"
+    )]
+    pub to: Option<f64>,
+    /// The waveform shows only these axes, for example x,y (needs --vcd or --fst).
+    #[arg(long, value_name = "AXIS", value_delimiter = ',', requires = "waves")]
+    pub axes: Vec<String>,
     /// Write time, speed and error of each pulse.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -181,6 +203,16 @@ pub struct Simulate {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads a time that is not negative, s.
+fn seconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().map_err(|_| "expected a number of seconds".to_owned())?;
+    if (0.0..=4e6).contains(&time) {
+        Ok(time)
+    } else {
+        Err("expected a time from 0 to 4000000 s".to_owned())
+    }
 }
 
 /// The arguments of `carrystep check`.

@@ -182,8 +182,11 @@ pub fn run(
             })
             .collect(),
     };
-    let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()));
-    let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()));
+    let total_s = plan.total_ticks() as f64 * timebase.tick_seconds();
+    let view = wanted.part.view(&file.machine, origin_ps, total_s)?;
+    let in_view = || view.clone();
+    let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()).within(in_view()));
+    let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()).within(in_view()));
     let mut csv = files
         .csv
         .as_mut()
@@ -234,9 +237,10 @@ pub fn run(
     drop((vcd, fst, csv));
 
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {
-        let names: Vec<&str> = named().map(|(name, _)| name).collect();
-        let end_ps = timebase.clock_to_ps(outcome.clocks);
-        out.text(&save_file(&seen_from(out.path(), vcd), &names, end_ps)?)?;
+        let shown = named().enumerate().filter(|(axis, _)| view.shows(*axis));
+        let names: Vec<&str> = shown.map(|(_, (name, _))| name).collect();
+        let length_ps = view.length_ps(timebase.clock_to_ps(outcome.clocks));
+        out.text(&save_file(&seen_from(out.path(), vcd), &names, length_ps)?)?;
     }
     if let (Some(out), Some(plot)) = (&mut files.plot, plot) {
         out.text(&plot.svg(&check)?)?;

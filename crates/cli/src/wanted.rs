@@ -3,6 +3,8 @@
 
 use crate::failure::Failure;
 use crate::output::OutputFile;
+use carrystep_check::View;
+use carrystep_files::{Machine, did_you_mean};
 use std::path::PathBuf;
 
 /// The paths of the wanted files.
@@ -13,6 +15,49 @@ pub struct Wanted {
     pub save: Option<PathBuf>,
     pub csv: Option<PathBuf>,
     pub plot: Option<PathBuf>,
+    /// The part of the run that the waveform shows.
+    pub part: Part,
+}
+
+/// A part of a run.
+#[derive(Debug, Default)]
+pub struct Part {
+    /// Seconds after the start of the first move.
+    pub from: Option<f64>,
+    pub to: Option<f64>,
+    /// Names of axes; none: all.
+    pub axes: Vec<String>,
+}
+
+impl Part {
+    /// The part of a run of `total_s` seconds, in times of a capture that has its origin at
+    /// `origin_ps`.
+    pub fn view(&self, machine: &Machine, origin_ps: i64, total_s: f64) -> Result<View, Failure> {
+        let (from, to) = (self.from, self.to);
+        if let Some(from) = from.filter(|&from| from >= total_s) {
+            return Err(Failure::input(format!(
+                "--from {from} is not within the moves, which take {total_s:.6} s"
+            )));
+        }
+        if let Some((from, to)) = from.zip(to).filter(|(from, to)| from >= to) {
+            return Err(Failure::input(format!("--from {from} is not before --to {to}")));
+        }
+        let at = |seconds: f64| (seconds * 1e12).round() as i64;
+        let at = |seconds| u64::try_from(origin_ps.saturating_add(at(seconds))).unwrap_or(0);
+        let view = View::default().between(from.map(at), to.map(at));
+        if self.axes.is_empty() {
+            return Ok(view);
+        }
+        let known = || machine.axes.iter().map(|axis| axis.name.as_str());
+        let number = |name: &String| {
+            known().position(|one| one == name).ok_or_else(|| {
+                let meant = did_you_mean(name, known());
+                let all = known().collect::<Vec<_>>().join(", ");
+                Failure::input(format!("no axis is called '{name}'{meant}: the axes are {all}"))
+            })
+        };
+        Ok(view.of_axes(self.axes.iter().map(number).collect::<Result<_, _>>()?))
+    }
 }
 
 /// The same files after they were begun.

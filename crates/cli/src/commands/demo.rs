@@ -6,7 +6,7 @@ use crate::failure::{Failure, refused};
 use crate::job::{self, RunResult};
 use crate::output::{self, write_file};
 use crate::shipped::{MACHINE, MACHINE_FILE};
-use crate::wanted::Wanted;
+use crate::wanted::{Part, Wanted};
 use carrystep_files::MoveFile;
 use carrystep_plan::plan;
 use carrystep_verilog::Prefix;
@@ -35,6 +35,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         save: Some(out("demo.gtkw")),
         csv: Some(out("demo.csv")),
         plot: Some(out("demo.svg")),
+        part: Part::default(),
     };
     let mut done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
     done.files.splice(0..0, verilog.files);

@@ -3,7 +3,7 @@
 
 use crate::arguments::Simulate;
 use crate::failure::{Failure, refused};
-use crate::wanted::Wanted;
+use crate::wanted::{Part, Wanted};
 use crate::{job, output};
 use carrystep_plan::plan;
 
@@ -17,6 +17,7 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         save: arguments.save.clone(),
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
+        part: Part { from: arguments.from, to: arguments.to, axes: arguments.axes.clone() },
     };
     let done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
     if arguments.json {

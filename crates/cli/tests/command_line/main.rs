@@ -45,3 +45,4 @@ mod table;
 mod terminal;
 #[cfg(unix)]
 mod virtual_boards;
+mod windows;
