@@ -36,12 +36,12 @@ impl View {
     }
 
     /// The first time that is shown, ps of the capture, unless it is the beginning of the run.
-    pub(crate) fn from_ps(&self) -> Option<u64> {
+    pub(crate) fn first_ps(&self) -> Option<u64> {
         self.from_ps
     }
 
     /// The last time that is shown, ps of the capture, unless it is the end of the run.
-    pub(crate) fn to_ps(&self) -> Option<u64> {
+    pub(crate) fn last_ps(&self) -> Option<u64> {
         self.to_ps
     }
 

@@ -115,7 +115,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     }
 
     fn header(&mut self) -> io::Result<()> {
-        let from = self.view.from_ps();
+        let from = self.view.first_ps();
         if let Some(from) = from {
             let tick = self.tick_at(from);
             self.axes.iter_mut().for_each(|axis| axis.v = axis.register.at(tick as u64));
@@ -187,8 +187,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     fn grid_time(&self) -> Option<u64> {
         let since = |ps: u64| i128::from(ps) - i128::from(self.own.origin_ps);
         let total = i128::from(self.total_ps);
-        let begin = self.view.from_ps().map_or(0, since);
-        let end = self.view.to_ps().map_or(total, |to| since(to).min(total));
+        let begin = self.view.first_ps().map_or(0, since);
+        let end = self.view.last_ps().map_or(total, |to| since(to).min(total));
         let length = u128::try_from(end - begin).ok()?;
         let exact = i128::try_from(length * u128::from(self.grid) / u128::from(SAMPLES)).ok()?;
         self.after_origin(begin + exact).filter(|_| self.grid <= SAMPLES)
@@ -260,8 +260,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
 
     /// Completes the file. A run that ended before the window leaves its last levels there.
     fn close(&mut self, ps: u64) -> io::Result<()> {
-        let last = ps.min(self.view.to_ps().unwrap_or(u64::MAX));
-        self.advance(last.max(self.view.from_ps().unwrap_or(0)))?;
+        let last = ps.min(self.view.last_ps().unwrap_or(u64::MAX));
+        self.advance(last.max(self.view.first_ps().unwrap_or(0)))?;
         self.out.end()
     }
 }
