@@ -1,7 +1,10 @@
 //! Figures of the documentation that are private constants of the code, of tests and of benches.
 //! They are read from the text of the source, so that no constant becomes public for a page.
 
-use carrystep_core::engine::{CAUSES, QUEUE, SEGMENT_WORDS};
+use carrystep_core::Command;
+use carrystep_core::engine::{CAUSES, MAX_ROUNDS, QUEUE, SEGMENT_WORDS};
+use carrystep_files::MoveFile;
+use carrystep_tests::moves;
 use carrystep_tests::pages::{self, grouped, part, says, word};
 use carrystep_tests::sources::{behind, constant, power_of_ten, whole};
 
@@ -60,6 +63,88 @@ fn machine_file_page_gives_the_limits_of_the_reader() {
             format!("takes at least {} ticks", word(whole(rest))),
         ],
     );
+}
+
+#[test]
+fn machine_file_page_gives_the_ends_of_ranges_in_words() {
+    let (home, build) = ("crates/files/src/machine/home.rs", "crates/core/src/engine/build.rs");
+    let core = |name| constant("crates/core/src/engine.rs", name);
+    // In us, and in ms, with ticks of 1 us.
+    let debounce = whole((core("MAX_DEBOUNCE_SAMPLES") - 1.0) * core("MAX_ROUND"));
+    let watchdog = (f64::from(MAX_ROUNDS) - 1.0) * core("MAX_ROUND") / 1e3;
+    assert!(pages::file("crates/files/src/move_file.rs").contains("at_most(i32::MAX.into(), 0)"));
+    assert_eq!(i64::from(i32::MAX), (1 << 31) - 1);
+    let ramp = whole(behind(build, "stop.iter().position(|units| !(1..=1 << "));
+    let share = part(1 << (64 - ramp));
+    assert_eq!(whole(behind(home, "(high - low).unsigned_abs().div_ceil(")), 100, "a hundredth");
+    let times = whole(behind(home, "(high - low).saturating_add("));
+    assert_eq!(times, 2, "twice");
+    let most = part(whole(behind(home, "i64::from(steps) <= (high - low) / ")));
+    says(
+        "docs/machine-files.md",
+        &[
+            format!("({} with ticks of 1000 ns)", watchdog.floor()),
+            format!("({} with ticks of 1000 ns)", grouped(debounce)),
+            "up to 2^31 - 1 steps from the start".to_owned(),
+            format!("2^-64 to 1/{} step per tick^2", 1 << (64 - ramp)),
+            format!("a {share} of a step per tick^2 at most"),
+            "plus a hundredth of the travel".to_owned(),
+            format!("over {most} of the travel"),
+            "its length plus twice `move_off`".to_owned(),
+        ],
+    );
+    says(
+        "docs/engine.md",
+        &[format!(
+            "over 2^{ramp} in units of 2^-64 step per tick^2 (a {share} of a step per tick^2)"
+        )],
+    );
+}
+
+#[test]
+fn pages_give_what_the_tests_of_link_and_simulators_do() {
+    let writes = whole(behind(
+        "crates/virtual-board/tests/support/bus.rs",
+        "Host<SpiLine<Bus<B>>, Bus<B>, ",
+    ));
+    says(
+        "docs/protocol.md",
+        &[
+            format!("at most ({writes} over SPI)"),
+            format!("over SPI have at most {} unacknowledged writes", word(writes)),
+        ],
+    );
+    assert_eq!(whole(behind("tests/support/effort.rs", "{ whole } else { whole / ")), 10);
+    says("README.md", &["run the first tenth in an ordinary test run".to_owned()]);
+    // The least ratio of the measured table.
+    let page = pages::file("docs/performance.md");
+    let ratios = page.lines().filter_map(|line| line.split("**").nth(1)?.parse::<f64>().ok());
+    let least = ratios.fold(f64::INFINITY, f64::min);
+    assert!((1000.0..f64::INFINITY).contains(&least), "{least}");
+    says(
+        "README.md",
+        &["The fast model is [a thousand times](docs/performance.md) as fast".to_owned()],
+    );
+}
+
+#[test]
+fn performance_page_gives_the_pulses_of_its_moves() {
+    let page = pages::file("docs/performance.md");
+    for (name, loads) in [("busy", None), ("typical", Some("of its ")), ("rest", None)] {
+        let file =
+            MoveFile::load(&moves::root().join("sim/bench").join(name).with_extension("toml"));
+        let plan = carrystep_plan::plan::<f64>(&file.expect("a move file")).expect("a plan");
+        let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
+        let pulses: u64 = axes.map(|axis| axis.steps.unsigned_abs()).sum();
+        let row =
+            page.lines().find(|line| line.starts_with(&format!("| {name} ("))).expect("a row");
+        assert_eq!(row.split(" | ").nth(1), Some(pulses.to_string().as_str()), "{row}");
+        if let Some(before) = loads {
+            let is_segment = |command: &&Command| matches!(command, Command::Segment { .. });
+            let count = plan.program().iter().filter(is_segment).count();
+            says("docs/performance.md", &[format!("{before}{count} loads")]);
+        }
+    }
 }
 
 #[test]

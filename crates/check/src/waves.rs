@@ -117,12 +117,13 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     fn header(&mut self) -> io::Result<()> {
         let from = self.view.first_ps();
         if let Some(from) = from {
-            let tick = self.tick_at(from);
-            self.axes.iter_mut().for_each(|axis| axis.v = axis.register.at(tick as u64));
+            let tick = self.since_origin(from) / tick_ps(&self.own.timebase);
+            self.axes.iter_mut().for_each(|axis| axis.v = axis.register.at(tick));
         }
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name).collect();
         self.ids = self.out.declare(&self.own, &names)?;
-        let tick = from.map_or(0.0, |from| self.tick_at(from));
+        let tick_ps = tick_ps(&self.own.timebase) as f64;
+        let tick = from.map_or(0.0, |from| self.since_origin(from) as f64 / tick_ps);
         let (axes, ids, begin) = (&self.axes, &self.ids, from.unwrap_or(0));
         self.out.initial(begin, |out| {
             for (axis, &[step, dir, position, v, travelled, speed, error]) in axes.iter().zip(ids) {
@@ -144,10 +145,9 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         Ok(())
     }
 
-    /// Ticks from the origin to `ps` of the capture, not before the origin.
-    fn tick_at(&self, ps: u64) -> f64 {
-        let since = i128::from(ps) - i128::from(self.own.origin_ps);
-        since.max(0) as f64 / tick_ps(&self.own.timebase) as f64
+    /// The time from the origin to `ps` of the capture, ps; 0 before the origin.
+    fn since_origin(&self, ps: u64) -> u64 {
+        u64::try_from(i128::from(ps) - i128::from(self.own.origin_ps)).unwrap_or(0)
     }
 
     /// Advances the file to `ps`, and writes all samples up to then.
@@ -209,9 +209,10 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     fn sample(&mut self, index: usize, ps: u64) -> io::Result<()> {
         let tick_ps = tick_ps(&self.own.timebase);
         let since = i128::from(ps) - i128::from(self.own.origin_ps);
+        let since_origin = self.since_origin(ps);
         let axis = &mut self.axes[index];
         let [_, _, _, v, profile_position, profile_speed, _] = self.ids[index];
-        let now = axis.register.at(u64::try_from(since).unwrap_or(0) / tick_ps);
+        let now = axis.register.at(since_origin / tick_ps);
         if now != axis.v {
             axis.v = now;
             vector(&mut self.out, v, now, 64)?;

@@ -1,5 +1,5 @@
 //! The event wheel: one block RAM that holds the pending steps and signs of all axes, with one word
-//! for each phase of four ticks.
+//! for the steps of each phase of four ticks, and one word for the signs of each of these ticks.
 //!
 //! When the time slot of an axis finds a step in phase q, the wheel writes two bits in the event
 //! word of phase q, two ticks ahead: one for the step and one for its direction. When that phase
