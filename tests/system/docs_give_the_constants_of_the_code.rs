@@ -73,7 +73,6 @@ fn machine_file_page_gives_the_ends_of_ranges_in_words() {
     let debounce = whole((core("MAX_DEBOUNCE_SAMPLES") - 1.0) * core("MAX_ROUND"));
     let watchdog = (f64::from(MAX_ROUNDS) - 1.0) * core("MAX_ROUND") / 1e3;
     assert!(pages::file("crates/files/src/move_file.rs").contains("at_most(i32::MAX.into(), 0)"));
-    assert_eq!(i64::from(i32::MAX), (1 << 31) - 1);
     let ramp = whole(behind(build, "stop.iter().position(|units| !(1..=1 << "));
     let share = part(1 << (64 - ramp));
     assert_eq!(whole(behind(home, "(high - low).unsigned_abs().div_ceil(")), 100, "a hundredth");

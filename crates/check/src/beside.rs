@@ -16,7 +16,7 @@ use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
 use crate::ideal::Due;
 use crate::line_check::LinesCheck;
-use crate::origin::{Base, Frame};
+use crate::origin::{Base, RunningOrigin};
 use crate::report::CheckReport;
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ pub fn check_beside<R>(
     setup: Setup<'_>,
     make: impl FnOnce(&mut dyn PinSink) -> R,
 ) -> (R, CheckReport) {
-    let Checker { axes, lines, mut frame, slack_ps, phase_ns } = Checker::new(setup);
+    let Checker { axes, lines, mut origin, slack_ps, phase_ns } = Checker::new(setup);
     let threads = available_parallelism().map_or(1, usize::from).min(axes.len()).max(1);
     let firsts = axes.iter().map(AxisCheck::first).collect();
     let mut shares: Vec<Share<'_>> = (0..threads).map(|_| Share::default()).collect();
@@ -53,7 +53,7 @@ pub fn check_beside<R>(
                 share
             }));
         }
-        let mut sender = Sender { frame: &mut frame, firsts, senders, batch: Vec::new() };
+        let mut sender = Sender { origin: &mut origin, firsts, senders, batch: Vec::new() };
         let made = make(&mut sender);
         sender.flush();
         // The threads end when nobody can send to them any more.
@@ -71,7 +71,7 @@ pub fn check_beside<R>(
     axes.sort_by_key(|(number, _)| *number);
     let axes = axes.into_iter().map(|(_, axis)| axis).collect();
     let lines = lines.expect("one share has the lines");
-    (made, Checker { axes, lines, frame, slack_ps, phase_ns }.finish())
+    (made, Checker { axes, lines, origin, slack_ps, phase_ns }.finish())
 }
 
 /// What a thread is sent.
@@ -120,7 +120,7 @@ impl Share<'_> {
 
 /// Sends a capture to all threads.
 struct Sender<'a> {
-    frame: &'a mut Frame,
+    origin: &'a mut RunningOrigin,
     /// When the first pulse of each axis is due.
     firsts: Vec<Option<Due>>,
     senders: Vec<SyncSender<Message>>,
@@ -143,10 +143,10 @@ impl Sender<'_> {
 
     fn send_all(&mut self, changes: &[PinChange]) {
         for change in changes {
-            self.frame.see(*change, |axis| *self.firsts.get(axis)?);
+            self.origin.estimate(*change, |axis| *self.firsts.get(axis)?);
         }
         if !changes.is_empty() {
-            self.send(&Message::Changes(changes.into(), self.frame.base()));
+            self.send(&Message::Changes(changes.into(), self.origin.base()));
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
 use crate::ideal::{NS, PS, phase_ps};
 use crate::line_check::LinesCheck;
-use crate::origin::{Frame, Origin};
+use crate::origin::{Origin, RunningOrigin};
 use crate::report::{CheckReport, OriginKind};
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::StraightLine;
@@ -41,14 +41,14 @@ pub struct Setup<'a> {
 pub struct Checker<'a> {
     pub(crate) axes: Vec<AxisCheck<'a>>,
     pub(crate) lines: LinesCheck,
-    pub(crate) frame: Frame,
+    pub(crate) origin: RunningOrigin,
     pub(crate) slack_ps: u64,
     pub(crate) phase_ns: f64,
 }
 
 impl fmt::Debug for Checker<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Checker").field("frame", &self.frame).finish_non_exhaustive()
+        f.debug_struct("Checker").field("origin", &self.origin).finish_non_exhaustive()
     }
 }
 
@@ -62,7 +62,7 @@ impl<'a> Checker<'a> {
         Self {
             axes,
             lines,
-            frame: Frame::new(origin),
+            origin: RunningOrigin::new(origin),
             slack_ps,
             phase_ns: phase_ps(&timebase) / NS,
         }
@@ -70,7 +70,7 @@ impl<'a> Checker<'a> {
 
     /// Ends the check and returns the report.
     pub fn finish(self) -> CheckReport {
-        let (base, kind) = (self.frame.base().ps, self.frame.kind());
+        let (base, kind) = (self.origin.base().ps, self.origin.kind());
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
         // The greatest bound of all axes for e, in seconds. `LinesCheck::off` allows each axis the
         // distance that it travels in this time; `finish` makes the result a part of the axis'
@@ -107,9 +107,9 @@ impl PinSink for Checker<'_> {
     }
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
-        self.frame.see(change, |axis| self.axes.get(axis)?.first());
+        self.origin.estimate(change, |axis| self.axes.get(axis)?.first());
         if let Some(axis) = self.axes.get_mut(usize::from(change.axis)) {
-            axis.change(change, self.frame.base());
+            axis.change(change, self.origin.base());
         }
         self.lines.change(change);
         Ok(())

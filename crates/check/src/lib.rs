@@ -1,8 +1,9 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`] (or [`check_beside`], which uses other cores), the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
-//! [`Plot`]. The modules are private; the public items are listed below.
+//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
+//! [`Plot`]. [`check_beside`] is a checker that uses other cores. The modules are private; the
+//! public items are listed below.
 
 mod ahead;
 mod axis_check;

@@ -25,7 +25,7 @@ pub enum Origin {
 
 /// The origin of a capture while it is read.
 #[derive(Debug)]
-pub(crate) struct Frame {
+pub(crate) struct RunningOrigin {
     origin: Origin,
     /// The origin from which errors are counted, ps. For a foreign capture it is estimated from the
     /// first pulse, and corrected at the end.
@@ -41,7 +41,7 @@ pub(crate) struct Base {
     pub(crate) is_sure: bool,
 }
 
-impl Frame {
+impl RunningOrigin {
     pub(crate) fn new(origin: Origin) -> Self {
         let base_ps = match origin {
             Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
@@ -52,7 +52,7 @@ impl Frame {
 
     /// Estimates the origin of a foreign capture from its first pulse. `first` tells when the first
     /// pulse of an axis is due.
-    pub(crate) fn see(&mut self, change: PinChange, first: impl FnOnce(usize) -> Option<Due>) {
+    pub(crate) fn estimate(&mut self, change: PinChange, first: impl FnOnce(usize) -> Option<Due>) {
         if self.base_ps.is_none() && change.pin == Pin::Step && change.level {
             let due = first(usize::from(change.axis));
             self.base_ps = due.and_then(|due| due.origin_for(change.ps));

@@ -148,6 +148,7 @@ pub struct PlanArguments {
 /// The arguments of `carrystep simulate`.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("waves").args(["vcd", "fst"]).multiple(true))]
+#[command(allow_negative_numbers = true)] // so that a negative time is refused as a time
 pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
@@ -174,22 +175,10 @@ pub struct Simulate {
     #[arg(long, value_name = "FILE", requires = "vcd")]
     pub save: Option<PathBuf>,
     /// The waveform begins this long after the start of the first move, s (needs --vcd or --fst).
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        value_parser = seconds,
-        allow_negative_numbers = true,
-        requires = "waves"
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "waves")]
     pub from: Option<f64>,
     /// The waveform ends this long after the start of the first move, s (needs --vcd or --fst).
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        value_parser = seconds,
-        allow_negative_numbers = true,
-        requires = "waves"
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "waves")]
     pub to: Option<f64>,
     /// The waveform shows only these axes, for example x,y (needs --vcd or --fst).
     #[arg(long, value_name = "AXIS", value_delimiter = ',', requires = "waves")]

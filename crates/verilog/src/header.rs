@@ -50,7 +50,8 @@ impl Facts {
         };
         for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in pins.enumerate() {
             lines.push_str(&format!(
-                "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
+                "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, \
+                 DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
             ));
         }
         Self { title: format!("step and direction for {axes}"), lines: lines + guard }

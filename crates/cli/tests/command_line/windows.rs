@@ -22,7 +22,8 @@ fn window_is_a_part_of_the_waveform_and_no_capture() {
     let report = |text: &str| text.lines().filter(|l| !l.starts_with("wrote")).count();
     assert_eq!(report(&whole.stdout), report(&part.stdout));
     folder.run("check part.vcd move.toml").refuses(
-        "part.vcd: it shows only a part of a run (--from, --to or --axes of simulate); a check needs all pulses",
+        "part.vcd: it shows only a part of a run (--from, --to or --axes of simulate); a check needs \
+         all pulses",
     );
 }
 
