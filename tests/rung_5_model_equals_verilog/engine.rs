@@ -118,7 +118,7 @@ fn random_programs_of_one_and_of_eight_axes_in_icarus() {
     in_verilog(
         Level::Icarus,
         &build(8, 112_000_000, 16, StartPhase::Zero, LimitWiring::Pair),
-        100_000,
+        50_000,
     );
 }
 

@@ -13,7 +13,7 @@ use carrystep_tools::kept;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of mutants in every test run: the first ones of all.
-const FEW: usize = 40;
+const FEW: usize = 24;
 /// Number of mutants if `CARRYSTEP_MUTANTS` is `all`, or `write`, which also rewrites the list of
 /// survivors.
 const ALL: usize = 200;

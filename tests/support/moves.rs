@@ -56,8 +56,8 @@ fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
 pub fn nudge() -> (EngineBuild, Plan) {
     let machine = Machine::load(&root().join("sim/six-axis.toml")).expect("the shipped machine");
     let engine = machine.engine();
-    let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.1, y = -0.1, z = 0.01, a = 1, b = -0.2, c = 5 }\n";
-    let text = format!("{to}{}", to.replace("x = 0.1, y = -0.1", "x = -0.1, y = 0.1"));
+    let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.025, y = -0.025, z = 0.005, a = 0.3, b = -0.05, c = 1 }\n";
+    let text = format!("{to}{}", to.replace("x = 0.025, y = -0.025", "x = -0.025, y = 0.025"));
     let source = SourceText { path: "nudge.toml".into(), text: text.into() };
     let file = MoveFile::of_moves(machine, source).expect("fine moves");
     (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))

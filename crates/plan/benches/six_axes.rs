@@ -1,4 +1,4 @@
-//! Benchmark: the time to plan one move of six axes, fits included. Run it with `cargo bench -p
+//! Benchmark: the time to plan one move of six axes, and a file of a hundred, fits included. Run it with `cargo bench -p
 //! carrystep-plan`.
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
@@ -11,8 +11,9 @@ fn main() {
     divan::main();
 }
 
-/// A move of six axes with up to 20 000 steps and a fit tolerance of one tick of 1 us.
-fn six_axes(profile: &str) -> MoveFile {
+/// So many moves of six axes with up to 20 000 steps and a fit tolerance of one tick of 1 us, there
+/// and back.
+fn six_axes(profile: &str, moves: usize) -> MoveFile {
     let mut text = String::from("[machine]\n");
     for name in ["x", "y", "z", "a", "b", "c"] {
         writeln!(
@@ -22,14 +23,25 @@ fn six_axes(profile: &str) -> MoveFile {
         )
         .expect("a string takes it");
     }
-    let to = "to = { x = 20_000, y = -16_000, z = 500, a = 9_000, b = -12_000, c = 3_000 }";
-    writeln!(text, "[[move]]\nprofile = \"{profile}\"\n{to}").expect("a string takes it");
+    let there = "{ x = 20_000, y = -16_000, z = 500, a = 9_000, b = -12_000, c = 3_000 }";
+    let back = "{ x = 0, y = 0, z = 0, a = 0, b = 0, c = 0 }";
+    for to in [there, back].into_iter().cycle().take(moves) {
+        writeln!(text, "[[move]]\nprofile = \"{profile}\"\nto = {to}").expect("a string takes it");
+    }
     MoveFile::from_source(SourceText { path: "bench.toml".into(), text: text.into() })
         .expect("a move file")
 }
 
-#[divan::bench(args = ["trapezoid", "scurve", "logistic", "sine"])]
+const KINDS: [&str; 4] = ["trapezoid", "scurve", "logistic", "sine"];
+
+#[divan::bench(args = KINDS)]
 fn one_move(bencher: divan::Bencher<'_, '_>, profile: &str) {
-    let file = six_axes(profile);
+    let file = six_axes(profile, 1);
+    bencher.bench(|| plan::<f64>(&file).expect("a plan"));
+}
+
+#[divan::bench(args = KINDS)]
+fn hundred_moves(bencher: divan::Bencher<'_, '_>, profile: &str) {
+    let file = six_axes(profile, 100);
     bencher.bench(|| plan::<f64>(&file).expect("a plan"));
 }

@@ -4,6 +4,7 @@
 //! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. The exact check
 //! (`check.rs`) repeats every bound that is kept here.
 
+use crate::edges::triples;
 use crate::limits::ExactLimits;
 
 /// What a run of one cubic should do, in the direction of travel.
@@ -34,6 +35,25 @@ pub(crate) struct Bend {
     pub j: i128,
 }
 
+impl Bend {
+    /// The nearest registers with which a falling run of `ticks` ticks travels `distance` and comes
+    /// to rest without reversing.
+    pub fn landing(self, ticks: i128, distance: i128, limits: &ExactLimits) -> Self {
+        let Self { a, j } = self;
+        let doubled_middle = 2 * a + (ticks - 2) * j;
+        let wanted = Wanted {
+            ticks,
+            distance,
+            doubled_middle,
+            jerk: j,
+            one_way: true,
+            least: 0,
+            first: false,
+        };
+        wanted.within(limits)
+    }
+}
+
 /// Bounds of A, both inclusive.
 #[derive(Debug, Clone, Copy)]
 struct Range {
@@ -42,11 +62,15 @@ struct Range {
 }
 
 impl Range {
-    /// Restricts A to values with `slope` A + `rest` >= 0.
+    /// Restricts A to values with `slope` A + `rest` >= 0. Most bounds hold at the end that they
+    /// concern already, and need no division.
     fn keep(&mut self, slope: i128, rest: i128) {
+        let holds = |a: i128| slope.checked_mul(a).is_some_and(|product| product >= -rest);
         if slope > 0 {
-            self.low = self.low.max(-rest.div_euclid(slope));
-        } else {
+            if !holds(self.low) {
+                self.low = self.low.max(-rest.div_euclid(slope));
+            }
+        } else if !holds(self.high) {
             self.high = self.high.min(rest.div_euclid(-slope));
         }
     }
@@ -113,7 +137,7 @@ pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
     if j == 0 {
         return Some(0);
     }
-    let triples = (n <= u32::MAX.into()).then(|| n * (n - 1) * (n - 2) / 6)?;
+    let triples = triples(u32::try_from(n).ok()?.into());
     triples.checked_mul(j).filter(|distance| distance.abs() < 1 << 120)
 }
 

@@ -3,7 +3,7 @@
 //! All computations here are in integers and independent of how the segments were found. The rules
 //! may change only together with [`Broken`].
 
-use crate::edges::travel;
+use crate::edges::{speed, travel};
 use crate::error::Broken;
 use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
@@ -82,16 +82,16 @@ pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits)
     (sixfold + 5) / 6
 }
 
-/// V in the first and last tick, and on both sides of the zero of A. The extremes of V are among
-/// these values.
+/// V in the first and last tick, and on both sides of the zero of A if that lies between them. The
+/// extremes of V are among these values.
 pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
-    let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
-    let last = i128::from(segment.ticks) - 1;
-    let vertex = if j == 0 { 0 } else { (-a).div_euclid(j) };
-    [0, last, vertex, vertex + 1].into_iter().map(move |k| {
-        let k = k.clamp(0, last);
-        v + k * a + k * (k - 1) / 2 * j
-    })
+    let last = u64::from(segment.ticks) - 1;
+    let (a, j) = (i128::from(segment.a), i128::from(segment.j));
+    let turns = (a < 0) != (a + i128::from(last) * j < 0);
+    let vertex = if turns { u64::try_from((-a).div_euclid(j)).unwrap_or(0) } else { 0 };
+    let inner = turns.then(|| [vertex, vertex + 1].map(|k| k.min(last)));
+    let segment = *segment;
+    [0, last].into_iter().chain(inner.into_iter().flatten()).map(move |k| speed(&segment, k))
 }
 
 #[cfg(test)]

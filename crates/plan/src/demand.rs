@@ -3,7 +3,6 @@
 //! The rules of each kind of profile are in `kinds.rs` of the crate `profile`.
 
 use crate::error::PlanError;
-use crate::limits::float_limits;
 use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
@@ -43,19 +42,20 @@ pub(crate) fn float<F: Real>(n: u64) -> F {
 }
 
 /// Returns the common duration of all axes and the profile of each: in the given time, or without
-/// one as fast as the limits allow, rounded up to whole ticks.
+/// one as fast as the limits allow, rounded up to whole ticks. `limits` are those of the axes.
 ///
 /// # Errors
 /// [`PlanError::Refused`], [`PlanError::NotWholeTicks`] or [`PlanError::TooLong`].
 pub(crate) fn demand<F: Real>(
     file: &MoveFile,
+    limits: &[Limits<F>],
     index: usize,
     time: Option<&BigDecimal>,
 ) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
     let timebase = file.machine.timebase;
     let moved = &file.moves[index];
-    let own: Vec<(F, Limits<F>)> = (file.machine.axes.iter().zip(&moved.steps))
-        .map(|(axis, steps)| (float(steps.unsigned_abs()), float_limits(axis)))
+    let own: Vec<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
+        .map(|(&limits, steps)| (float(steps.unsigned_abs()), limits))
         .collect();
     let mut axes = own.clone();
     let straight = moved.path == PathKind::Straight;

@@ -6,20 +6,31 @@
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Segment, Timebase};
 
-/// Units travelled in the first `n` ticks of a segment.
-pub(crate) fn travel(segment: &Segment, n: i128) -> i128 {
+/// The number of pairs among `n` things, n(n-1)/2; `n` is below 2^32.
+pub(crate) fn pairs(n: u64) -> i64 {
+    (n * n.saturating_sub(1) / 2).cast_signed()
+}
+
+/// The number of triples among `n` things, n(n-1)(n-2)/6; `n` is below 2^32. One of the two factors
+/// is a multiple of 3, so that no 128-bit division is needed.
+pub(crate) fn triples(n: u64) -> i128 {
+    let (pairs, third) = (pairs(n), n.saturating_sub(2).cast_signed());
+    let (pairs, third) = if third % 3 == 0 { (pairs, third / 3) } else { (pairs / 3, third) };
+    i128::from(pairs) * i128::from(third)
+}
+
+/// Units travelled in the first `n` ticks of a segment, at most all of them.
+pub(crate) fn travel(segment: &Segment, n: u64) -> i128 {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
-    let pairs = n * (n - 1) / 2;
-    // n(n-1)(n-2)/6 is a whole number. The product is skipped where J is 0, because for a long
-    // segment it may not fit into an i128.
-    let triples = if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 };
-    n * v + pairs * a + triples * j
+    // The product is skipped where J is 0, because for a long segment it may not fit into an i128.
+    let by_jerk = if j == 0 { 0 } else { triples(n) * j };
+    i128::from(n) * v + i128::from(pairs(n)) * a + by_jerk
 }
 
 /// V in tick `k` of a segment, counted from 0, in units per tick.
-fn speed(segment: &Segment, k: i128) -> i128 {
+pub(crate) fn speed(segment: &Segment, k: u64) -> i128 {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
-    v + k * a + k * (k - 1) / 2 * j
+    v + i128::from(k) * a + i128::from(pairs(k)) * j
 }
 
 /// The first tick in which V is not 0, counted from 0. A segment that starts at V = 0 moves from
@@ -51,9 +62,9 @@ pub(crate) fn edge(
     let target = i128::from(k) * ONE_STEP;
     let passed = |p: i128| if backward { p < ONE_STEP - target } else { p >= target };
     let mut p = i128::from(start);
-    let mut before = 0_i128;
+    let mut before = 0_u64;
     for segment in segments {
-        let ticks = i128::from(segment.ticks);
+        let ticks = u64::from(segment.ticks);
         let end = p + travel(segment, ticks);
         if passed(end) {
             // Bisects for the least n for which the edge is at or before the end of tick n.
@@ -65,7 +76,9 @@ pub(crate) fn edge(
             let old = p + travel(segment, low);
             let q = phase(old, speed(segment, low), timebase.phase_bits());
             let clocks = i128::from(timebase.clocks_per_tick());
-            return Some((before + low) * clocks + q * i128::from(timebase.clocks_per_phase()));
+            return Some(
+                i128::from(before + low) * clocks + q * i128::from(timebase.clocks_per_phase()),
+            );
         }
         p = end;
         before += ticks;

@@ -102,8 +102,14 @@ impl<F: Real> Fitter<'_, F> {
             if distance > end - done && !ends {
                 return None;
             }
-            let bend = Bend { a: -a - (i128::from(ticks) - 2) * j, j };
-            let distance = if ends { end - done } else { distance };
+            let reversed = Bend { a: -a - (i128::from(ticks) - 2) * j, j };
+            // The last segment also corrects what the segments before it are off. Its V must not
+            // fall below zero.
+            let (bend, distance) = if ends {
+                (reversed.landing(ticks.into(), end - done, self.limits), end - done)
+            } else {
+                (reversed, distance)
+            };
             let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
             self.rows.clear();
             let samples = self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);

@@ -3,8 +3,10 @@
 //! The directions of rounding ensure that a checked plan does not exceed a limit; they may not
 //! change.
 
-use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use bigdecimal::num_bigint::BigInt;
+use bigdecimal::{BigDecimal, ToPrimitive};
 use carrystep_core::Timebase;
+use carrystep_core::fixed::FRACTION_BITS;
 use carrystep_files::Axis;
 use carrystep_profile::{Limits, Real};
 
@@ -28,15 +30,15 @@ impl ExactLimits {
     /// Converts the limits of an axis. Returns `None` if one of them exceeds an i128; the check of
     /// the machine file already refuses such a limit.
     pub fn new<F: Real>(axis: &Axis, timebase: &Timebase) -> Option<Self> {
-        let tick = BigDecimal::new(timebase.tick_ns().into(), 9);
-        let speed = units(&axis.speed_limit, &[&tick])?;
+        let units = |value, ticks| units(value, timebase.tick_ns(), ticks);
+        let speed = units(&axis.speed_limit, 1)?;
         let relative = (F::epsilon().to_f64()? * 64.0).max(1e-9);
         Some(Self {
-            start_speed: units(&axis.start_speed, &[&tick])?,
+            start_speed: units(&axis.start_speed, 1)?,
             speed,
-            acceleration: units(&axis.accel_limit, &[&tick, &tick])?,
+            acceleration: units(&axis.accel_limit, 2)?,
             // A jerk limit beyond an i128 limits nothing.
-            jerk: axis.jerk_limit.as_ref().and_then(|jerk| units(jerk, &[&tick, &tick, &tick])),
+            jerk: axis.jerk_limit.as_ref().and_then(|jerk| units(jerk, 3)),
             tolerance: (speed as f64 * relative) as i128 + 1,
         })
     }
@@ -48,10 +50,15 @@ impl ExactLimits {
     }
 }
 
-fn units(value: &BigDecimal, ticks: &[&BigDecimal]) -> Option<i128> {
-    let one_step = BigDecimal::from(carrystep_core::fixed::ONE_STEP);
-    let product = ticks.iter().fold(value * one_step, |product, &tick| product * tick);
-    product.with_scale_round(0, RoundingMode::Down).to_i128()
+/// Converts `value` steps per s, s^2 or s^3 (`ticks` is the power) to units of 2^-64 step per power
+/// of a tick of `tick_ns`, rounded down. The decimal is digits / 10^scale, and a tick is tick_ns /
+/// 10^9 s.
+fn units(value: &BigDecimal, tick_ns: u64, ticks: u32) -> Option<i128> {
+    let (digits, scale) = value.as_bigint_and_scale();
+    let units = (&*digits << FRACTION_BITS) * BigInt::from(tick_ns).pow(ticks);
+    let tens = scale + 9 * i64::from(ticks);
+    let power = BigInt::from(10).pow(u32::try_from(tens.unsigned_abs()).ok()?);
+    if tens < 0 { units * power } else { units / power }.to_i128()
 }
 
 /// The same limits in steps and seconds, as floats. A missing jerk limit is infinite.

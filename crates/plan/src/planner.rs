@@ -12,7 +12,7 @@ use crate::direction::{Pins, Strokes, borrows, turning_rest};
 use crate::edges;
 use crate::error::{Broken, PlanError};
 use crate::fit::Fitter;
-use crate::limits::ExactLimits;
+use crate::limits::{ExactLimits, float_limits};
 use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
@@ -25,7 +25,7 @@ use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
 use carrystep_files::{Axis, Move, MoveFile};
-use carrystep_profile::{Profile, Real, SharedProfile, Widened};
+use carrystep_profile::{Limits, Profile, Real, SharedProfile, Widened};
 use std::sync::Arc;
 
 /// Plans all moves of a file, with profiles computed in floats of type `F`.
@@ -38,10 +38,9 @@ use std::sync::Arc;
 /// A [`PlanError`] names the move and the axis, the limit that refuses the move, and, where one is
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
-    let mut planner = Planner::new::<F>(file)?;
-    let moves = (0..file.moves.len())
-        .map(|index| planner.plan_move::<F>(index))
-        .collect::<Result<_, _>>()?;
+    let mut planner = Planner::<F>::new(file)?;
+    let moves =
+        (0..file.moves.len()).map(|index| planner.plan_move(index)).collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
 }
 
@@ -59,10 +58,11 @@ struct Place {
     axis: usize,
 }
 
-struct Planner<'a> {
+struct Planner<'a, F> {
     file: &'a MoveFile,
     build: Build,
     limits: Vec<ExactLimits>,
+    float_limits: Vec<Limits<F>>,
     pins: Vec<Pins>,
     /// Ticks planned so far, from the origin.
     ticks: u64,
@@ -78,8 +78,8 @@ struct Draft<F: Real> {
     rest: u64,
 }
 
-impl<'a> Planner<'a> {
-    fn new<F: Real>(file: &'a MoveFile) -> Result<Self, PlanError> {
+impl<'a, F: Real> Planner<'a, F> {
+    fn new(file: &'a MoveFile) -> Result<Self, PlanError> {
         let timebase = file.machine.timebase;
         let exact = |axis: &Axis| {
             ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
@@ -88,15 +88,16 @@ impl<'a> Planner<'a> {
             file,
             build: file.machine.build()?,
             limits: file.machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
+            float_limits: file.machine.axes.iter().map(float_limits).collect(),
             pins: vec![Pins::new(&timebase); file.machine.axes.len()],
             ticks: 0,
         })
     }
 
-    fn plan_move<F: Real>(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
+    fn plan_move(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
         let time = self.file.moves[index].time.as_ref();
         let (clock, drafts) =
-            self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
+            self.drafts(index, time).map_err(|error| self.explained(index, error))?;
         let axes = &self.file.machine.axes;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
@@ -122,12 +123,12 @@ impl<'a> Planner<'a> {
 
     /// Plans all axes of a move, in the given time in seconds, or without one as fast as the limits
     /// allow.
-    fn drafts<F: Real>(
+    fn drafts(
         &self,
         index: usize,
         time: Option<&BigDecimal>,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
-        let (clock, profiles) = demand::<F>(self.file, index, time)?;
+        let (clock, profiles) = demand(self.file, &self.float_limits, index, time)?;
         let axes = &self.file.machine.axes;
         let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
             self.draft(Place { index, axis }, profile, &clock)
@@ -139,17 +140,16 @@ impl<'a> Planner<'a> {
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
     /// longest time that works. It is found by bisection between the shortest and the given time;
     /// each candidate is planned as a trial. Every other error is returned unchanged.
-    fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
+    fn explained(&self, index: usize, error: PlanError) -> PlanError {
         let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } =
             error
         else {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest =
-            self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let shortest = self.drafts(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
         let given = self.file.moves[index].time.as_ref().and_then(BigDecimal::to_f64);
-        let works = |time: &BigDecimal| self.drafts::<F>(index, Some(time)).is_ok();
+        let works = |time: &BigDecimal| self.drafts(index, Some(time)).is_ok();
         let longest = shortest
             .zip(given)
             .and_then(|(least, given)| longest_time(least, given, timebase, works));
@@ -160,7 +160,7 @@ impl<'a> Planner<'a> {
         PlanError::TooSlow { index, axis, broken, least_speed, longest }
     }
 
-    fn draft<F: Real>(
+    fn draft(
         &self,
         place: Place,
         profile: SharedProfile<F>,
@@ -198,7 +198,7 @@ impl<'a> Planner<'a> {
 
     /// Returns the segments of the motion alone. The rest before it has already travelled
     /// `borrowed` units (0 or 1) of the distance.
-    fn motion<F: Real>(
+    fn motion(
         &self,
         place: Place,
         steps: i64,
@@ -287,11 +287,7 @@ impl<'a> Planner<'a> {
     }
 
     /// The limits that the integers of one axis must keep in one move.
-    fn limits<F: Real>(
-        &self,
-        Place { index, axis }: Place,
-        profile: &dyn Profile<F>,
-    ) -> ExactLimits {
+    fn limits(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
         let limits = self.limits[axis];
         if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
             return limits;
@@ -307,7 +303,7 @@ impl<'a> Planner<'a> {
     /// travelled a unit of it, runs the exact check on the motion alone, tests that the rest
     /// travels what it has borrowed, updates the recorded state of the axis' pins, puts the rest
     /// before the motion, and marks the last segment.
-    fn finish<F: Real>(
+    fn finish(
         &mut self,
         place: Place,
         draft: Draft<F>,

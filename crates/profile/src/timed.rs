@@ -26,9 +26,9 @@ fn fastest_top<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
 ) -> F {
-    largest(F::zero(), limits.speed, |top| {
+    largest(F::zero(), limits.speed, distance, |top| {
         let (up, down) = ramps(limits, top);
-        up.distance() + down.distance() <= distance
+        up.distance() + down.distance()
     })
 }
 
@@ -48,10 +48,17 @@ pub(crate) fn least_time<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
 ) -> F {
-    if distance <= F::zero() {
-        return F::zero();
-    }
-    time_at(distance, fastest_top(distance, limits, ramps), limits, ramps)
+    least_time_at(distance, fastest_top(distance, limits, ramps), limits, ramps)
+}
+
+/// Least time of a move whose greatest top speed is known, seconds.
+fn least_time_at<F: Real, R: Curve<F>>(
+    distance: F,
+    fastest: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
+    if distance <= F::zero() { F::zero() } else { time_at(distance, fastest, limits, ramps) }
 }
 
 /// Returns the move that takes exactly `time` seconds. Its top speed is the greatest one at which
@@ -66,15 +73,16 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     ramps: &impl Ramps<F, R>,
 ) -> Result<RampedMove<F, R>, LimitRefusal> {
     let distance = distance.max(F::zero());
-    let least = least_time(distance, limits, ramps);
+    let fastest = fastest_top(distance, limits, ramps);
+    let least = least_time_at(distance, fastest, limits, ramps);
     if time.is_nan() || limits.too_short(time, least) {
         return Err(refusal(distance, time, least, limits, ramps));
     }
-    let (mean, fastest) = (distance / time, fastest_top(distance, limits, ramps));
+    let mean = distance / time;
     // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
     // speed.
     let top =
-        largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
+        largest(mean.min(fastest), fastest, -time, |top| -time_at(distance, top, limits, ramps));
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }

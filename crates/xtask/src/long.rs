@@ -48,8 +48,8 @@ const RUNS: [Run; 12] = [
     },
     Run {
         name: "repeats",
-        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model",
-        asks: &[("CARRYSTEP_REPEATS", "all")],
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, 300 random machines home",
+        asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
         cargo: &[
             "--test",
             "rung_3_fast_model_equals_model",
@@ -57,12 +57,15 @@ const RUNS: [Run; 12] = [
             "rung_4_model_equals_rust_hdl",
             "--test",
             "rung_5_model_equals_verilog",
+            "--test",
+            "homing",
             "--",
             "many_edges",
             "the_demo",
             "every_profile",
             "golden_vectors",
             "parameters_of_others",
+            "random_machines",
         ],
     },
     Run {

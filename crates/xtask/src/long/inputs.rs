@@ -55,6 +55,8 @@ pub const INPUTS: [Inputs; 12] = [
             "tests/rung_3_fast_model_equals_model/",
             "tests/rung_4_model_equals_rust_hdl/",
             "tests/rung_5_model_equals_verilog/",
+            "crates/link/",
+            "crates/virtual-board/",
         ],
     ),
     (
