@@ -7,45 +7,45 @@ use crate::error::TraceError;
 use crate::follow::{Follower, Pulse};
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::Timeline;
-use std::fmt;
 use std::io::Write;
 
 const HEAD: [&str; 6] = ["axis", "pulse", "time_s", "speed_steps_per_s", "direction", "error_ns"];
 
-/// Writes a line for every rising edge of STEP, with the columns
+/// Returns a writer of a line for every rising edge of STEP, with the columns
 /// `axis,pulse,time_s,speed_steps_per_s,direction,error_ns`.
 ///
 /// Times count from the origin. The speed is that of the period which the pulse ends, without a
 /// sign; it is empty for the first pulse of a direction. The error is empty beyond the profile's
-/// last pulse.
-pub struct CsvWriter<'a, W: Write> {
-    out: csv::Writer<W>,
+/// last pulse. `axes` are the names and profiles; `origin_ps` is the load of the first move plus the
+/// latency L, ps of the capture.
+pub fn csv_writer<'a>(
+    out: impl Write + 'a,
+    timebase: &Timebase,
+    phase: StartPhase,
+    origin_ps: i64,
+    axes: impl IntoIterator<Item = (&'a str, &'a Timeline)>,
+) -> Box<dyn PinSink + 'a> {
+    let follow = |(name, timeline)| (name, Follower::new(timeline, phase, timebase, origin_ps));
+    boxed(Box::new(out), origin_ps, axes.into_iter().map(follow).collect())
+}
+
+/// The same without a parameter, so that all of it is compiled with this crate.
+fn boxed<'a>(
+    out: Box<dyn Write + 'a>,
+    origin_ps: i64,
+    axes: Vec<(&'a str, Follower<'a>)>,
+) -> Box<dyn PinSink + 'a> {
+    Box::new(CsvWriter { out: csv::Writer::from_writer(out), origin_ps, axes, begun: false })
+}
+
+struct CsvWriter<'a> {
+    out: csv::Writer<Box<dyn Write + 'a>>,
     origin_ps: i64,
     axes: Vec<(&'a str, Follower<'a>)>,
     begun: bool,
 }
 
-impl<W: Write> fmt::Debug for CsvWriter<'_, W> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("CsvWriter").field("axes", &self.axes).finish_non_exhaustive()
-    }
-}
-
-impl<'a, W: Write> CsvWriter<'a, W> {
-    /// A writer for these axes, by name and profile. `origin_ps` is the load of the first move plus
-    /// the latency L, ps of the capture.
-    pub fn new(
-        out: W,
-        timebase: &Timebase,
-        phase: StartPhase,
-        origin_ps: i64,
-        axes: impl IntoIterator<Item = (&'a str, &'a Timeline)>,
-    ) -> Self {
-        let follow = |(name, timeline)| (name, Follower::new(timeline, phase, timebase, origin_ps));
-        let axes = axes.into_iter().map(follow).collect();
-        Self { out: csv::Writer::from_writer(out), origin_ps, axes, begun: false }
-    }
-
+impl CsvWriter<'_> {
     fn begin(&mut self) -> Result<(), csv::Error> {
         if !self.begun {
             self.begun = true;
@@ -78,7 +78,7 @@ fn seconds(ps: i128) -> String {
     format!("{sign}{}.{:012}", ps / SECOND, ps % SECOND)
 }
 
-impl<W: Write> PinSink for CsvWriter<'_, W> {
+impl PinSink for CsvWriter<'_> {
     fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
         if let Some((_, follower)) = self.axes.get_mut(usize::from(level.axis)) {
             follower.initial(level.pin, level.level);

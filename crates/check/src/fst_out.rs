@@ -2,6 +2,7 @@
 //!
 //! `waves.rs` decides what is written and when; this file only holds the file format.
 
+use crate::edge::PinSink;
 use crate::vcd_own::OwnCapture;
 use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
 use crate::waves::{WaveWriter, Waves};
@@ -14,24 +15,29 @@ use std::io::{self, Seek, Write};
 /// Changes are kept in memory up to this many bytes and then written as a block.
 const BLOCK: usize = 1 << 20;
 
-/// An FST file that is being written.
-pub struct FstFormat<W: Write + Seek>(State<W>);
-
-enum State<W: Write + Seek> {
-    New(W),
-    Body(Box<FstBodyWriter<W>>),
-    /// The file is complete, or writing has failed.
-    Over,
+/// Returns a writer of an FST, which writes the header with the first change.
+pub fn fst_writer<'a>(out: impl Write + Seek + 'a, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
+    boxed(Box::new(out), waves)
 }
 
-/// Writes an FST from a stream of pin changes.
-pub type FstWriter<'a, W> = WaveWriter<'a, FstFormat<W>>;
+/// The same without a parameter, so that all of it is compiled with this crate.
+fn boxed<'a>(out: Box<dyn Output + 'a>, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
+    Box::new(WaveWriter::new(FstFormat(State::New(out)), waves))
+}
 
-impl<'a, W: Write + Seek> FstWriter<'a, W> {
-    /// A writer that has not written anything. It writes the header with the first change.
-    pub fn new(out: W, waves: Waves<'a>) -> Self {
-        Self::of(FstFormat(State::New(out)), waves)
-    }
+/// A file that can be written anywhere.
+trait Output: Write + Seek {}
+
+impl<W: Write + Seek> Output for W {}
+
+/// An FST file that is being written.
+struct FstFormat<'a>(State<'a>);
+
+enum State<'a> {
+    New(Box<dyn Output + 'a>),
+    Body(Box<FstBodyWriter<Box<dyn Output + 'a>>>),
+    /// The file is complete, or writing has failed.
+    Over,
 }
 
 /// Converts an error of the library; an error of the system is passed on unchanged.
@@ -42,8 +48,8 @@ fn told(error: FstWriteError) -> io::Error {
     }
 }
 
-impl<W: Write + Seek> FstFormat<W> {
-    fn body(&mut self) -> io::Result<&mut FstBodyWriter<W>> {
+impl<'a> FstFormat<'a> {
+    fn body(&mut self) -> io::Result<&mut FstBodyWriter<Box<dyn Output + 'a>>> {
         match &mut self.0 {
             State::Body(body) => Ok(body),
             State::New(_) | State::Over => Err(io::Error::other("nothing is declared")),
@@ -51,7 +57,7 @@ impl<W: Write + Seek> FstFormat<W> {
     }
 }
 
-impl<W: Write + Seek> Format for FstFormat<W> {
+impl Format for FstFormat<'_> {
     type Id = FstSignalId;
     const NAME: &'static str = "the FST";
 

@@ -1,7 +1,7 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
+//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], and the
 //! [`Plot`]. [`check_beside`] is a checker that uses other cores. The modules are private; the
 //! public items are listed below.
 
@@ -36,11 +36,11 @@ mod waves;
 pub use axis_check::AxisSetup;
 pub use beside::check_beside;
 pub use checker::{Checker, Setup};
-pub use csv_out::CsvWriter;
+pub use csv_out::csv_writer;
 pub use edge::{Pin, PinChange, PinSink, Tee};
 pub use error::{ReadError, TraceError};
 pub use follow::{Follower, Pulse};
-pub use fst_out::{FstFormat, FstWriter};
+pub use fst_out::fst_writer;
 pub use gtkw::save_file;
 pub use origin::Origin;
 pub use pins::{PinWatch, Shortest, Stretch};
@@ -48,9 +48,8 @@ pub use plot::{Plot, PlotAxis, PlotSetup};
 pub use report::{AxisReport, CheckReport, OriginKind};
 pub use signal_map::SignalMap;
 pub use vcd_in::{Played, VcdReader};
-pub use vcd_out::{VcdFormat, VcdWriter};
+pub use vcd_out::vcd_writer;
 pub use vcd_own::OwnCapture;
 pub use vcd_pins::PinsVcd;
 pub use view::View;
-pub use wave_format::Format;
-pub use waves::{AxisWaves, WaveWriter, Waves};
+pub use waves::{AxisWaves, Waves};

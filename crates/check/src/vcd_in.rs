@@ -6,15 +6,15 @@ use crate::signal_map::{Signal, SignalMap};
 use crate::vcd_own::{self, OwnCapture};
 use std::collections::HashMap;
 use std::fmt;
-use std::io::{self, BufRead, Chain};
+use std::io::{self, BufRead as _, BufReader, Chain, Read};
 use vcd::{Command, IdCode, ParseError, Parser, TimescaleUnit, Value, Vector};
 
 /// The greatest depth of nested scopes; no real design is nested more deeply.
 const MAX_DEPTH: usize = 256;
 
 /// A VCD whose header has been read and whose pins have been found.
-pub struct VcdReader<R> {
-    parser: Parser<Blanked<R>>,
+pub struct VcdReader<'a> {
+    parser: Parser<Blanked<'a>>,
     unit: Unit,
     own: Option<OwnCapture>,
     /// The pins that each signal carries: the bit, counted from the least significant, and the
@@ -62,7 +62,7 @@ impl Unit {
     }
 }
 
-impl<R> fmt::Debug for VcdReader<R> {
+impl fmt::Debug for VcdReader<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("VcdReader")
             .field("own", &self.own)
@@ -73,15 +73,16 @@ impl<R> fmt::Debug for VcdReader<R> {
 
 /// A capture with a blank appended. Not every program ends its last line, and a token that is ended
 /// by the end of the file is complete.
-type Blanked<R> = Chain<R, &'static [u8]>;
+///
+/// The buffer is behind the blank, because the parser reads byte by byte.
+type Blanked<'a> = BufReader<Chain<Box<dyn Read + 'a>, &'static [u8]>>;
+
+/// Bytes that are read at once.
+const BUFFER: usize = 1 << 16;
 
 /// Converts the parser's errors. A broken token at the very end of the file means that the file was
 /// cut off.
-fn sorted<R: BufRead>(
-    error: io::Error,
-    parser: &mut Parser<Blanked<R>>,
-    missing: &'static str,
-) -> ReadError {
+fn sorted(error: io::Error, parser: &mut Parser<Blanked<'_>>, missing: &'static str) -> ReadError {
     let line = parser.line();
     let Some(parse) = error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) else {
         let cut = error.kind() == io::ErrorKind::UnexpectedEof;
@@ -94,19 +95,29 @@ fn sorted<R: BufRead>(
 }
 
 /// Whether the last token reached the very end of the file.
-fn at_end<R: BufRead>(parser: &mut Parser<Blanked<R>>) -> bool {
+fn at_end(parser: &mut Parser<Blanked<'_>>) -> bool {
     parser.reader().fill_buf().is_ok_and(<[u8]>::is_empty)
 }
 
-impl<R: BufRead> VcdReader<R> {
+impl<'a> VcdReader<'a> {
     /// Reads the header and finds STEP and DIR of every axis.
     ///
     /// # Errors
     /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, lacks a
     /// signal, or shows only a part of a run.
-    pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
+    pub fn new(reader: impl Read + 'a, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
+        Self::boxed(Box::new(reader), axes, map)
+    }
+
+    /// The same without a parameter, so that all of it is compiled with this crate.
+    fn boxed(
+        reader: Box<dyn Read + 'a>,
+        axes: &[&str],
+        map: &SignalMap,
+    ) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
-        let mut parser = Parser::new(reader.chain(&b" "[..]));
+        let blanked = reader.chain(&b" "[..]);
+        let mut parser = Parser::new(BufReader::with_capacity(BUFFER, blanked));
         let mut scopes: Vec<String> = Vec::new();
         let mut signals = Vec::new();
         let mut unit = None;

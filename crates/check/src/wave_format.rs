@@ -23,7 +23,7 @@ pub(crate) const SCOPE: &str = "carrystep";
 pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
 
 /// A file format of waveforms, with times in ps.
-pub trait Format {
+pub(crate) trait Format {
     /// The identifier of a signal.
     type Id: Copy;
     /// The name of the format in error messages.

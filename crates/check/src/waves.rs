@@ -14,7 +14,6 @@ use crate::view::{Place, View};
 use crate::wave_format::{Format, SIGNALS};
 use carrystep_core::{Segment, StartPhase, Timebase};
 use carrystep_profile::Timeline;
-use std::fmt;
 use std::io;
 
 /// Number of samples of the slow signals over a run, in addition to those at edges and segment
@@ -33,6 +32,8 @@ pub struct Waves<'a> {
     pub total_ticks: u64,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisWaves<'a>>,
+    /// What is written.
+    pub view: View,
 }
 
 /// The values that the waveform of one axis shows beside its pins.
@@ -46,7 +47,7 @@ pub struct AxisWaves<'a> {
 }
 
 /// Writes a waveform from a stream of pin changes.
-pub struct WaveWriter<'a, F: Format> {
+pub(crate) struct WaveWriter<'a, F: Format> {
     out: F,
     own: OwnCapture,
     total_ps: u64,
@@ -71,20 +72,12 @@ struct AxisWriter<'a> {
     v: i64,
 }
 
-impl<F: Format> fmt::Debug for WaveWriter<'_, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("WaveWriter")
-            .field("own", &self.own)
-            .field("time", &self.time)
-            .finish_non_exhaustive()
-    }
-}
-
 impl<'a, F: Format> WaveWriter<'a, F> {
     /// A writer that has not written anything. It writes the header with the first change.
-    pub(crate) fn of(out: F, waves: Waves<'a>) -> Self {
-        let Waves { timebase, phase, origin_ps, total_ticks, axes } = waves;
-        let axes = axes.into_iter().enumerate().map(|(number, axis)| AxisWriter {
+    pub(crate) fn new(out: F, waves: Waves<'a>) -> Self {
+        let Waves { timebase, phase, origin_ps, total_ticks, axes, view } = waves;
+        let shown = axes.into_iter().enumerate().filter(|(number, _)| view.shows(*number));
+        let axes = shown.map(|(number, axis)| AxisWriter {
             number,
             name: axis.name,
             timeline: axis.timeline,
@@ -95,23 +88,14 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         });
         Self {
             out,
-            own: OwnCapture { origin_ps, timebase, is_part: false },
-            view: View::default(),
+            own: OwnCapture { origin_ps, timebase, is_part: view != View::default() },
             total_ps: total_ticks.saturating_mul(tick_ps(&timebase)),
             axes: axes.collect(),
+            view,
             ids: Vec::new(),
             grid: 0,
             time: None,
         }
-    }
-
-    /// Writes only what is in view. This is called before the first change.
-    #[must_use]
-    pub fn within(mut self, view: View) -> Self {
-        self.own.is_part = view != View::default();
-        self.axes.retain(|axis| view.shows(axis.number));
-        self.view = view;
-        self
     }
 
     fn header(&mut self) -> io::Result<()> {

@@ -206,10 +206,10 @@ proptest! {
             // Whatever the reader makes of the bytes, the sinks must accept it.
             let mut checker = Checker::new(machine.setup(Origin::Midpoint));
             let mut copy = Vec::new();
-            let mut writer = VcdWriter::new(&mut copy, machine.waves());
+            let mut writer = vcd_writer(&mut copy, machine.waves());
             let mut tee = Tee::new();
             tee.add(&mut checker);
-            tee.add(&mut writer);
+            tee.add(&mut *writer);
             if let Ok(reader) = VcdReader::new(text.as_slice(), machine.names(), &SignalMap::default()) {
                 let _ = reader.play(&mut tee);
             }

@@ -15,7 +15,7 @@ fn csv_has_a_line_for_every_pulse() {
     let axes = machine.timelines.iter().zip(NAMES).map(|(timeline, name)| (name, timeline));
     play(
         &machine.train(),
-        &mut CsvWriter::new(&mut bytes, &machine.timebase, StartPhase::Half, ORIGIN_PS, axes),
+        &mut *csv_writer(&mut bytes, &machine.timebase, StartPhase::Half, ORIGIN_PS, axes),
     );
     let text = String::from_utf8(bytes).unwrap();
     let lines: Vec<&str> = text.lines().collect();
@@ -35,7 +35,7 @@ fn csv_has_a_line_for_every_pulse() {
 fn csv_of_an_empty_run_has_a_heading() {
     let machine = Machine::steady(1);
     let mut bytes = Vec::new();
-    play(&[], &mut CsvWriter::new(&mut bytes, &machine.timebase, StartPhase::Half, 0, []));
+    play(&[], &mut *csv_writer(&mut bytes, &machine.timebase, StartPhase::Half, 0, []));
     assert_eq!(bytes, b"axis,pulse,time_s,speed_steps_per_s,direction,error_ns\n");
 }
 

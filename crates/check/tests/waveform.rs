@@ -148,8 +148,9 @@ fn at(changes: &[(u64, Shown)], ps: u64) -> Option<Shown> {
 /// Part of a run as VCD and as FST.
 fn parts(machine: &Machine, train: &[PinChange], view: &View) -> [Vec<u8>; 2] {
     let (mut vcd, mut fst) = (Vec::new(), Cursor::new(Vec::new()));
-    play(train, &mut VcdWriter::new(&mut vcd, machine.waves()).within(view.clone()));
-    play(train, &mut FstWriter::new(&mut fst, machine.waves()).within(view.clone()));
+    let waves = || Waves { view: view.clone(), ..machine.waves() };
+    play(train, &mut *vcd_writer(&mut vcd, waves()));
+    play(train, &mut *fst_writer(&mut fst, waves()));
     [vcd, fst.into_inner()]
 }
 

@@ -9,8 +9,8 @@ use crate::progress::RunProgress;
 use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
-    AxisSetup, AxisWaves, CheckReport, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup,
-    Setup, Tee, VcdWriter, Waves, check_beside, save_file,
+    AxisSetup, AxisWaves, CheckReport, Origin, PinSink, Plot, PlotAxis, PlotSetup, Setup, Tee,
+    Waves, check_beside, csv_writer, fst_writer, save_file, vcd_writer,
 };
 use carrystep_files::MoveFile;
 use carrystep_plan::Plan;
@@ -168,6 +168,8 @@ pub fn run(
 
     let setup = check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps });
     let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
+    let total_s = plan.total_ticks() as f64 * timebase.tick_seconds();
+    let view = wanted.part.view(&file.machine, origin_ps, total_s)?;
     let waves = || Waves {
         timebase,
         phase: plan.build.phase,
@@ -181,20 +183,18 @@ pub fn run(
                 segments: Box::new(plan.axis_segments(i)),
             })
             .collect(),
+        view: view.clone(),
     };
-    let total_s = plan.total_ticks() as f64 * timebase.tick_seconds();
-    let view = wanted.part.view(&file.machine, origin_ps, total_s)?;
-    let in_view = || view.clone();
-    let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()).within(in_view()));
-    let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()).within(in_view()));
-    let mut csv = files
-        .csv
-        .as_mut()
-        .map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
+    let phase = plan.build.phase;
+    let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();
+    writers.extend(files.vcd.as_mut().map(|out| vcd_writer(out, waves())));
+    writers.extend(files.fst.as_mut().map(|out| fst_writer(out, waves())));
+    let csv = files.csv.as_mut();
+    writers.extend(csv.map(|out| csv_writer(out, &timebase, phase, origin_ps, named())));
     let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
         let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
-        let (phase, total_ticks) = (plan.build.phase, plan.total_ticks());
+        let total_ticks = plan.total_ticks();
         Plot::new(PlotSetup { title: &title, timebase, phase, origin_ps, total_ticks, axes })
     });
 
@@ -202,15 +202,7 @@ pub fn run(
     let (outcome, check) = check_beside(setup, |checker| -> Result<_, Failure> {
         let mut tee = Tee::new();
         tee.add(checker);
-        if let Some(sink) = vcd.as_mut() {
-            tee.add(sink);
-        }
-        if let Some(sink) = fst.as_mut() {
-            tee.add(sink);
-        }
-        if let Some(sink) = csv.as_mut() {
-            tee.add(sink);
-        }
+        writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
         if let Some(sink) = plot.as_mut() {
             tee.add(sink);
         }
@@ -234,7 +226,7 @@ pub fn run(
     let outcome = outcome?;
     let run_s = started.elapsed().as_secs_f64();
     drop(progress);
-    drop((vcd, fst, csv));
+    drop(writers);
 
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {
         let shown = named().enumerate().filter(|(axis, _)| view.shows(*axis));

@@ -147,18 +147,19 @@ impl Machine {
             origin_ps: ORIGIN_PS,
             total_ticks: self.total_ticks,
             axes: axes.collect(),
+            view: View::default(),
         }
     }
 
     pub fn vcd(&self, train: &[PinChange]) -> Vec<u8> {
         let mut bytes = Vec::new();
-        play(train, &mut VcdWriter::new(&mut bytes, self.waves()));
+        play(train, &mut *vcd_writer(&mut bytes, self.waves()));
         bytes
     }
 
     pub fn fst(&self, train: &[PinChange]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
-        play(train, &mut FstWriter::new(&mut file, self.waves()));
+        play(train, &mut *fst_writer(&mut file, self.waves()));
         file.into_inner()
     }
 

@@ -10,7 +10,6 @@ use carrystep_files::MoveFile;
 use carrystep_plan::plan;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::io::BufReader;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -63,8 +62,8 @@ fn read(
     let map =
         SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
-    let reader = VcdReader::new(BufReader::new(capture), &names, &map)
-        .map_err(|error| unusable(error.to_string()))?;
+    let reader =
+        VcdReader::new(capture, &names, &map).map_err(|error| unusable(error.to_string()))?;
     if let Some(own) = reader.own().filter(|own| own.timebase != plan.build.timebase) {
         return Err(unusable(format!(
             "recorded from gateware with {}, but the machine of {} has {}",

@@ -4,7 +4,7 @@
 use crate::moves::Moves;
 use crate::stopwatch;
 use crate::verilator::Verilated;
-use carrystep_check::{AxisWaves, PinSink, VcdWriter, Waves};
+use carrystep_check::{AxisWaves, PinSink, View, Waves, vcd_writer};
 use carrystep_core::AXES;
 use carrystep_core::ports::Outputs;
 use carrystep_simulators::pins::PinFeed;
@@ -79,8 +79,9 @@ pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
             origin_ps: 0,
             total_ticks: moves.plan.total_ticks(),
             axes: axes.collect(),
+            view: View::default(),
         };
-        simulate(&mut VcdWriter::new(BufWriter::with_capacity(1 << 18, file), waves))
+        simulate(&mut *vcd_writer(file, waves))
     });
     result?;
     Ok(Written { bytes: length(&path)?, seconds: with - without })
