@@ -229,11 +229,23 @@ fn page_gives_the_ticks_of_the_proofs() {
     assert_eq!(few, one, "one sentence gives the clocks of both");
     let [single, six] = [1, 6].map(|axes| clocks("engine", &|case| case[0] == axes));
     let six = six.replace(" and ", " (as shipped) and in ");
+    let pair = clocks("event_wheel", &|case| case[0] == 2);
+    // The cases of the core give their tick in their names.
+    let core = proofs.iter().find(|proof| proof.module == "core").expect("the core");
+    let [small] = &core.cases.iter().filter(|case| case.axes() < 6).collect::<Vec<_>>()[..] else {
+        panic!("one case with fewer axes")
+    };
     pages::says(
         "docs/promises.md",
         &[
             format!("Ticks: {many} clocks in 16 phases, {few} clocks in 4 phases and in 1."),
             format!("with one axis in ticks of {single} clocks, and with six in {six}."),
+            format!("`event_wheel` is also proved with two axes in {pair},"),
+            format!(
+                "and in ticks of {} also {} axes.",
+                small.name,
+                pages::word(small.axes() as u64)
+            ),
         ],
     );
 }

@@ -27,6 +27,9 @@ fn accuracy_page_gives_the_constants_of_planner_and_checker() {
             format!("under {:.2} steps/s (16 phases)", lost * 2_f64.powi(-32) / early),
             format!("Below {least} Q units of 2^-32 step a tick"),
             format!("at most {lost}/{least} of a phase"),
+            format!("the planner lets the axis travel {} units of 2^-32 step", word(whole(lost))),
+            format!("The bisection loses none to {} units", word(whole(lost))),
+            format!("{:.2} steps/s that cruises at its", lost * 2_f64.powi(-32) / early),
             format!("would need over {segments} segments"),
             format!("is a phase and {rounding} ns, plus"),
             format!("moves no edge by more than {shift:.1} ns"),
@@ -316,54 +319,5 @@ fn virtual_board_page_gives_the_times_of_its_pace() {
             format!("than the {} segments that wait there", word(kept)),
             format!("keeps fewer than {} segments waiting", word(kept + 1)),
         ],
-    );
-}
-
-#[test]
-fn protocol_page_gives_the_time_outs_of_the_rust_client() {
-    let host = |text| behind("crates/link/src/host.rs", text);
-    let patience =
-        |name| behind("crates/link/src/host/time.rs", &format!("\n            {name}: "));
-    let session = |text| behind("crates/link/src/session.rs", text);
-    let (resend, silence) = (session("Self { resend: "), patience("silence"));
-    let period = patience("status_period");
-    let watchdog =
-        behind("crates/files/src/machine/guard.rs", "unit_ns: 1_000_000,\n    default: ");
-    let (tries, share) = (word(whole((silence / resend).floor())), part(whole(watchdog / period)));
-    let serial = constant("crates/link/src/line/serial.rs", "AHEAD_MS");
-    // Ten bits for each byte that the client holds, and then the bytes that the system may hold.
-    let held = host("out: [u8; ");
-    let wait = |baud: f64| (10.0 * held / baud * 1e3 + serial).round();
-    let callers = constant("crates/cli/src/control/control_socket.rs", "CALLERS");
-    says(
-        "docs/protocol.md",
-        &[
-            format!("| unacknowledged writes | {} at most", host("const N: usize = ")),
-            format!("send again from `next` on | after {resend} ms |"),
-            format!("longer than the {resend} ms until a lost frame is sent again"),
-            format!("| busy, try again | after {} ms |", session(", pause: ")),
-            format!("give up | after {silence} ms, or {} ms once", patience("lost")),
-            format!("{tries} tries have failed;"),
-            format!("a clear | {} ms at most |", patience("change")),
-            format!("nothing to send | every {period} ms | a {share} of"),
-            format!("usual watchdog time ({watchdog} ms)"),
-            format!("at most {held} bytes and another {serial} ms of the line's time"),
-            format!("{} ms at 115 200 baud, {} ms at 921 600", wait(115_200.0), wait(921_600.0)),
-            format!("Of more than {callers} idle connections"),
-        ],
-    );
-}
-
-#[test]
-fn pages_give_the_margin_of_a_clock_and_the_length_of_an_instruction() {
-    let margin = constant("crates/boards/src/reach.rs", "MARGIN_PERCENT");
-    says("docs/flashing.md", &[format!("more than {margin} % above the recorded clock")]);
-    let clocks = whole(constant("crates/model/src/link/processor.rs", "EXECUTE") + 1.0);
-    says("docs/link.md", &[format!("Each instruction takes {} clocks", word(clocks))]);
-    let bytes = constant("crates/model/src/link/processor.rs", "SIZE");
-    says("docs/link.md", &[format!("the {bytes} received bytes that wait")]);
-    says(
-        "docs/protocol.md",
-        &[format!("up to {} received bytes", bytes - 1.0), format!("all {bytes} are lost")],
     );
 }

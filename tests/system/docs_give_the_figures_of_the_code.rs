@@ -107,6 +107,7 @@ fn machine_file_page_gives_the_ranges_of_the_gateware() {
             format!("time of up to {} rounds each", MAX_ROUNDS - 1),
             format!("time of up to {} rounds.", MAX_DEBOUNCE_SAMPLES - 1),
             format!("over {MIN_BIT_CLOCKS} to {MAX_BIT_CLOCKS}, within {BAUD_PERCENT} %"),
+            format!("cannot make the rate within {BAUD_PERCENT} %, the rate is refused"),
         ],
     );
     assert_eq!(pages::joined("docs/machine-files.md").matches(&pins).count(), 4, "{pins}");
@@ -210,7 +211,6 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!("a read has {asked} bytes and its answer {answered}"),
             format!("has room, 0 to {QUEUE}"),
             format!("the move ({QUEUE} at most)"),
-            format!("({} MHz at 48 MHz)", 48.0 / 5.0),
         ],
     );
     // Ten bits a byte on a UART.

@@ -2,6 +2,7 @@
 //! texts on the pages.
 
 use carrystep_core::AXES;
+use carrystep_core::engine::TIME_SLOT_CLOCKS;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_tests::moves;
 use carrystep_tests::pages::{self, grouped, says, word};
@@ -54,6 +55,9 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
     let time = plan.build.timebase;
     let moved = &plan.moves[0];
     let (pins, steps) = (axis.pins, moved.axes[0].steps);
+    // The first segment ends where the remainder of the half is used up.
+    let (middle, cut) = (moved.ticks as f64 / 2.0, moved.axes[0].segments[0].ticks);
+    let middle = format!("{}{}", grouped(middle as u64), &format!("{:.1}", middle.fract())[1..]);
     // The least time of the axis alone: a triangle from the start speed at the greatest
     // acceleration.
     let alone = 2.0 * ((v * v + a * steps as f64).sqrt() - v) / a;
@@ -68,6 +72,11 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
             format!("an acceleration limit of {accel} units/s^2"),
             format!("= {steps} steps and the axis begins at 0, so N = {steps}."),
             format!("Alone, x would need {:.4} ms.", alone * 1e3),
+            format!("just under the limit of {} steps/s^2.", grouped(a as u64)),
+            format!("The middle of the move is at {middle} ticks"),
+            format!("The cut after {cut} ticks distributes"),
+            format!("in the first {cut} of these ticks"),
+            format!("x has a time slot of {TIME_SLOT_CLOCKS} clocks on the one adder"),
             format!("T = {ms:.3} ms, {} ticks", moved.ticks),
             format!("has {} segments:", word(moved.axes[0].segments.len() as u64)),
             format!("in rounds of {round} ticks"),
@@ -81,6 +90,7 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
 
 #[test]
 fn flow_of_a_move_page_finds_the_first_step_as_addition_does() {
+    const STEP: f64 = ONE_STEP as f64;
     let plan = moves::demo();
     let time = plan.build.timebase;
     let first = plan.moves[0].axes[0].segments[0];
@@ -99,9 +109,19 @@ fn flow_of_a_move_page_finds_the_first_step_as_addition_does() {
     let (whole, clocks, of_phase) = (ticks - 1, time.clocks_per_tick(), time.clocks_per_phase());
     let sum = format!("{whole} x {clocks} + {phase} x {of_phase} + {}", time.latency_clocks());
     let us = whole * time.tick_ns() / 1000;
+    // The profile passes half a step at the constant acceleration of the first segment.
+    let (v, a) = (first.v as f64 / STEP, first.a as f64 / STEP);
+    let v = v - 0.5 * a;
+    let due = ((v * v + a).sqrt() - v) / a * time.tick_ns() as f64;
+    let early = due - (whole * time.tick_ns()) as f64;
+    let of_phase_ns = time.tick_ns() as f64 / f64::from(time.phases());
+    let on_the_pin =
+        whole * u64::from(clocks) + u64::from(phase as u32 * of_phase) + time.latency_clocks();
     says(
         "docs/flow-of-a-move.md",
         &[
+            format!("the edge is {early:.0} ns early, less than one phase of {of_phase_ns} ns."),
+            format!("{clocks} + {sum} = {}.", grouped(u64::from(clocks) + on_the_pin)),
             format!("In tick {ticks} after the start the sum P + V carries"),
             format!("So q = {phase}:"),
             format!("{us} us after the start."),

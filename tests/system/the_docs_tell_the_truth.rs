@@ -59,6 +59,8 @@ fn flow_of_a_move_page_has_the_planned_numbers() {
     let strobe =
         format!("tick {} after configuration, in cycle {}", (start + 1) / clocks, grouped(start));
     assert!(text.contains(&strobe), "not said: {strobe}");
+    let sum = format!("\n    {} + ", grouped(start + 1));
+    assert!(text.contains(&sum), "the first tick begins in the cycle after the strobe: {sum}");
     let mut of_parallel = None;
     let job = Job::new(&plan.build, &program, plan.total_ticks());
     run(Level::Model, &job, &mut |cycle, outputs| {
@@ -217,7 +219,11 @@ fn five_minutes_page_shows_table_1_as_addition_gives_it() {
         })
         .collect();
     assert_eq!(starred, wanted.1);
-    assert!(text.contains(&format!("sixteenth: {} ns", 1000.0 / 16.0)));
+    let time = moves::demo().build.timebase;
+    let (halves, phases) = (pages::word(time.phase_bits().into()), f64::from(time.phases()));
+    let step = format!("a step {halves} times, by additions only,");
+    assert!(pages::joined("docs/five-minutes.md").contains(&step), "not said: {step}");
+    assert!(text.contains(&format!("sixteenth: {} ns", time.tick_ns() as f64 / phases)));
 }
 
 #[test]
