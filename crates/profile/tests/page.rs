@@ -7,12 +7,14 @@ mod pages;
 
 use carrystep_core::ProfileKind;
 use carrystep_profile::rule::{
-    logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
+    logistic, logistic_least_time, logistic_ramp, scurve, scurve_least_time, scurve_ramp, sine,
+    sine_least_time, sine_ramp,
 };
 use carrystep_profile::{
     Curve, CurveFigures, Limits, LogisticRamp, Profile, RampedMove, SHORTFALL, SineRamp, kinds,
 };
 use pages::grouped;
+use serde_json::Value;
 use std::f64::consts::PI;
 
 const PAGE: &str = include_str!("../../../docs/profiles.md");
@@ -205,6 +207,69 @@ fn page_gives_the_errors_of_the_trapezoidal_source() {
 fn page_gives_the_first_step_of_the_trapezoid() {
     let trapezoid = (2.0 / (10_000.0 / 0.2_f64)).sqrt();
     says(&[format!("that of the trapezoid ramp of the same time at {:.2} ms", 1e3 * trapezoid)]);
+}
+
+/// Where the jerk limits a ramp, its time is in proportion to a root of speed over jerk.
+#[test]
+fn page_gives_the_times_of_ramps_that_the_jerk_limits() {
+    let (speed, jerk) = (50_000.0, 1e6);
+    let limits = Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration: 1e9, jerk };
+    let root = |top: f64| (top / jerk).sqrt();
+    let scurve = scurve_ramp(speed, None, &limits).unwrap().duration() / root(speed);
+    let sine = sine_ramp(speed, None, &limits).unwrap().duration() / root(speed);
+    let logistic = logistic_ramp(speed, None, &limits).unwrap();
+    let whole = |factor: f64| {
+        assert!((factor / factor.round() - 1.0).abs() < 1e-9, "{factor}");
+        factor.round()
+    };
+    let w = logistic.asymptote();
+    let factor = logistic.duration() / (w / (6.0 * 3.0_f64.sqrt() * jerk)).sqrt();
+    says(&[
+        format!("a ramp takes {} sqrt(v / j) (scurve)", whole(scurve)),
+        format!("sqrt({} pi v / j) (sine)", whole(sine * sine / PI)),
+        format!("2 ln({}) sqrt(w / (6 sqrt(3) j)) (logistic)", whole((factor / 2.0).exp())),
+    ]);
+}
+
+fn golden(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// A number of a golden file, with its digits.
+fn number(value: &Value) -> f64 {
+    value.as_f64().or_else(|| value.as_str()?.parse().ok()).unwrap()
+}
+
+#[test]
+fn page_gives_what_text_and_listing_of_the_logistic_source_say() {
+    let golden = golden(include_str!("../../../tests/golden/logistic.json"));
+    let sigmoid = &golden["cases"][0]["sigmoid"];
+    let [text, listing] =
+        ["text_1.005", "code_0.995"].map(|of| 1.0 + 1.0 / number(&sigmoid[of]["q"]));
+    let reached = 100.0 * number(&sigmoid["code_0.995"]["omega_end_over_omega"]);
+    says(&[
+        format!("1 + 1/q is {text:.0} in the text and {listing:.0} in the listing."),
+        format!("carrystep uses the {reached:.1} % of the listing."),
+    ]);
+}
+
+#[test]
+fn page_gives_the_loss_of_a_dropped_remainder() {
+    let golden = golden(include_str!("../../../tests/golden/trapezoid_austin.json"));
+    let integer = |name: &str| number(&golden["avr446_integer"][name]);
+    let slow = integer("without_rest_c_1000") / integer("exact_c_1000") - 1.0;
+    says(&[format!("step 1000 is {:.0} % too slow.", 100.0 * slow)]);
+}
+
+#[test]
+fn page_gives_the_longest_ramp_of_its_test() {
+    let test = include_str!("near_rest.rs");
+    let (_, rest) = test.split_once("2.0_f64.powi(-").unwrap();
+    let power = rest.split(')').next().unwrap();
+    says(&[
+        format!("first step of a ramp of 2^{power} steps is correct"),
+        format!("the first step of a ramp of 2^{power} steps has all its digits."),
+    ]);
 }
 
 /// The values of Gamma(3/4) and Gamma(1/4) give the first delay of the recurrence of AVR446.

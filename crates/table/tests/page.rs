@@ -185,6 +185,11 @@ fn page_gives_the_errors_of_the_sources() {
             update("nominal_time_s")
         ),
         format!("stop condition ({} pulses)", update("pulses_1ms")),
+        format!("writes OCR {}", ocr("integer_OCR_500rpm")),
+        format!(
+            "and {:.0e} with the printed 31.4 for 10 pi",
+            ocr("300rpm_with_31.4") / ocr("300rpm_div1_exact") - 1.0
+        ),
         format!("every delay {:.0} % too long", 100.0 * (1.0 / first - 1.0)),
         format!("= {first:.5} of it (0.676 in AVR446; {:.1e} off)", 0.676 / first - 1.0),
         format!("dropped: c_1000 = {}", integer("without_rest_c_1000")),
@@ -198,5 +203,50 @@ fn page_gives_the_errors_of_the_sources() {
             "over s^(1/4): wrong by {:.1} us",
             linear("table_lookup_linear_interp_in_fourth_root_of_s", "max_err_us_T0.2s")
         ),
+    ]);
+}
+
+/// The ramp of the source, of which golden_values.rs checks the first entries.
+#[test]
+fn page_gives_the_pulses_of_a_ramp_with_its_last_entry() {
+    let table = Table::new(TableRequest {
+        timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
+        motor: MOTOR,
+        start_frequency: 600.0,
+        top_speed: Speed::Rpm(RPM),
+        kind: Kind::Logistic { entries: 600, steepness: STEEPNESS, centre: None },
+        pulses: Pulses::ByTime(1e-3),
+    })
+    .expect("a table");
+    says(&[format!("used ({} pulses)", table.figures().ramp_pulses)]);
+}
+
+#[test]
+fn page_compares_the_recurrence_with_constant_acceleration() {
+    let ramp = ConstantAcceleration { timer: 1e6, acceleration: 1000.0 };
+    let short = |n: f64| 1.0 - ramp.delay(n) / ramp.exact_delay(n);
+    // The error times n^2 approaches a constant.
+    let [near, far] = [1e3, 1e4].map(|n| 64.0 * n * n * short(n));
+    assert!((near - far).abs() < 0.02, "{near} {far}");
+    says(&[format!(
+        "its delay is {:.1} % short at the second step, and by {far:.0} / 64 n^2 in general.",
+        100.0 * short(1.0)
+    )]);
+}
+
+#[test]
+fn page_gives_the_errors_of_rounded_delays() {
+    let test = include_str!("player_plays_the_table.rs");
+    let behind = |text: &str| -> f64 {
+        let (_, rest) = test.split_once(text).expect("the text");
+        let number = rest.split(',').next().expect("a number");
+        number.parse().unwrap_or_else(|_| panic!("{number}"))
+    };
+    let (whole, rounded) = (behind("Arithmetic::Integer, .. } => "), behind("        _ => "));
+    let timer = Timer::avr16(16_000_000, 64, TimerMode::Ctc);
+    says(&[
+        format!("pulse n is at most n/{:.0} counts from the formula**", 1.0 / rounded),
+        format!("(`avr446` in integers: {whole:.0} counts a pulse"),
+        format!("and counts once round, {} counts.", grouped(timer.most_counts().into())),
     ]);
 }
