@@ -243,7 +243,7 @@ fn page_gives_the_ticks_of_the_proofs() {
             format!("`event_wheel` is also proved with two axes in {pair},"),
             format!(
                 "and in ticks of {} also {} axes.",
-                small.name,
+                small.name.split_once(", ").expect("axes, and a tick").1,
                 pages::word(small.axes() as u64)
             ),
         ],
