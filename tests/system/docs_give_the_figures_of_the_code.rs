@@ -6,6 +6,7 @@ use carrystep_core::engine::{
     MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT, QUEUE,
     TIME_SLOT_CLOCKS,
 };
+use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
 use carrystep_core::link::{
     ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
@@ -21,6 +22,11 @@ fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
     let (tick_ns, chosen) = default_tick(FIXED_CLOCK_HZ, 16, AXES).expect("a default tick");
     assert_eq!(chosen, None, "the default clock has a fixed tick");
     let (mhz, us) = (FIXED_CLOCK_HZ / 1_000_000, tick_ns / 1000);
+    // The numbers of axes that need another tick.
+    let is_longer = |axes: &usize| default_tick(FIXED_CLOCK_HZ, 16, *axes) != Some((tick_ns, None));
+    let longer: Vec<&str> =
+        (1..=MAX_AXES).filter(is_longer).map(|axes| word(axes as u64)).collect();
+    let longer = longer.join(" or ");
     says(
         "README.md",
         &[
@@ -38,7 +44,11 @@ fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
     says("docs/engine.md", &[format!("file is {mhz} MHz with ticks of {us} us.")]);
     says(
         "docs/machine-files.md",
-        &[format!("At the default clock of {mhz} MHz the default tick is {tick_ns} ns")],
+        &[
+            format!("At the default clock of {mhz} MHz the default tick is {tick_ns} ns"),
+            format!("At any other clock than {mhz} MHz the default"),
+            format!("the machine has {longer} axes, carrystep chooses"),
+        ],
     );
 }
 
@@ -111,6 +121,43 @@ fn machine_file_page_gives_the_ranges_of_the_gateware() {
         ],
     );
     assert_eq!(pages::joined("docs/machine-files.md").matches(&pins).count(), 4, "{pins}");
+}
+
+#[test]
+fn pages_give_the_number_formats() {
+    let bits = FRACTION_BITS;
+    let half = StartPhase::Half.start_value().ilog2();
+    assert_eq!((StartPhase::Half.start_value(), StartPhase::Zero.start_value()), (1 << half, 0));
+    let ticks = u32::BITS;
+    says(
+        "README.md",
+        &[format!("has {bits} fractional bits, so N steps are the integer N 2^{bits}.")],
+    );
+    says(
+        "docs/five-minutes.md",
+        &[
+            format!("of these lines, with {bits}-bit integers"),
+            format!("P is 2^-{bits} step. N steps are therefore the integer N 2^{bits},"),
+        ],
+    );
+    says(
+        "docs/clock-by-clock.md",
+        &[
+            format!("the running segment: `P V A J` ({bits} bits), `left` ({ticks} bits)"),
+            format!("as {bits}-bit unsigned addition"),
+            format!("has the start value (2^{half} or 0, a build parameter)"),
+        ],
+    );
+    says(
+        "docs/protocol.md",
+        &[
+            format!("V, A and J are {bits}-bit numbers in two's complement"),
+            format!("in units of 2^-{bits} step per tick, per tick^2"),
+            format!("is an unsigned {bits}-bit number in 2^-{bits} step."),
+            format!("P starts at 2^{half} (half a step)"),
+        ],
+    );
+    says("docs/flow-of-a-move.md", &[format!("P starts at 2^{half}, half a step.")]);
 }
 
 /// The cells of the row of `hdl-out/resources.md` that begins with these.
