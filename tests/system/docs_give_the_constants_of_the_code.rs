@@ -2,7 +2,7 @@
 //! They are read from the text of the source, so that no constant becomes public for a page.
 
 use carrystep_core::Command;
-use carrystep_core::engine::{CAUSES, MAX_ROUNDS, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{CAUSES, MAX_ROUNDS, SEGMENT_WORDS};
 use carrystep_files::MoveFile;
 use carrystep_tests::moves;
 use carrystep_tests::pages::{self, grouped, part, says, word};
@@ -189,6 +189,18 @@ fn performance_page_gives_the_constants_of_fast_model_and_bench() {
             format!("at least {} of the {} causes", word(causes), word(CAUSES.len() as u64)),
         ],
     );
+    // A decision gives the times of a tick of six axes, one after the other and side by side.
+    let decision = pages::file("docs/decisions/0024-edges-side-by-side-not-axes.md");
+    let time = |way: &str| -> f64 {
+        let (_, rest) = decision.split_once(&format!("| {way} | ")).expect("a row");
+        rest.split(' ').next().and_then(|ns| ns.parse().ok()).expect("ns")
+    };
+    let longer = time("six axes side by side") / time("one axis after the other");
+    assert!((2.0..3.0).contains(&longer), "{longer}");
+    says(
+        "docs/performance.md",
+        &["six axes side by side take more than twice as long as one after the other".to_owned()],
+    );
     // The last column of the table is the ratio below which the bench fails.
     let page = pages::file("docs/performance.md");
     for name in ["busy", "typical", "rest"] {
@@ -197,9 +209,17 @@ fn performance_page_gives_the_constants_of_fast_model_and_bench() {
         let shown = row.trim_end_matches(" |").rsplit(' ').next().expect("a last cell");
         let source = pages::file("crates/xtask/benches/levels/moves.rs").replace('_', "");
         let (_, rest) = source.split_once(&format!("name: \"{name}\"")).expect("a density");
+        let (_, what) = rest.split_once("what: \"").expect("a description");
+        let (what, _) = what.split_once('"').expect("its end");
         let (_, rest) = rest.split_once("wanted: ").expect("a wanted ratio");
         let (wanted, _) = rest.split_once(".0").expect("a whole ratio");
         assert_eq!(shown, wanted, "{row}");
+        assert!(row.replace(' ', "").contains(&format!("({})|", what.replace(' ', ""))), "{row}");
+        // The ratio of two columns, to three digits.
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let number = |cell: &str| cell.trim_matches('*').parse::<f64>().expect("a number");
+        let [fast, verilator, ratio] = [cells[2], cells[7], cells[8]].map(number);
+        assert!((fast / verilator / ratio - 1.0).abs() < 5e-3, "{row}");
     }
 }
 
@@ -231,29 +251,6 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
             format!("Every test run sends {usual} frames"),
             format!("{} frames over the bad line", grouped(long("FRAMES"))),
             format!("{} ends of hosts", long("DEATHS")),
-        ],
-    );
-}
-
-#[test]
-fn architecture_page_gives_the_rate_that_the_test_tries() {
-    let rates = "crates/virtual-board/tests/rates.rs";
-    let rate = behind(rates, "carries::<ModelBoard>(3_000_000, ");
-    says("docs/architecture.md", &[format!("six axes at {rate} segments/s")]);
-    let other = behind(rates, "carries::<ModelBoard>(921_600, ");
-    let spi = behind(rates, "let per_second = ");
-    let waiting = |text: &str| behind(rates, text);
-    let (fast, slow) = (
-        waiting(&format!("carries::<ModelBoard>(3_000_000, {rate}, 1500, ")),
-        waiting(&format!("carries::<ModelBoard>(921_600, {other}, 1500, ")),
-    );
-    let of_spi = constant(rates, "OVER_SPI");
-    says(
-        "docs/performance.md",
-        &[
-            format!("| 3 000 000 baud | {rate} | {fast} of {QUEUE} |"),
-            format!("| 921 600 baud | {other} | {slow} of {QUEUE} |"),
-            format!("unacknowledged writes | {spi} | {of_spi} of {QUEUE} |"),
         ],
     );
 }

@@ -267,7 +267,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
         "docs/performance.md",
         &[
             format!("A segment is {bytes} bytes on the line"),
-            format!("carry at most {most} segments a second"),
+            format!("so the bytes of 3 Mbaud carry at most {most} segments a second"),
             format!("{AXES} x 500 = {}", AXES * 500),
         ],
     );
@@ -281,7 +281,12 @@ fn verilog_page_gives_the_default_and_the_targets_of_the_files() {
     let core = pages::file("hdl-out/core/carrystep.core");
     let lint = core.lines().filter(|line| line.starts_with("  lint") && line.ends_with(':'));
     let lint: Vec<&str> = lint.map(|line| line.trim().trim_end_matches(':')).collect();
+    let received = template.lines().find(|line| line.contains(".received()")).expect("a port");
+    let received = received.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut texts = vec![
+        received,
+        format!("The {} lines that carry the bytes", word(LINES.len() as u64)),
+        format!("contains these modules for {} axes.", word(AXES as u64)),
         format!(".BIT_CLOCKS({value})"),
         format!("ran all {} lint targets", word(lint.len() as u64)),
     ];

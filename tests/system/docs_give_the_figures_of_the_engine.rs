@@ -6,7 +6,7 @@ use carrystep_core::engine::{
     COMMIT, ENGINE_PORTS, EngineBuild, Guard, MAX_AXES, MAX_ROUND, PUT_BEAT, SEGMENT_WORDS,
     TIME_SLOT_CLOCKS, least_clocks,
 };
-use carrystep_core::link::ANSWER;
+use carrystep_core::link::{ANSWER, SEGMENT_FRAME_WORDS};
 use carrystep_core::ports::Width;
 use carrystep_core::tick::{FIXED_CLOCK_HZ, Ticks};
 use carrystep_core::{AXES, Timebase};
@@ -51,7 +51,13 @@ fn specification_gives_the_words_of_a_segment() {
             format!("a segment is its {} words in order and a commit", word(last as u64 + 1)),
         ],
     );
-    says("docs/flow-of-a-move.md", &[format!("as {} words and a commit", word(commit))]);
+    says(
+        "docs/flow-of-a-move.md",
+        &[
+            format!("as {} words and a commit", word(commit)),
+            format!("sends these as {} words.", word(SEGMENT_FRAME_WORDS as u64)),
+        ],
+    );
 }
 
 #[test]
@@ -288,6 +294,14 @@ fn performance_page_gives_the_machines_of_bench_and_tests() {
     let machine = MoveFile::load(&file).expect("a move file").machine;
     let (mhz, us) = (machine.timebase.clock_hz() / 1_000_000, machine.timebase.tick_ns() / 1000);
     let bits = u64::from(machine.timebase.phase_bits());
+    let file = moves::root().join("sim/bench/steady.toml");
+    let plan = carrystep_plan::plan::<f64>(&MoveFile::load(&file).expect("a move file"));
+    let steady = &plan.expect("a plan").moves[0];
+    let seconds = steady.ticks as f64 * machine.timebase.tick_seconds();
+    let speeds = steady.axes.iter().map(|axis| axis.steps.unsigned_abs() as f64 / seconds);
+    // To two digits.
+    let speeds: Vec<u64> = speeds.map(|speed| (speed / 1e3).round() as u64 * 1000).collect();
+    assert!(speeds.iter().all(|speed| *speed == speeds[0]), "{speeds:?}");
     says(
         "docs/performance.md",
         &[
@@ -295,6 +309,11 @@ fn performance_page_gives_the_machines_of_bench_and_tests() {
             format!("The engine at {bench} MHz, fed word by word"),
             format!("the parallel core at {mhz} MHz with ticks of {us} us)"),
             format!("{} halvings for the phase", word(bits)),
+            format!(
+                "at {} steps/s (`sim/bench/steady.toml`, {} seconds",
+                pages::grouped(speeds[0]),
+                word(seconds.round() as u64)
+            ),
             format!("the merge of {} streams", word(machine.axes.len() as u64)),
         ],
     );

@@ -161,3 +161,34 @@ fn pages_give_the_margin_of_a_clock_and_the_length_of_an_instruction() {
         &[format!("up to {} received bytes", bytes - 1.0), format!("all {bytes} are lost")],
     );
 }
+
+#[test]
+fn architecture_page_gives_the_rate_that_the_test_tries() {
+    let rates = "crates/virtual-board/tests/rates.rs";
+    let rate = behind(rates, "carries::<ModelBoard>(3_000_000, ");
+    says("docs/architecture.md", &[format!("six axes at {rate} segments/s")]);
+    let other = behind(rates, "carries::<ModelBoard>(921_600, ");
+    let spi = behind(rates, "let per_second = ");
+    let waiting = |text: &str| behind(rates, text);
+    let (fast, slow) = (
+        waiting(&format!("carries::<ModelBoard>(3_000_000, {rate}, 1500, ")),
+        waiting(&format!("carries::<ModelBoard>(921_600, {other}, 1500, ")),
+    );
+    let of_spi = constant(rates, "OVER_SPI");
+    let mhz = behind(rates, "Bus::<ModelBoard>::new(") / 1e6;
+    let writes = whole(behind(
+        "crates/virtual-board/tests/support/bus.rs",
+        "Host<SpiLine<Bus<B>>, Bus<B>, ",
+    ));
+    says(
+        "docs/performance.md",
+        &[
+            format!("| 3 000 000 baud | {rate} | {fast} of {QUEUE} |"),
+            format!("| 921 600 baud | {other} | {slow} of {QUEUE} |"),
+            format!(
+                "| SPI at {mhz} MHz, {} unacknowledged writes | {spi} | {of_spi} of {QUEUE} |",
+                word(writes)
+            ),
+        ],
+    );
+}

@@ -165,11 +165,13 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
 fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
     // A start bit, eight data bits and a stop bit.
     let bits = 1 + 8 + 1;
-    let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
+    let (mhz, mbaud) = (48, 3);
+    let uart = Uart::new(mhz * 1_000_000, mbaud * 1_000_000).expect("a UART");
     let clocks = bits * uart.bit_clocks();
-    assert!(
-        page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud"))
+    let said = format!(
+        "A byte takes {clocks} clocks on a UART of {mbaud} Mbaud if the clock is {mhz} MHz"
     );
+    assert!(page("link.md").contains(&said), "not said: {said}");
 }
 
 #[test]
