@@ -32,16 +32,25 @@ fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
         &[
             format!("in every tick ({us} us by default)"),
             format!("runs at {mhz} MHz with ticks of {us} us"),
+            format!("one adder that serves {} axes", word(AXES as u64)),
         ],
     );
     says(
         "docs/five-minutes.md",
         &[
+            format!("It has one adder for {} axes.", word(AXES as u64)),
             format!("a time slot of {TIME_SLOT_CLOCKS} clocks"),
             format!("at {mhz} MHz a tick takes {us} us"),
         ],
     );
-    says("docs/engine.md", &[format!("file is {mhz} MHz with ticks of {us} us.")]);
+    says(
+        "docs/engine.md",
+        &[
+            format!("file is {mhz} MHz with ticks of {us} us."),
+            format!("It serves {} axes, or any number", word(AXES as u64)),
+            format!("With {} axes a {us} us tick needs {mhz} MHz", word(AXES as u64)),
+        ],
+    );
     says(
         "docs/machine-files.md",
         &[
@@ -241,6 +250,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
     let on_the_line = |bytes: usize| bytes + 2;
     let [asked, answered] = [read, ANSWER_BYTES].map(on_the_line);
     let reads = word(MOST_AXES.into());
+    assert_eq!((answered as f64 / asked as f64).round(), 2.0, "twice");
     says(
         "docs/protocol.md",
         &[
@@ -255,7 +265,9 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!("over {WINDOW} a number is not unique any more"),
             format!("have at most {reads} unanswered reads"),
             format!("| unanswered reads | {MOST_AXES} at most |"),
-            format!("a read has {asked} bytes and its answer {answered}"),
+            format!(
+                "a read has {asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
+            ),
             format!("has room, 0 to {QUEUE}"),
             format!("the move ({QUEUE} at most)"),
         ],

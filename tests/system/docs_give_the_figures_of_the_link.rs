@@ -6,7 +6,7 @@ use carrystep_core::link::registers::{
     IDENTITY, P_LOW, PER_AXIS, PHASES, POSITION, SEGMENT, WATCHDOG_TICKS, of_axis,
 };
 use carrystep_core::link::{
-    ANSWER, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, SEGMENT_FRAME_WORDS, Uart, WRITE,
+    ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, SEGMENT_FRAME_WORDS, Uart, WRITE,
 };
 use carrystep_core::ports::Width;
 use carrystep_tests::pages::{part, says, word};
@@ -18,6 +18,9 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
     // The bits of an address that hold the number of the axis.
     let (low, high) = (PER_AXIS.ilog2(), (PER_AXIS * (MAX_AXES as u8 - 1)).ilog2());
     let axis_of = |address: u8| address >> low & (MAX_AXES as u8 - 1);
+    let crc = ANSWER_BYTES - CRC_BYTES;
+    let cause = ANSWER.iter().find(|field| field.name == "cause").expect("a field");
+    assert!(cause.top.is_some() && crc == ANSWER_DATA + 4);
     assert!((IDENTITY..=PHASES).all(|address| axis_of(address) == 0));
     says(
         "docs/protocol.md",
@@ -39,7 +42,10 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
             format!("to segments and to reads from `{P_LOW:02X}` on can"),
             format!("(the answer to its segment, or to a read from `{P_LOW:02X}` on)"),
             format!("Words and the CRC are {CRC_BYTES} bytes each"),
-            format!("| {ANSWER_DATA}..{} | | data |", ANSWER_DATA + 3),
+            format!("| {ANSWER_DATA}..{} | | data |", crc - 1),
+            format!("| {crc}..{} | | CRC |", ANSWER_BYTES - 1),
+            format!("bits {}..0 of the cause of the stop", cause.bits - 1),
+            format!("| cause | bit {} of the cause |", cause.bits),
         ],
     );
     assert!(axis_of(of_axis(POSITION, 5)) == 5 && segment == WRITE | P_LOW);

@@ -144,6 +144,8 @@ fn flow_of_a_move_page_finds_the_first_step_as_addition_does() {
         "docs/flow-of-a-move.md",
         &[
             format!("The profile passes this step at {:.3} us, so", due / 1e3),
+            format!("the measured time is m_1 = {:.3} us", (due - early) / 1e3),
+            format!("the error e_1 = {:.1} ns", -early),
             format!("the time of the profile t_1 = {:.3} us", due / 1e3),
             format!("the edge is {early:.0} ns early, less than one phase of {of_phase_ns} ns."),
             format!("{clocks} + {sum} = {}.", grouped(u64::from(clocks) + on_the_pin)),
