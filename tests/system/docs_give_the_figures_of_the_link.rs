@@ -3,7 +3,8 @@
 
 use carrystep_core::engine::{ENGINE_PORTS, MAX_AXES, QUEUE};
 use carrystep_core::link::registers::{
-    IDENTITY, P_LOW, PER_AXIS, PHASES, POSITION, SEGMENT, WATCHDOG_TICKS, of_axis,
+    CONTROL_ENABLE, CONTROL_STOP, IDENTITY, P_LOW, PER_AXIS, PHASES, POSITION, SEGMENT,
+    WATCHDOG_TICKS, of_axis,
 };
 use carrystep_core::link::{
     ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, SEGMENT_FRAME_WORDS, Uart, WRITE,
@@ -41,6 +42,9 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
             ),
             format!("to segments and to reads from `{P_LOW:02X}` on can"),
             format!("(the answer to its segment, or to a read from `{P_LOW:02X}` on)"),
+            format!("2. Write `CONTROL` = {CONTROL_ENABLE} to power the drivers."),
+            format!("**Stop**: set bit {} of `CONTROL`;", CONTROL_STOP.ilog2()),
+            format!("write `CONTROL` without bit {};", CONTROL_STOP.ilog2()),
             format!("Words and the CRC are {CRC_BYTES} bytes each"),
             format!("| {ANSWER_DATA}..{} | | data |", crc - 1),
             format!("| {crc}..{} | | CRC |", ANSWER_BYTES - 1),
@@ -93,6 +97,12 @@ fn pages_give_the_rates_that_the_test_of_the_link_tries() {
     // The host has its turn after each millisecond of the board's time.
     let turns = behind("crates/virtual-board/tests/support/mod.rs", "MS: u64 = CLOCK_HZ / ");
     assert_eq!(turns, 1000.0);
+    let more =
+        whole(behind("crates/link/src/host/homing/request.rs", "self.debounce.saturating_add("));
+    says(
+        "docs/protocol.md",
+        &[format!("the samples of the debounce time and {} rounds more", word(more))],
+    );
     says("docs/performance.md", &["which runs once per millisecond, as over USB".to_owned()]);
     says("docs/virtual-board.md", &[format!("/dev/pts/3: {DEFAULT_BAUD} baud")]);
 }
