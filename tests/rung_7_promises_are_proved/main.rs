@@ -2,6 +2,7 @@
 //! ever. The situations that they describe do occur, and each promise detects the bug that is
 //! planted for it.
 
+use carrystep_core::AXES;
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
 use carrystep_tests::{effort, moves, pages};
@@ -240,6 +241,7 @@ fn page_gives_the_ticks_of_the_proofs() {
         &[
             format!("Ticks: {many} clocks in 16 phases, {few} clocks in 4 phases and in 1."),
             format!("with one axis in ticks of {single} clocks, and with six in {six}."),
+            format!("`core`: {} axes, and in ticks of", pages::word(AXES as u64)),
             format!("`event_wheel` is also proved with two axes in {pair},"),
             format!(
                 "and in ticks of {} also {} axes.",

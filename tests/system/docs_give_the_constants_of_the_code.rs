@@ -28,7 +28,10 @@ fn accuracy_page_gives_the_constants_of_planner_and_checker() {
             format!("Below {least} Q units of 2^-32 step a tick"),
             format!("at most {lost}/{least} of a phase"),
             format!("the planner lets the axis travel {} units of 2^-32 step", word(whole(lost))),
-            format!("The bisection loses none to {} units", word(whole(lost))),
+            format!(
+                "The bisection loses none to {lost} units, so each edge comes as if the axis were none to {lost} units behind.",
+                lost = word(whole(lost))
+            ),
             format!("{:.2} steps/s that cruises at its", lost * 2_f64.powi(-32) / early),
             format!("would need over {segments} segments"),
             format!("is a phase and {rounding} ns, plus"),

@@ -3,13 +3,16 @@
 
 use carrystep_core::ProfileKind;
 use carrystep_profile::{Limits, kinds};
-use carrystep_tests::pages::{joined, says};
+use carrystep_tests::pages::{grouped, says};
 
 /// Duration of each constant speed, s: grbl's default, as the page says.
 const SLICE: f64 = 0.01;
 
 /// Steps of the reference move.
 const STEPS: u32 = 20_000;
+
+/// Greatest acceleration of the reference move, steps/s^2.
+const ACCELERATION: f64 = 500_000.0;
 
 /// How a move of constant speeds differs from its profile.
 struct Differs {
@@ -24,7 +27,7 @@ fn constant_speeds(kind: ProfileKind) -> Differs {
     let limits = Limits {
         start_speed: 0.0,
         speed: f64::INFINITY,
-        acceleration: 500_000.0,
+        acceleration: ACCELERATION,
         jerk: f64::INFINITY,
     };
     let steps = f64::from(STEPS);
@@ -68,7 +71,12 @@ fn accuracy_page_gives_the_error_of_constant_speeds() {
                 ms(more)
             ),
             format!("`ACCELERATION_TICKS_PER_SECOND` is {:.0}", 1.0 / SLICE),
+            format!(
+                "{} steps from rest to rest with at most {} steps/s^2",
+                grouped(STEPS.into()),
+                grouped(ACCELERATION as u64)
+            ),
+            format!("The same move of {} steps", grouped(STEPS.into())),
         ],
     );
-    assert!(joined("docs/accuracy.md").contains("20 000 steps from rest to rest"));
 }

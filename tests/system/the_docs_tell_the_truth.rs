@@ -93,13 +93,32 @@ fn planned(file: &MoveFile) -> Plan {
 
 #[test]
 fn slow_moves_are_as_accurate_as_the_page_says() {
+    const STEPS: i32 = 400;
+    const SPEED: u64 = 5000;
+    const ACCEL: u64 = 25_000;
     let text = page("accuracy.md");
+    let time = planned(&one_axis(
+        &format!("speed_limit = {SPEED}\naccel_limit = {ACCEL}"),
+        "profile = \"trapezoid\"\nto = { x = 1 }",
+    ))
+    .build
+    .timebase;
+    pages::says(
+        "docs/accuracy.md",
+        &[format!(
+            "shows {STEPS} steps with `trapezoid`, at most {SPEED} steps/s and {} steps/s^2, {} phases of a {} us tick",
+            grouped(ACCEL),
+            time.phases(),
+            time.tick_ns() / 1000
+        )],
+    );
     for seconds in [5000, 10_000, 100_000, 1_000_000] {
         let mut cells = vec![grouped(seconds)];
-        for steps in [400, -400] {
+        for steps in [STEPS, -STEPS] {
             let moved =
                 format!("profile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}");
-            let file = one_axis("speed_limit = 5000\naccel_limit = 25000", &moved);
+            let limits = format!("speed_limit = {SPEED}\naccel_limit = {ACCEL}");
+            let file = one_axis(&limits, &moved);
             let plan = planned(&file);
             let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
             assert!(report.passed, "{report}");

@@ -109,6 +109,11 @@ fn page_gives_the_rounding_of_the_top_speed() {
     let table = table(64, kind);
     let figures = table.figures();
     let khz = figures.timer_hz / 1e3;
+    let prescaler = |prescaler| Timer::avr16(16_000_000, prescaler, TimerMode::Ctc).frequency();
+    says(&[
+        format!("a timer at {} MHz (prescaler 8), which rounds little.", prescaler(8) / 1e6),
+        format!("The command above has prescaler 64, a timer at {} kHz", prescaler(64) / 1e3),
+    ]);
     says(&[format!(
         "At {khz} kHz {RPM} rpm is {:.2} counts; the player uses {:.0}, which is {:.1} rpm.",
         figures.timer_hz / figures.top_speed_asked,
@@ -179,10 +184,12 @@ fn page_gives_the_errors_of_the_sources() {
             ramp("ramp_time_if_OCR+1_s")
         ),
         format!(
-            "the ramp takes {:.3} s and begins at {:.1} Hz | the ramp takes {:.3} s",
+            "the ramp takes {:.3} s and begins at {:.1} Hz | the ramp takes {:.3} s and begins at {:.1} Hz |",
             update("bug_extra_interrupt_time_s"),
             update("first_band_effective_Hz"),
-            update("nominal_time_s")
+            update("nominal_time_s"),
+            // The first entry lasts one pulse, so one interrupt more doubles its time.
+            2.0 * update("first_band_effective_Hz")
         ),
         format!("stop condition ({} pulses)", update("pulses_1ms")),
         format!("writes OCR {}", ocr("integer_OCR_500rpm")),
@@ -232,6 +239,11 @@ fn page_compares_the_recurrence_with_constant_acceleration() {
         "its delay is {:.1} % short at the second step, and by {far:.0} / 64 n^2 in general.",
         100.0 * short(1.0)
     )]);
+    let source = include_str!("../src/table.rs");
+    let (_, rest) = source.split_once("let quarters = (").expect("the index in parts of a step");
+    let parts: f64 = rest.split(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+    assert_eq!(parts, 4.0, "a quarter");
+    says(&["(n = v^2 / 2a, rounded to a quarter of a step)".to_owned()]);
 }
 
 #[test]
