@@ -265,9 +265,8 @@ fn promises_page_gives_what_the_proofs_assume() {
 /// The page says that the compared moves have the shortest ticks that their axes and phases allow.
 #[test]
 fn promises_page_compares_moves_in_the_shortest_ticks() {
-    let moves = equivalence::moves();
-    assert!(!moves.is_empty());
-    for pair in moves {
+    let mut compared = Vec::new();
+    for pair in equivalence::moves() {
         let number = |wanted: &str| -> u32 {
             let found = pair.engine.numbers.iter().find(|(name, _)| *name == wanted);
             found.expect("a number of the miter").1.parse().expect("a number")
@@ -275,7 +274,17 @@ fn promises_page_compares_moves_in_the_shortest_ticks() {
         let (axes, phases) = (number("AXES"), number("PHASES"));
         let least = least_clocks(axes as usize, phases).max(MIN_CLOCKS_PER_TICK);
         assert_eq!(number("CLOCKS"), least.next_multiple_of(phases), "{axes} axes, {phases}");
+        compared.push((phases, word(axes.into())));
     }
+    compared.sort_unstable();
+    let [(few, alone), (many, one), (same, two)] = compared[..] else { panic!("{compared:?}") };
+    assert_eq!(many, same);
+    says(
+        "docs/promises.md",
+        &[format!(
+            "the shortest ticks of {alone} axis in {few} phases, and of {one} or {two} axes in {many}."
+        )],
+    );
 }
 
 #[test]
