@@ -2,6 +2,7 @@
 //! ever. The situations that they describe do occur, and each promise detects the bug that is
 //! planted for it.
 
+use carrystep_core::AXES;
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
 use carrystep_tests::{effort, moves, pages};
@@ -229,11 +230,28 @@ fn page_gives_the_ticks_of_the_proofs() {
     assert_eq!(few, one, "one sentence gives the clocks of both");
     let [single, six] = [1, 6].map(|axes| clocks("engine", &|case| case[0] == axes));
     let six = six.replace(" and ", " (as shipped) and in ");
+    for module in ["time_slot", "stops", "limits"] {
+        assert!(cases(module).iter().all(|case| case[0] as usize == AXES), "{module}");
+    }
+    let pair = clocks("event_wheel", &|case| case[0] == 2);
+    // The cases of the core give their tick in their names.
+    let core = proofs.iter().find(|proof| proof.module == "core").expect("the core");
+    let [small] = &core.cases.iter().filter(|case| case.axes() < 6).collect::<Vec<_>>()[..] else {
+        panic!("one case with fewer axes")
+    };
     pages::says(
         "docs/promises.md",
         &[
             format!("Ticks: {many} clocks in 16 phases, {few} clocks in 4 phases and in 1."),
             format!("with one axis in ticks of {single} clocks, and with six in {six}."),
+            format!("proved with {} axes only.", pages::word(AXES as u64)),
+            format!("`core`: {} axes, and in ticks of", pages::word(AXES as u64)),
+            format!("`event_wheel` is also proved with two axes in {pair},"),
+            format!(
+                "and in ticks of {} also {} axes.",
+                small.name.split_once(", ").expect("axes, and a tick").1,
+                pages::word(small.axes() as u64)
+            ),
         ],
     );
 }

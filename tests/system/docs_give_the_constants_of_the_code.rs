@@ -2,7 +2,7 @@
 //! They are read from the text of the source, so that no constant becomes public for a page.
 
 use carrystep_core::Command;
-use carrystep_core::engine::{CAUSES, MAX_ROUNDS, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{CAUSES, MAX_ROUNDS, SEGMENT_WORDS};
 use carrystep_files::MoveFile;
 use carrystep_tests::moves;
 use carrystep_tests::pages::{self, grouped, part, says, word};
@@ -27,6 +27,12 @@ fn accuracy_page_gives_the_constants_of_planner_and_checker() {
             format!("under {:.2} steps/s (16 phases)", lost * 2_f64.powi(-32) / early),
             format!("Below {least} Q units of 2^-32 step a tick"),
             format!("at most {lost}/{least} of a phase"),
+            format!("the planner lets the axis travel {} units of 2^-32 step", word(whole(lost))),
+            format!(
+                "The bisection loses none to {lost} units, so each edge comes as if the axis were none to {lost} units behind.",
+                lost = word(whole(lost))
+            ),
+            format!("{:.2} steps/s that cruises at its", lost * 2_f64.powi(-32) / early),
             format!("would need over {segments} segments"),
             format!("is a phase and {rounding} ns, plus"),
             format!("moves no edge by more than {shift:.1} ns"),
@@ -186,6 +192,18 @@ fn performance_page_gives_the_constants_of_fast_model_and_bench() {
             format!("at least {} of the {} causes", word(causes), word(CAUSES.len() as u64)),
         ],
     );
+    // A decision gives the times of a tick of six axes, one after the other and side by side.
+    let decision = pages::file("docs/decisions/0024-edges-side-by-side-not-axes.md");
+    let time = |way: &str| -> f64 {
+        let (_, rest) = decision.split_once(&format!("| {way} | ")).expect("a row");
+        rest.split(' ').next().and_then(|ns| ns.parse().ok()).expect("ns")
+    };
+    let longer = time("six axes side by side") / time("one axis after the other");
+    assert!((2.0..3.0).contains(&longer), "{longer}");
+    says(
+        "docs/performance.md",
+        &["six axes side by side take more than twice as long as one after the other".to_owned()],
+    );
     // The last column of the table is the ratio below which the bench fails.
     let page = pages::file("docs/performance.md");
     for name in ["busy", "typical", "rest"] {
@@ -194,9 +212,17 @@ fn performance_page_gives_the_constants_of_fast_model_and_bench() {
         let shown = row.trim_end_matches(" |").rsplit(' ').next().expect("a last cell");
         let source = pages::file("crates/xtask/benches/levels/moves.rs").replace('_', "");
         let (_, rest) = source.split_once(&format!("name: \"{name}\"")).expect("a density");
+        let (_, what) = rest.split_once("what: \"").expect("a description");
+        let (what, _) = what.split_once('"').expect("its end");
         let (_, rest) = rest.split_once("wanted: ").expect("a wanted ratio");
         let (wanted, _) = rest.split_once(".0").expect("a whole ratio");
         assert_eq!(shown, wanted, "{row}");
+        assert!(row.replace(' ', "").contains(&format!("({})|", what.replace(' ', ""))), "{row}");
+        // The ratio of two columns, to three digits.
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let number = |cell: &str| cell.trim_matches('*').parse::<f64>().expect("a number");
+        let [fast, verilator, ratio] = [cells[2], cells[7], cells[8]].map(number);
+        assert!((fast / verilator / ratio - 1.0).abs() < 5e-3, "{row}");
     }
 }
 
@@ -228,29 +254,6 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
             format!("Every test run sends {usual} frames"),
             format!("{} frames over the bad line", grouped(long("FRAMES"))),
             format!("{} ends of hosts", long("DEATHS")),
-        ],
-    );
-}
-
-#[test]
-fn architecture_page_gives_the_rate_that_the_test_tries() {
-    let rates = "crates/virtual-board/tests/rates.rs";
-    let rate = behind(rates, "carries::<ModelBoard>(3_000_000, ");
-    says("docs/architecture.md", &[format!("six axes at {rate} segments/s")]);
-    let other = behind(rates, "carries::<ModelBoard>(921_600, ");
-    let spi = behind(rates, "let per_second = ");
-    let waiting = |text: &str| behind(rates, text);
-    let (fast, slow) = (
-        waiting(&format!("carries::<ModelBoard>(3_000_000, {rate}, 1500, ")),
-        waiting(&format!("carries::<ModelBoard>(921_600, {other}, 1500, ")),
-    );
-    let of_spi = constant(rates, "OVER_SPI");
-    says(
-        "docs/performance.md",
-        &[
-            format!("| 3 000 000 baud | {rate} | {fast} of {QUEUE} |"),
-            format!("| 921 600 baud | {other} | {slow} of {QUEUE} |"),
-            format!("unacknowledged writes | {spi} | {of_spi} of {QUEUE} |"),
         ],
     );
 }
@@ -316,54 +319,5 @@ fn virtual_board_page_gives_the_times_of_its_pace() {
             format!("than the {} segments that wait there", word(kept)),
             format!("keeps fewer than {} segments waiting", word(kept + 1)),
         ],
-    );
-}
-
-#[test]
-fn protocol_page_gives_the_time_outs_of_the_rust_client() {
-    let host = |text| behind("crates/link/src/host.rs", text);
-    let patience =
-        |name| behind("crates/link/src/host/time.rs", &format!("\n            {name}: "));
-    let session = |text| behind("crates/link/src/session.rs", text);
-    let (resend, silence) = (session("Self { resend: "), patience("silence"));
-    let period = patience("status_period");
-    let watchdog =
-        behind("crates/files/src/machine/guard.rs", "unit_ns: 1_000_000,\n    default: ");
-    let (tries, share) = (word(whole((silence / resend).floor())), part(whole(watchdog / period)));
-    let serial = constant("crates/link/src/line/serial.rs", "AHEAD_MS");
-    // Ten bits for each byte that the client holds, and then the bytes that the system may hold.
-    let held = host("out: [u8; ");
-    let wait = |baud: f64| (10.0 * held / baud * 1e3 + serial).round();
-    let callers = constant("crates/cli/src/control/control_socket.rs", "CALLERS");
-    says(
-        "docs/protocol.md",
-        &[
-            format!("| unacknowledged writes | {} at most", host("const N: usize = ")),
-            format!("send again from `next` on | after {resend} ms |"),
-            format!("longer than the {resend} ms until a lost frame is sent again"),
-            format!("| busy, try again | after {} ms |", session(", pause: ")),
-            format!("give up | after {silence} ms, or {} ms once", patience("lost")),
-            format!("{tries} tries have failed;"),
-            format!("a clear | {} ms at most |", patience("change")),
-            format!("nothing to send | every {period} ms | a {share} of"),
-            format!("usual watchdog time ({watchdog} ms)"),
-            format!("at most {held} bytes and another {serial} ms of the line's time"),
-            format!("{} ms at 115 200 baud, {} ms at 921 600", wait(115_200.0), wait(921_600.0)),
-            format!("Of more than {callers} idle connections"),
-        ],
-    );
-}
-
-#[test]
-fn pages_give_the_margin_of_a_clock_and_the_length_of_an_instruction() {
-    let margin = constant("crates/boards/src/reach.rs", "MARGIN_PERCENT");
-    says("docs/flashing.md", &[format!("more than {margin} % above the recorded clock")]);
-    let clocks = whole(constant("crates/model/src/link/processor.rs", "EXECUTE") + 1.0);
-    says("docs/link.md", &[format!("Each instruction takes {} clocks", word(clocks))]);
-    let bytes = constant("crates/model/src/link/processor.rs", "SIZE");
-    says("docs/link.md", &[format!("the {bytes} received bytes that wait")]);
-    says(
-        "docs/protocol.md",
-        &[format!("up to {} received bytes", bytes - 1.0), format!("all {bytes} are lost")],
     );
 }

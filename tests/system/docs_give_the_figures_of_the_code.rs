@@ -6,6 +6,7 @@ use carrystep_core::engine::{
     MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT, QUEUE,
     TIME_SLOT_CLOCKS,
 };
+use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
 use carrystep_core::link::{
     ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
@@ -21,24 +22,42 @@ fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
     let (tick_ns, chosen) = default_tick(FIXED_CLOCK_HZ, 16, AXES).expect("a default tick");
     assert_eq!(chosen, None, "the default clock has a fixed tick");
     let (mhz, us) = (FIXED_CLOCK_HZ / 1_000_000, tick_ns / 1000);
+    // The numbers of axes that need another tick.
+    let is_longer = |axes: &usize| default_tick(FIXED_CLOCK_HZ, 16, *axes) != Some((tick_ns, None));
+    let longer: Vec<&str> =
+        (1..=MAX_AXES).filter(is_longer).map(|axes| word(axes as u64)).collect();
+    let longer = longer.join(" or ");
     says(
         "README.md",
         &[
             format!("in every tick ({us} us by default)"),
             format!("runs at {mhz} MHz with ticks of {us} us"),
+            format!("one adder that serves {} axes", word(AXES as u64)),
         ],
     );
     says(
         "docs/five-minutes.md",
         &[
+            format!("It has one adder for {} axes.", word(AXES as u64)),
             format!("a time slot of {TIME_SLOT_CLOCKS} clocks"),
             format!("at {mhz} MHz a tick takes {us} us"),
         ],
     );
-    says("docs/engine.md", &[format!("file is {mhz} MHz with ticks of {us} us.")]);
+    says(
+        "docs/engine.md",
+        &[
+            format!("file is {mhz} MHz with ticks of {us} us."),
+            format!("It serves {} axes, or any number", word(AXES as u64)),
+            format!("With {} axes a {us} us tick needs {mhz} MHz", word(AXES as u64)),
+        ],
+    );
     says(
         "docs/machine-files.md",
-        &[format!("At the default clock of {mhz} MHz the default tick is {tick_ns} ns")],
+        &[
+            format!("At the default clock of {mhz} MHz the default tick is {tick_ns} ns"),
+            format!("At any other clock than {mhz} MHz the default"),
+            format!("the machine has {longer} axes, carrystep chooses"),
+        ],
     );
 }
 
@@ -107,9 +126,47 @@ fn machine_file_page_gives_the_ranges_of_the_gateware() {
             format!("time of up to {} rounds each", MAX_ROUNDS - 1),
             format!("time of up to {} rounds.", MAX_DEBOUNCE_SAMPLES - 1),
             format!("over {MIN_BIT_CLOCKS} to {MAX_BIT_CLOCKS}, within {BAUD_PERCENT} %"),
+            format!("cannot make the rate within {BAUD_PERCENT} %, the rate is refused"),
         ],
     );
     assert_eq!(pages::joined("docs/machine-files.md").matches(&pins).count(), 4, "{pins}");
+}
+
+#[test]
+fn pages_give_the_number_formats() {
+    let bits = FRACTION_BITS;
+    let half = StartPhase::Half.start_value().ilog2();
+    assert_eq!((StartPhase::Half.start_value(), StartPhase::Zero.start_value()), (1 << half, 0));
+    let ticks = u32::BITS;
+    says(
+        "README.md",
+        &[format!("has {bits} fractional bits, so N steps are the integer N 2^{bits}.")],
+    );
+    says(
+        "docs/five-minutes.md",
+        &[
+            format!("of these lines, with {bits}-bit integers"),
+            format!("P is 2^-{bits} step. N steps are therefore the integer N 2^{bits},"),
+        ],
+    );
+    says(
+        "docs/clock-by-clock.md",
+        &[
+            format!("the running segment: `P V A J` ({bits} bits), `left` ({ticks} bits)"),
+            format!("as {bits}-bit unsigned addition"),
+            format!("has the start value (2^{half} or 0, a build parameter)"),
+        ],
+    );
+    says(
+        "docs/protocol.md",
+        &[
+            format!("V, A and J are {bits}-bit numbers in two's complement"),
+            format!("in units of 2^-{bits} step per tick, per tick^2"),
+            format!("is an unsigned {bits}-bit number in 2^-{bits} step."),
+            format!("P starts at 2^{half} (half a step)"),
+        ],
+    );
+    says("docs/flow-of-a-move.md", &[format!("P starts at 2^{half}, half a step.")]);
 }
 
 /// The cells of the row of `hdl-out/resources.md` that begins with these.
@@ -193,6 +250,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
     let on_the_line = |bytes: usize| bytes + 2;
     let [asked, answered] = [read, ANSWER_BYTES].map(on_the_line);
     let reads = word(MOST_AXES.into());
+    assert_eq!((answered as f64 / asked as f64).round(), 2.0, "twice");
     says(
         "docs/protocol.md",
         &[
@@ -207,10 +265,11 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!("over {WINDOW} a number is not unique any more"),
             format!("have at most {reads} unanswered reads"),
             format!("| unanswered reads | {MOST_AXES} at most |"),
-            format!("a read has {asked} bytes and its answer {answered}"),
+            format!(
+                "a read has {asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
+            ),
             format!("has room, 0 to {QUEUE}"),
             format!("the move ({QUEUE} at most)"),
-            format!("({} MHz at 48 MHz)", 48.0 / 5.0),
         ],
     );
     // Ten bits a byte on a UART.
@@ -220,7 +279,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
         "docs/performance.md",
         &[
             format!("A segment is {bytes} bytes on the line"),
-            format!("carry at most {most} segments a second"),
+            format!("so the bytes of 3 Mbaud carry at most {most} segments a second"),
             format!("{AXES} x 500 = {}", AXES * 500),
         ],
     );
@@ -234,7 +293,12 @@ fn verilog_page_gives_the_default_and_the_targets_of_the_files() {
     let core = pages::file("hdl-out/core/carrystep.core");
     let lint = core.lines().filter(|line| line.starts_with("  lint") && line.ends_with(':'));
     let lint: Vec<&str> = lint.map(|line| line.trim().trim_end_matches(':')).collect();
+    let received = template.lines().find(|line| line.contains(".received()")).expect("a port");
+    let received = received.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut texts = vec![
+        received,
+        format!("The {} lines that carry the bytes", word(LINES.len() as u64)),
+        format!("contains these modules for {} axes.", word(AXES as u64)),
         format!(".BIT_CLOCKS({value})"),
         format!("ran all {} lint targets", word(lint.len() as u64)),
     ];

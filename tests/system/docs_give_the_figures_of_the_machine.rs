@@ -2,7 +2,8 @@
 //! texts on the pages.
 
 use carrystep_core::AXES;
-use carrystep_core::fixed::ONE_STEP;
+use carrystep_core::engine::TIME_SLOT_CLOCKS;
+use carrystep_core::fixed::{FRACTION_BITS, ONE_STEP};
 use carrystep_tests::moves;
 use carrystep_tests::pages::{self, grouped, says, word};
 use std::fmt::Display;
@@ -54,10 +55,20 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
     let time = plan.build.timebase;
     let moved = &plan.moves[0];
     let (pins, steps) = (axis.pins, moved.axes[0].steps);
+    // The first segment ends where the remainder of the half is used up.
+    let (middle, cut) = (moved.ticks as f64 / 2.0, moved.axes[0].segments[0].ticks);
+    let middle = format!("{}{}", grouped(middle as u64), &format!("{:.1}", middle.fract())[1..]);
     // The least time of the axis alone: a triangle from the start speed at the greatest
     // acceleration.
     let alone = 2.0 * ((v * v + a * steps as f64).sqrt() - v) / a;
     let ms = (moved.ticks * time.tick_ns()) as f64 / 1e6;
+    // The triangle that takes the whole ticks of the move.
+    let seconds = ms / 1e3;
+    let top = 2.0 * steps as f64 / seconds - v;
+    let slope = grouped((2.0 * (top - v) / seconds).round() as u64);
+    let (top, from) = (grouped(top.round() as u64), steps as f64 / unit);
+    let segments = word(moved.axes[0].segments.len() as u64);
+    let mhz = time.clock_hz() / 1_000_000;
     let (round, rounds) = (engine.guard.round, engine.guard.enable);
     let powered = round * rounds;
     says(
@@ -66,10 +77,26 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
             format!("x has {unit} steps per unit"),
             format!("start speed of {start} units/s, a speed limit of {speed} units/s"),
             format!("an acceleration limit of {accel} units/s^2"),
-            format!("= {steps} steps and the axis begins at 0, so N = {steps}."),
+            format!("at {mhz} MHz with ticks of {} us.", time.tick_ns() / 1000),
+            format!("asks for `to = {{ x = {from} }}`."),
+            format!("the target is {from} x {unit} = {steps} steps and the axis begins at 0"),
+            format!("so N = {steps}."),
+            format!("It starts at v_s = {v} steps/s, rises to"),
+            format!("The acceleration is 2 ({top} - {v}) / T = {slope} steps/s^2"),
+            format!("A = a h^2 = {slope} x 10^-12 x 2^{FRACTION_BITS} ="),
+            format!(
+                "V = v_s h + A/2 = {} x 2^{FRACTION_BITS} + A/2 =",
+                v * time.tick_ns() as f64 / 1e9
+            ),
+            format!("over all {segments} segments is exactly {steps} x 2^{FRACTION_BITS}."),
             format!("Alone, x would need {:.4} ms.", alone * 1e3),
+            format!("just under the limit of {} steps/s^2.", grouped(a as u64)),
+            format!("The middle of the move is at {middle} ticks"),
+            format!("The cut after {cut} ticks distributes"),
+            format!("in the first {cut} of these ticks"),
+            format!("x has a time slot of {TIME_SLOT_CLOCKS} clocks on the one adder"),
             format!("T = {ms:.3} ms, {} ticks", moved.ticks),
-            format!("has {} segments:", word(moved.axes[0].segments.len() as u64)),
+            format!("has {segments} segments:"),
             format!("in rounds of {round} ticks"),
             format!("to {rounds} rounds, {powered} ticks."),
             format!("accepted at the end of tick {}.", powered + 1),
@@ -81,6 +108,7 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
 
 #[test]
 fn flow_of_a_move_page_finds_the_first_step_as_addition_does() {
+    const STEP: f64 = ONE_STEP as f64;
     let plan = moves::demo();
     let time = plan.build.timebase;
     let first = plan.moves[0].axes[0].segments[0];
@@ -99,9 +127,35 @@ fn flow_of_a_move_page_finds_the_first_step_as_addition_does() {
     let (whole, clocks, of_phase) = (ticks - 1, time.clocks_per_tick(), time.clocks_per_phase());
     let sum = format!("{whole} x {clocks} + {phase} x {of_phase} + {}", time.latency_clocks());
     let us = whole * time.tick_ns() / 1000;
+    // The profile passes half a step at the constant acceleration of the first segment.
+    let (v, a) = (first.v as f64 / STEP, first.a as f64 / STEP);
+    let v = v - 0.5 * a;
+    let due = ((v * v + a).sqrt() - v) / a * time.tick_ns() as f64;
+    let early = due - (whole * time.tick_ns()) as f64;
+    let of_phase_ns = time.tick_ns() as f64 / f64::from(time.phases());
+    let on_the_pin =
+        whole * u64::from(clocks) + u64::from(phase as u32 * of_phase) + time.latency_clocks();
+    // The start is accepted in the tick after those in which the drivers have power, and the axes
+    // begin at the end of the tick after that one.
+    let guard = moves::shipped("demo").0.machine.engine().guard;
+    let begins = u64::from(guard.round * guard.enable + 2) * u64::from(clocks);
+    let ps = grouped(time.clock_to_ps(begins + on_the_pin));
     says(
         "docs/flow-of-a-move.md",
         &[
+            format!("The profile passes this step at {:.3} us, so", due / 1e3),
+            format!("the measured time is m_1 = {:.3} us", (due - early) / 1e3),
+            format!("the error e_1 = {:.1} ns", -early),
+            format!("the time of the profile t_1 = {:.3} us", due / 1e3),
+            format!("the edge is {early:.0} ns early, less than one phase of {of_phase_ns} ns."),
+            format!("{clocks} + {sum} = {}.", grouped(u64::from(clocks) + on_the_pin)),
+            format!("So the edge of tick {ticks} with q = {phase} is on the pin in cycle"),
+            format!(
+                "{} + {sum} = {} which is {ps} ps after configuration.",
+                grouped(begins),
+                grouped(begins + on_the_pin)
+            ),
+            format!("`STEP` rises at {ps} ps."),
             format!("In tick {ticks} after the start the sum P + V carries"),
             format!("So q = {phase}:"),
             format!("{us} us after the start."),
@@ -124,9 +178,10 @@ fn machine_file_page_gives_the_times_of_a_default_guard() {
     says(
         "docs/machine-files.md",
         &[
-            format!("the default times this is {round} ticks"),
+            format!("With ticks of {tick_ns} ns and the default times this is {round} ticks"),
             format!("{} ms are {fits} such rounds", watchdog.least),
             format!("would be {shorter} rounds of {} ticks", round / 2),
+            format!("with ticks of {tick_ns} ns and the default times, the watchdog stops"),
             format!("after {} to {} ms of silence", watchdog.least, watchdog.most),
             format!("accepted after {} to {} us", debounce.least, debounce.most),
             format!("the default times a round has {round} ticks"),

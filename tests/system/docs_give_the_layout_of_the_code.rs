@@ -3,7 +3,7 @@
 
 use carrystep_core::engine::{MAX_AXES, QUEUE, SEGMENT_WORDS};
 use carrystep_core::link::ANSWER;
-use carrystep_hdl::engine::layout::INDICES;
+use carrystep_hdl::engine::layout::{self, INDICES};
 use carrystep_tests::pages::{self, says, word};
 use carrystep_tests::sources::{behind, whole};
 
@@ -30,7 +30,9 @@ fn engine_page_draws_the_beats_of_the_layout() {
         })
         .map(|(at, _)| at)
         .collect();
-    assert_eq!(places.len(), 17, "{head}");
+    let numbers: Vec<usize> = head.split_whitespace().filter_map(|n| n.parse().ok()).collect();
+    assert_eq!(numbers, (0..=beat("BEAT_PHASE")).collect::<Vec<_>>(), "{head}");
+    assert_eq!(places.len(), numbers.len(), "{head}");
     let rows: [(&str, &[(&str, &str)]); 3] = [
         (
             "reads",
@@ -57,7 +59,7 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("P+V'", "BEAT_SUM_P_HIGH"),
                 ("V/2", "BEAT_BISECT_1"),
                 ("V/4", "BEAT_BISECT_2"),
-                ("V/8", "BEAT_BISECT_3"),
+                ("V/8  V/16", "BEAT_BISECT_3"),
             ],
         ),
         (
@@ -109,6 +111,45 @@ fn engine_page_draws_the_beats_of_the_layout() {
     assert_eq!(at("BEAT_WRITE_V_LOW"), v + write);
 }
 
+/// Every slot of the drawing begins with the words of a segment, and ends with a word of the state
+/// of the axis.
+#[test]
+fn engine_page_draws_the_words_of_the_memory() {
+    let page = pages::file("docs/engine.md");
+    let head = line_of(&page, "word       0");
+    let place = |word: u64| head.find(&format!(" {word}")).expect("a word") + 1;
+    let numbers: Vec<u64> = head.split_whitespace().filter_map(|n| n.parse().ok()).collect();
+    assert_eq!(numbers, (0..=layout::WORD_STATE).collect::<Vec<_>>(), "{head}");
+    let slots = [
+        ("slot 0  ", "P, low", vec![layout::SLOT_P_LOW]),
+        ("slot 1  ", "P, high", vec![layout::SLOT_P_HIGH]),
+        ("slot 2  ", "position", vec![layout::SLOT_POSITION]),
+        ("slot 3  ", "discarded steps", vec![layout::SLOT_DISCARDED]),
+        ("slot 4 5", "-s, low and high", vec![layout::SLOT_DOWN_LOW, layout::SLOT_DOWN_HIGH]),
+        ("slot 6 7", "s, low and high", vec![layout::SLOT_UP_LOW, layout::SLOT_UP_HIGH]),
+    ];
+    for (name, state, numbers) in slots {
+        let row = line_of(&page, name);
+        let shown: Vec<u64> = name.split_whitespace().filter_map(|n| n.parse().ok()).collect();
+        assert_eq!(shown, numbers, "{row}");
+        for (word, text) in [
+            (layout::WORD_TICKS, "ticks-1 "),
+            (layout::WORD_V_LOW, "V "),
+            (layout::WORD_A_LOW, "A "),
+            (layout::WORD_J_LOW, "J "),
+            (layout::WORD_STATE, state),
+        ] {
+            assert!(row[place(word)..].starts_with(text), "{text} is not at word {word}: {row}");
+        }
+    }
+    // The widths of the three numbers in an address.
+    let word = layout::state_address(0, 0).count_ones();
+    let slot = layout::state_address(1, 0).ilog2() - word;
+    let axis = memory("store.rs", "segments").0 - slot - word;
+    assert_eq!(layout::state_address(0, 1).ilog2(), word);
+    says("docs/engine.md", &[format!("address axis {axis} | slot {slot} | word {word} word 0")]);
+}
+
 /// The bits of the addresses and of the words of a memory of the engine.
 fn memory(file: &str, name: &str) -> (u32, u32) {
     let source = format!("crates/hdl/src/engine/{file}");
@@ -141,7 +182,7 @@ fn engine_page_counts_the_block_rams() {
         "docs/engine.md",
         &[
             format!(
-                "{} x {} bit block RAMs, {} wide and {} deep",
+                "{} x {} bit block RAMs, {} wide and {} deep. It holds {bits}-bit words:",
                 RAM.0,
                 RAM.1,
                 number(wide),

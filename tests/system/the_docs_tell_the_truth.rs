@@ -59,6 +59,8 @@ fn flow_of_a_move_page_has_the_planned_numbers() {
     let strobe =
         format!("tick {} after configuration, in cycle {}", (start + 1) / clocks, grouped(start));
     assert!(text.contains(&strobe), "not said: {strobe}");
+    let sum = format!("\n    {} + ", grouped(start + 1));
+    assert!(text.contains(&sum), "the first tick begins in the cycle after the strobe: {sum}");
     let mut of_parallel = None;
     let job = Job::new(&plan.build, &program, plan.total_ticks());
     run(Level::Model, &job, &mut |cycle, outputs| {
@@ -91,13 +93,32 @@ fn planned(file: &MoveFile) -> Plan {
 
 #[test]
 fn slow_moves_are_as_accurate_as_the_page_says() {
+    const STEPS: i32 = 400;
+    const SPEED: u64 = 5000;
+    const ACCEL: u64 = 25_000;
     let text = page("accuracy.md");
+    let time = planned(&one_axis(
+        &format!("speed_limit = {SPEED}\naccel_limit = {ACCEL}"),
+        "profile = \"trapezoid\"\nto = { x = 1 }",
+    ))
+    .build
+    .timebase;
+    pages::says(
+        "docs/accuracy.md",
+        &[format!(
+            "shows {STEPS} steps with `trapezoid`, at most {SPEED} steps/s and {} steps/s^2, {} phases of a {} us tick",
+            grouped(ACCEL),
+            time.phases(),
+            time.tick_ns() / 1000
+        )],
+    );
     for seconds in [5000, 10_000, 100_000, 1_000_000] {
         let mut cells = vec![grouped(seconds)];
-        for steps in [400, -400] {
+        for steps in [STEPS, -STEPS] {
             let moved =
                 format!("profile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}");
-            let file = one_axis("speed_limit = 5000\naccel_limit = 25000", &moved);
+            let limits = format!("speed_limit = {SPEED}\naccel_limit = {ACCEL}");
+            let file = one_axis(&limits, &moved);
             let plan = planned(&file);
             let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
             assert!(report.passed, "{report}");
@@ -163,11 +184,13 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
 fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
     // A start bit, eight data bits and a stop bit.
     let bits = 1 + 8 + 1;
-    let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
+    let (mhz, mbaud) = (48, 3);
+    let uart = Uart::new(mhz * 1_000_000, mbaud * 1_000_000).expect("a UART");
     let clocks = bits * uart.bit_clocks();
-    assert!(
-        page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud"))
+    let said = format!(
+        "A byte takes {clocks} clocks on a UART of {mbaud} Mbaud if the clock is {mhz} MHz"
     );
+    assert!(page("link.md").contains(&said), "not said: {said}");
 }
 
 #[test]
@@ -217,7 +240,11 @@ fn five_minutes_page_shows_table_1_as_addition_gives_it() {
         })
         .collect();
     assert_eq!(starred, wanted.1);
-    assert!(text.contains(&format!("sixteenth: {} ns", 1000.0 / 16.0)));
+    let time = moves::demo().build.timebase;
+    let (halves, phases) = (pages::word(time.phase_bits().into()), f64::from(time.phases()));
+    let step = format!("a step {halves} times, by additions only,");
+    assert!(pages::joined("docs/five-minutes.md").contains(&step), "not said: {step}");
+    assert!(text.contains(&format!("sixteenth: {} ns", time.tick_ns() as f64 / phases)));
 }
 
 #[test]

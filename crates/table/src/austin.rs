@@ -1,4 +1,4 @@
-//! Constant acceleration with one division per step: D. Austin (2004), "Generate stepper-motor
+//! Constant acceleration with one division per step: D. Austin (2005), "Generate stepper-motor
 //! speed profiles in real time", and Atmel's application note AVR446.
 //!
 //! The recurrence is c_n = c_(n-1) - 2 c_(n-1) / (4 n + 1), in timer counts. Started from the true

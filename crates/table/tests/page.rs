@@ -109,6 +109,11 @@ fn page_gives_the_rounding_of_the_top_speed() {
     let table = table(64, kind);
     let figures = table.figures();
     let khz = figures.timer_hz / 1e3;
+    let prescaler = |prescaler| Timer::avr16(16_000_000, prescaler, TimerMode::Ctc).frequency();
+    says(&[
+        format!("a timer at {} MHz (prescaler 8), which rounds little.", prescaler(8) / 1e6),
+        format!("The command above has prescaler 64, a timer at {} kHz", prescaler(64) / 1e3),
+    ]);
     says(&[format!(
         "At {khz} kHz {RPM} rpm is {:.2} counts; the player uses {:.0}, which is {:.1} rpm.",
         figures.timer_hz / figures.top_speed_asked,
@@ -179,12 +184,19 @@ fn page_gives_the_errors_of_the_sources() {
             ramp("ramp_time_if_OCR+1_s")
         ),
         format!(
-            "the ramp takes {:.3} s and begins at {:.1} Hz | the ramp takes {:.3} s",
+            "the ramp takes {:.3} s and begins at {:.1} Hz | the ramp takes {:.3} s and begins at {:.1} Hz |",
             update("bug_extra_interrupt_time_s"),
             update("first_band_effective_Hz"),
-            update("nominal_time_s")
+            update("nominal_time_s"),
+            // The first entry lasts one pulse, so one interrupt more doubles its time.
+            2.0 * update("first_band_effective_Hz")
         ),
         format!("stop condition ({} pulses)", update("pulses_1ms")),
+        format!("writes OCR {}", ocr("integer_OCR_500rpm")),
+        format!(
+            "and {:.0e} with the printed 31.4 for 10 pi",
+            ocr("300rpm_with_31.4") / ocr("300rpm_div1_exact") - 1.0
+        ),
         format!("every delay {:.0} % too long", 100.0 * (1.0 / first - 1.0)),
         format!("= {first:.5} of it (0.676 in AVR446; {:.1e} off)", 0.676 / first - 1.0),
         format!("dropped: c_1000 = {}", integer("without_rest_c_1000")),
@@ -198,5 +210,55 @@ fn page_gives_the_errors_of_the_sources() {
             "over s^(1/4): wrong by {:.1} us",
             linear("table_lookup_linear_interp_in_fourth_root_of_s", "max_err_us_T0.2s")
         ),
+    ]);
+}
+
+/// The ramp of the source, of which golden_values.rs checks the first entries.
+#[test]
+fn page_gives_the_pulses_of_a_ramp_with_its_last_entry() {
+    let table = Table::new(TableRequest {
+        timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
+        motor: MOTOR,
+        start_frequency: 600.0,
+        top_speed: Speed::Rpm(RPM),
+        kind: Kind::Logistic { entries: 600, steepness: STEEPNESS, centre: None },
+        pulses: Pulses::ByTime(1e-3),
+    })
+    .expect("a table");
+    says(&[format!("used ({} pulses)", table.figures().ramp_pulses)]);
+}
+
+#[test]
+fn page_compares_the_recurrence_with_constant_acceleration() {
+    let ramp = ConstantAcceleration { timer: 1e6, acceleration: 1000.0 };
+    let short = |n: f64| 1.0 - ramp.delay(n) / ramp.exact_delay(n);
+    // The error times n^2 approaches a constant.
+    let [near, far] = [1e3, 1e4].map(|n| 64.0 * n * n * short(n));
+    assert!((near - far).abs() < 0.02, "{near} {far}");
+    says(&[format!(
+        "its delay is {:.1} % short at the second step, and by {far:.0} / 64 n^2 in general.",
+        100.0 * short(1.0)
+    )]);
+    let source = include_str!("../src/table.rs");
+    let (_, rest) = source.split_once("let quarters = (").expect("the index in parts of a step");
+    let parts: f64 = rest.split(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+    assert_eq!(parts, 4.0, "a quarter");
+    says(&["(n = v^2 / 2a, rounded to a quarter of a step)".to_owned()]);
+}
+
+#[test]
+fn page_gives_the_errors_of_rounded_delays() {
+    let test = include_str!("player_plays_the_table.rs");
+    let behind = |text: &str| -> f64 {
+        let (_, rest) = test.split_once(text).expect("the text");
+        let number = rest.split(',').next().expect("a number");
+        number.parse().unwrap_or_else(|_| panic!("{number}"))
+    };
+    let (whole, rounded) = (behind("Arithmetic::Integer, .. } => "), behind("        _ => "));
+    let timer = Timer::avr16(16_000_000, 64, TimerMode::Ctc);
+    says(&[
+        format!("pulse n is at most n/{:.0} counts from the formula**", 1.0 / rounded),
+        format!("(`avr446` in integers: {whole:.0} counts a pulse"),
+        format!("and counts once round, {} counts.", grouped(timer.most_counts().into())),
     ]);
 }

@@ -1,0 +1,118 @@
+//! Figures of the documentation that describe the command and what surrounds it: exit statuses,
+//! documents, the scripts of the action, and long moves and runs.
+
+use carrystep_core::engine::MAX_AXES;
+use carrystep_tests::pages::{self, says, word};
+use carrystep_tests::sources::{behind, power_of_ten, whole};
+
+/// The exit status of a kind of failure, as the source of the command gives it.
+fn status(kind: &str) -> u64 {
+    whole(behind("crates/cli/src/ending.rs", kind))
+}
+
+#[test]
+fn pages_give_the_exit_statuses_of_the_command() {
+    let check = status("Failure::Check => return ExitCode::from(");
+    let nothing = status("Failure::NothingTried => return ExitCode::from(");
+    let run = status("Failure::Run(message) => (");
+    let input = status("Failure::Input(error) => (");
+    let tool = status("Failure::Tool(message) => (");
+    // clap sets the status of wrong arguments; a test of the command requires it.
+    let usage = whole(behind(
+        "crates/cli/tests/command_line/bad_curves.rs",
+        "assert_eq!(output.status.code(), Some(",
+    ));
+    assert_eq!(check, run, "one sentence gives the status of both");
+    says(
+        "README.md",
+        &[format!(
+            "is 0 for success, {run} if the check or the run failed, {input} for bad input or an impossible move, {tool} if a tool is missing, and {nothing} if no case of a sweep ran."
+        )],
+    );
+    says(
+        "docs/json.md",
+        &[
+            format!("if no case of a sweep ran (exit status {nothing})."),
+            format!("a check (exit status {check}), or `doctor` with a missing tool ({tool})."),
+            format!("`run` (exit status {run}: the run failed), `input` ({input}: an error"),
+            format!("`usage` ({usage}: an error in the arguments), `tool` ({tool}: a program"),
+        ],
+    );
+    says(
+        "docs/flashing.md",
+        &[
+            format!("there is no bitstream, and the exit status is {check}."),
+            format!("the exit status is still {check} if the placed gateware"),
+            format!("run the script, and ends with exit status {tool}."),
+        ],
+    );
+    says(
+        "docs/performance.md",
+        &[
+            format!("and makes the exit status {check}."),
+            format!("`passed` is null and the exit status is {nothing}:"),
+            format!("the run ends with status {run} and the message `interrupted"),
+            format!("at the first block that does not fit, with status {input}."),
+        ],
+    );
+    says("docs/homing.md", &[format!("homing fails with exit status {run}, and the message")]);
+}
+
+#[test]
+fn json_page_gives_the_draft_and_the_bits_of_a_number() {
+    let schema = pages::file("docs/schemas/plan.json");
+    let (_, rest) = schema.split_once("https://json-schema.org/draft/").expect("a draft");
+    let (draft, _) = rest.split_once('/').expect("its end");
+    says(
+        "docs/json.md",
+        &[
+            format!("(draft {draft})"),
+            format!("many JSON readers keep only {} bits.", f64::MANTISSA_DIGITS),
+        ],
+    );
+}
+
+/// The page says which option of the shell needs this version.
+#[test]
+fn page_of_the_action_names_the_option_that_needs_a_new_bash() {
+    let script = pages::file(".github/actions/check/check.sh");
+    assert!(script.lines().any(|line| line.starts_with("shopt -s ") && line.contains("globstar")));
+    says("docs/ci.md", &["bash 4 or newer (whose option `globstar` it uses for `**`)".to_owned()]);
+}
+
+#[test]
+fn architecture_page_gives_the_longest_slow_move() {
+    let longest = power_of_ten(behind(
+        "tests/rung_1_plan_stays_with_the_profile/slow.rs",
+        "decades(1.0, 2000.0), decades(100.0, ",
+    ));
+    says("docs/architecture.md", &[format!("of each profile, up to 10^{longest} s.")]);
+}
+
+#[test]
+fn virtual_board_page_gives_the_age_of_a_position() {
+    // The link reads the items of all axes that an engine can have, one in each time slot.
+    let mirror = "crates/hdl/src/link/register_mirror.rs";
+    let items = whole(behind(mirror, "last_item: Literal<5, ")) + 1;
+    let (axes, of_axis) = (6, items / MAX_AXES as u64);
+    says(
+        "docs/virtual-board.md",
+        &[format!(
+            "reads {} items of {} axes one after the other, one in each time slot: with {} axes it reads each position again within {} ticks.",
+            word(of_axis),
+            word(MAX_AXES as u64),
+            word(axes),
+            word(items.div_ceil(axes))
+        )],
+    );
+}
+
+/// The table gives the hour's time on the date of its measurement.
+#[test]
+fn readme_says_how_long_the_hour_takes() {
+    let page = pages::joined("docs/performance.md");
+    let (_, rest) = page.split_once("against the float profile in ").expect("the hour");
+    let seconds: f64 = rest.split(' ').next().and_then(|s| s.parse().ok()).expect("seconds");
+    assert!(seconds < 60.0, "{seconds}");
+    says("README.md", &["one hour of six axes in [under a minute]".to_owned()]);
+}
