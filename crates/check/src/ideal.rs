@@ -58,7 +58,7 @@ impl Due {
 
 /// The whole number nearest to a float, as [`f64::round`] gives it, but without a call where the
 /// float has a fraction.
-fn rounded(x: f64) -> f64 {
+pub(crate) fn rounded(x: f64) -> f64 {
     const ALL_WHOLE: f64 = (1_u64 << 52) as f64;
     if x.abs() >= ALL_WHOLE {
         return x;

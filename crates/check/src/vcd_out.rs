@@ -5,6 +5,7 @@
 //! because the library formats them bit by bit and character by character.
 
 use crate::edge::PinSink;
+use crate::ideal::rounded;
 use crate::vcd_own::{self, OwnCapture};
 use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
 use crate::waves::{WaveWriter, Waves};
@@ -168,12 +169,12 @@ const BINARY: [[u8; 8]; 256] = {
 /// reads as this float. Up to 10^9 this is the whole number of millionths without trailing zeros.
 fn decimal(line: &mut Vec<u8>, value: f64) -> io::Result<()> {
     const MILLION: u64 = 1_000_000;
-    let millionths = (value.abs() * MILLION as f64).round();
+    let millionths = rounded(value.abs() * MILLION as f64);
     let is_short = millionths < 1e15 && millionths / MILLION as f64 == value.abs();
     if !is_short {
         return write!(line, "{value}");
     }
-    if value < 0.0 {
+    if value.is_sign_negative() {
         line.push(b'-');
     }
     let millionths = millionths as u64;

@@ -7,13 +7,13 @@
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::follow::Follower;
-use crate::ideal::tick_ps;
+use crate::ideal::{rounded, tick_ps};
 use crate::speed_register::SpeedRegister;
 use crate::vcd_own::OwnCapture;
 use crate::view::{Place, View};
 use crate::wave_format::{Format, SIGNALS};
 use carrystep_core::{Segment, StartPhase, Timebase};
-use carrystep_profile::Timeline;
+use carrystep_profile::{Timeline, Walk};
 use std::io;
 
 /// Number of samples of the slow signals over a run, in addition to those at edges and segment
@@ -65,7 +65,7 @@ struct AxisWriter<'a> {
     /// Number of the axis.
     number: usize,
     name: &'a str,
-    timeline: &'a Timeline,
+    profile: Walk<'a>,
     follower: Follower<'a>,
     register: SpeedRegister<'a>,
     levels: [bool; 2],
@@ -80,7 +80,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         let axes = shown.map(|(number, axis)| AxisWriter {
             number,
             name: axis.name,
-            timeline: axis.timeline,
+            profile: axis.timeline.walk(),
             follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
             register: SpeedRegister::new(axis.segments),
             levels: [false; 2],
@@ -108,17 +108,16 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         self.ids = self.out.declare(&self.own, &names)?;
         let tick_ps = tick_ps(&self.own.timebase) as f64;
         let tick = from.map_or(0.0, |from| self.since_origin(from) as f64 / tick_ps);
-        let (axes, ids, begin) = (&self.axes, &self.ids, from.unwrap_or(0));
+        let (axes, ids, begin) = (&mut self.axes, &self.ids, from.unwrap_or(0));
         self.out.initial(begin, |out| {
-            for (axis, &[step, dir, position, v, travelled, speed, error]) in axes.iter().zip(ids) {
+            for (axis, &[step, dir, position, v, travelled, speed, error]) in
+                axes.iter_mut().zip(ids)
+            {
                 out.bit(step, axis.levels[0])?;
                 out.bit(dir, axis.levels[1])?;
                 vector(out, position, axis.follower.position(), 32)?;
                 vector(out, v, axis.v, 64)?;
-                let (at, moves) = match from {
-                    Some(_) => (axis.timeline.position_at(tick), axis.timeline.speed_at(tick)),
-                    None => (0.0, 0.0),
-                };
+                let (at, moves) = from.map_or((0.0, 0.0), |_| axis.profile.at(tick));
                 real(out, travelled, at)?;
                 real(out, speed, moves)?;
                 out.real(error, 0.0)?;
@@ -204,8 +203,9 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         // Reals are repeated even if they do not change: a viewer that interpolates needs both ends
         // of a level.
         let tick = since as f64 / tick_ps as f64;
-        real(&mut self.out, profile_position, axis.timeline.position_at(tick))?;
-        real(&mut self.out, profile_speed, axis.timeline.speed_at(tick))
+        let (at, moves) = axis.profile.at(tick);
+        real(&mut self.out, profile_position, at)?;
+        real(&mut self.out, profile_speed, moves)
     }
 
     /// The place of an axis among those that are shown.
@@ -260,7 +260,7 @@ fn vector<F: Format>(out: &mut F, id: F::Id, value: i64, bits: u32) -> io::Resul
 /// characters.
 fn real<F: Format>(out: &mut F, id: F::Id, value: f64) -> io::Result<()> {
     const DIGITS: f64 = 1e6;
-    let short = (value * DIGITS).round() / DIGITS;
+    let short = rounded(value * DIGITS) / DIGITS;
     // Minus zero and values that are not finite are written as 0.
     out.real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
 }

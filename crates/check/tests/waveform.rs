@@ -89,13 +89,10 @@ fn another_reader_sees_the_same_edges_and_values() {
         {
             let samples = get(name);
             assert!(samples.len() > least, "{} {least}", samples.len());
+            let mut walk = timeline.walk();
             for &(ps, shown) in &samples[1..] {
-                let tick = (ps as f64 - ORIGIN_PS as f64) / 1e6;
-                let expected = if name == "profile_speed" {
-                    timeline.speed_at(tick)
-                } else {
-                    timeline.position_at(tick)
-                };
+                let (position, speed) = walk.at((ps as f64 - ORIGIN_PS as f64) / 1e6);
+                let expected = if name == "profile_speed" { speed } else { position };
                 let Shown::Real(found) = shown else { panic!("no real") };
                 assert!(
                     (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),

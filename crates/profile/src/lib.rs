@@ -42,7 +42,7 @@ pub use ramped::RampedMove;
 pub use refusal::{Limit, LimitRefusal, Limits};
 pub use scurve::ScurveRamp;
 pub use sine::SineRamp;
-pub use timeline::{Crossing, Leg, Timeline};
+pub use timeline::{Crossing, Leg, Timeline, Walk};
 pub use widened::Widened;
 
 /// Functions that return the profile for a distance, a time and limits, or a refusal, and functions

@@ -87,11 +87,9 @@ impl Timeline {
         self.legs.iter().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
     }
 
-    /// Signed position in steps, `tick` ticks (not necessarily whole) after the origin.
-    pub fn position_at(&self, tick: f64) -> f64 {
-        self.begun(tick).map_or(0.0, |(leg, begin)| {
-            begin as f64 + leg.sign() * leg.profile.position(self.local(leg, tick))
-        })
+    /// Goes through the moves in order of time.
+    pub fn walk(&self) -> Walk<'_> {
+        Walk { timeline: self, begun: 0 }
     }
 
     /// Signed speed in steps/s, `tick` ticks after the origin; 0 between moves.
@@ -104,21 +102,40 @@ impl Timeline {
         self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.acceleration(t))
     }
 
-    /// The last leg that has begun, and the position at which it began.
-    fn begun(&self, tick: f64) -> Option<(&Leg, i64)> {
-        let after = self.legs.partition_point(|leg| leg.start_tick as f64 <= tick);
-        let last = after.checked_sub(1)?;
-        Some((self.legs.get(last)?, *self.begins.get(last)?))
-    }
-
     fn moving(&self, tick: f64) -> Option<(&Leg, f64)> {
-        let (leg, _) = self.begun(tick)?;
+        let after = self.legs.partition_point(|leg| leg.start_tick as f64 <= tick);
+        let leg = self.legs.get(after.checked_sub(1)?)?;
         let t = self.local(leg, tick);
         (t < leg.profile.duration()).then_some((leg, t))
     }
 
     fn local(&self, leg: &Leg, tick: f64) -> f64 {
         ((tick - leg.start_tick as f64) * self.tick_seconds).min(leg.profile.duration())
+    }
+}
+
+/// Goes through the moves of one axis in order of time.
+#[derive(Debug, Clone)]
+pub struct Walk<'a> {
+    timeline: &'a Timeline,
+    /// The number of legs that have begun.
+    begun: usize,
+}
+
+impl Walk<'_> {
+    /// Signed position in steps and signed speed in steps/s, `tick` ticks (not necessarily whole)
+    /// after the origin. Between moves the speed is 0. Ticks must not decrease from call to call.
+    pub fn at(&mut self, tick: f64) -> (f64, f64) {
+        let Timeline { legs, begins, .. } = self.timeline;
+        while legs.get(self.begun).is_some_and(|leg| leg.start_tick as f64 <= tick) {
+            self.begun += 1;
+        }
+        let Some(last) = self.begun.checked_sub(1) else { return (0.0, 0.0) };
+        let (leg, begin) = (&legs[last], begins[last]);
+        let t = self.timeline.local(leg, tick);
+        let position = begin as f64 + leg.sign() * leg.profile.position(t);
+        let moves = t < leg.profile.duration();
+        (position, if moves { leg.sign() * leg.profile.speed(t) } else { 0.0 })
     }
 }
 
@@ -143,15 +160,17 @@ mod tests {
     #[test]
     fn a_position_is_the_sum_of_what_all_legs_have_travelled() {
         let timeline = Timeline::new(1e-5, legs());
+        let mut walk = timeline.walk();
         for tick in (-20..1700).map(|tick| f64::from(tick) + 0.25) {
             let travelled = |leg: &Leg| {
                 let seconds = (tick - leg.start_tick as f64).clamp(0.0, 100.0) * 1e-5;
                 leg.sign() * leg.profile.position(seconds)
             };
             let sum: f64 = legs().iter().map(travelled).sum();
-            let found = timeline.position_at(tick);
+            let (found, speed) = walk.at(tick);
+            assert_eq!(speed, timeline.speed_at(tick), "tick {tick}");
             assert!((found - sum).abs() < 1e-9, "tick {tick}: {found} is not {sum}");
         }
-        assert!(Timeline::new(1e-5, Vec::new()).position_at(7.0).abs() < 1e-9);
+        assert_eq!(Timeline::new(1e-5, Vec::new()).walk().at(7.0), (0.0, 0.0));
     }
 }
