@@ -35,6 +35,9 @@ pub struct AxisSetup<'a> {
 /// it.
 const ROUNDING_PS: f64 = 2000.0;
 
+/// A factor by which rounding cannot make a product too great.
+const ALMOST: f64 = 1.0 - 1e-12;
+
 /// The number of failures of single pulses that get a message for each axis. The others are only
 /// counted.
 const SPELLED_OUT: usize = 8;
@@ -48,18 +51,23 @@ struct Paired {
     crossing: Crossing,
 }
 
-/// An edge beside the next two crossings.
+/// An edge beside the next crossing.
 struct Compared {
-    /// The lateness of the edge, if it belongs to the one or to the other crossing, ps.
-    lateness_ps: [Option<f64>; 2],
-    /// The time since the last paired pulse on the pins, and the period that the profile has up to
-    /// each of the two crossings, all in ps; `None` before the first paired pulse of a capture
-    /// whose origin is only an estimate.
-    period: Option<(f64, [Option<f64>; 2])>,
+    /// The lateness of the edge, if it belongs to the next crossing, ps.
+    lateness_ps: Option<f64>,
+    /// The time since the last paired pulse on the pins, ps, and the lateness of that pulse; `None`
+    /// before the first paired pulse of a capture whose origin is only an estimate.
+    last: Option<(f64, f64)>,
 }
 
 fn greater(old: Option<f64>, new: f64) -> Option<f64> {
     Some(old.map_or(new, |old| old.max(new)))
+}
+
+/// The period that the profile has between a paired pulse and a crossing, ps: the period on the
+/// pins minus the change of the lateness.
+fn profile_period(since: f64, late: f64, before: f64) -> f64 {
+    since - (late - before)
 }
 
 /// The state of the check of one axis.
@@ -69,6 +77,9 @@ pub(crate) struct AxisCheck<'a> {
     slack_ps: f64,
     /// The greatest tolerance of a fit, ps.
     fit_ps: f64,
+    /// The allowed deviation of a period, ps, before its edge counts as an extra or a missing
+    /// pulse. A fit may shift both edges of the period.
+    tolerance_ps: f64,
     ahead: Ahead<'a>,
     watch: PinWatch,
     position: i64,
@@ -105,6 +116,7 @@ impl<'a> AxisCheck<'a> {
             timebase,
             slack_ps: slack_ps as f64,
             fit_ps,
+            tolerance_ps: phase_ps(&timebase) + slack_ps as f64 + 2.0 * fit_ps,
             ahead,
             watch: PinWatch::default(),
             position: 0,
@@ -165,11 +177,11 @@ impl<'a> AxisCheck<'a> {
             self.fail_pulse(&format!("one pulse too many at {}, {after}", moment(change.ps)));
             return;
         }
-        while self.is_missing(&compared) {
+        while self.is_missing(&compared, change.ps, base) {
             self.miss(base.ps);
             compared = self.compare(change.ps, base);
         }
-        let (Some(&(crossing, _)), [Some(lateness_ps), _]) =
+        let (Some(&(crossing, _)), Some(lateness_ps)) =
             (self.ahead.next()[0], compared.lateness_ps)
         else {
             return;
@@ -189,41 +201,47 @@ impl<'a> AxisCheck<'a> {
         self.ahead.advance();
     }
 
-    /// Compares an edge with the next two crossings.
+    /// Compares an edge with the next crossing.
     fn compare(&self, ps: u64, base: Base) -> Compared {
-        let lateness_ps = self.ahead.next().map(|next| Some(next?.1.lateness_ps(ps, base.ps)));
+        let lateness_ps = self.lateness_ps(0, ps, base);
         let last = match self.last {
             Some(last) => Some((ps.saturating_sub(last.ps) as f64, last.lateness_ps)),
             None if base.is_sure => Some((nearest(i128::from(ps) - i128::from(base.ps)), 0.0)),
             None => None,
         };
-        // The period of the profile is the period on the pins minus the change of the lateness.
-        let period = last
-            .map(|(since, before)| (since, lateness_ps.map(|late| Some(since - (late? - before)))));
-        Compared { lateness_ps, period }
+        Compared { lateness_ps, last }
     }
 
-    /// The allowed deviation of a period, ps, before its edge counts as an extra or a missing
-    /// pulse. A fit may shift both edges of the period.
-    fn tolerance_ps(&self) -> f64 {
-        phase_ps(&self.timebase) + self.slack_ps + 2.0 * self.fit_ps
+    /// The lateness of an edge, if it belongs to the next crossing (0) or to the one after it (1),
+    /// ps.
+    fn lateness_ps(&self, which: usize, ps: u64, base: Base) -> Option<f64> {
+        Some(self.ahead.next()[which]?.1.lateness_ps(ps, base.ps))
     }
 
     fn is_extra(&self, compared: &Compared) -> bool {
-        match compared.period {
-            _ if self.ahead.next()[0].is_none() => true,
-            Some((since, [Some(ideal), _])) => since < ideal / 2.0 - self.tolerance_ps(),
-            _ => false,
+        match (compared.lateness_ps, compared.last) {
+            (None, _) => true,
+            (Some(late), Some((since, before))) => {
+                since < profile_period(since, late, before) / 2.0 - self.tolerance_ps
+            }
+            (Some(_), None) => false,
         }
     }
 
-    fn is_missing(&self, compared: &Compared) -> bool {
-        match compared.period {
-            Some((since, [Some(this), Some(after)])) => {
-                since > f64::midpoint(this, after) + self.tolerance_ps()
-            }
-            _ => false,
+    fn is_missing(&self, compared: &Compared, ps: u64, base: Base) -> bool {
+        let (Some(late), Some((since, before))) = (compared.lateness_ps, compared.last) else {
+            return false;
+        };
+        let this = profile_period(since, late, before);
+        // The crossing after the next one is not earlier, so that most edges need no comparison
+        // with it.
+        if since <= this + self.tolerance_ps {
+            return false;
         }
+        self.lateness_ps(1, ps, base).is_some_and(|late| {
+            let after = profile_period(since, late, before);
+            since > f64::midpoint(this, after) + self.tolerance_ps
+        })
     }
 
     /// Records that the next crossing has no pulse.
@@ -256,7 +274,10 @@ impl<'a> AxisCheck<'a> {
             let jitter = (lateness_ps - last.lateness_ps).abs();
             self.jitter_ps = greater(self.jitter_ps, jitter);
             if last.crossing.start_tick == crossing.start_tick && since > 0.0 {
-                self.ripple = greater(self.ripple, jitter / since);
+                // Most pulses are far from the greatest ripple, and need no division.
+                if self.ripple.is_none_or(|most| jitter > most * since * ALMOST) {
+                    self.ripple = greater(self.ripple, jitter / since);
+                }
                 let ideal = (crossing.seconds - last.crossing.seconds) * PS;
                 self.shortest_ideal_ps = self.shortest_ideal_ps.min(ideal);
             }

@@ -143,6 +143,10 @@ pub struct PlanArguments {
     /// One JSON document, segments included.
     #[arg(long)]
     pub json: bool,
+    /// A JSON document in a line for each move, and one for the whole at the end. No move is kept
+    /// in memory.
+    #[arg(long, conflicts_with_all = ["json", "segments"])]
+    pub json_lines: bool,
 }
 
 /// The arguments of `carrystep simulate`.

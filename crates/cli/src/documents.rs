@@ -34,6 +34,8 @@ documents! {
     "home", 1: home::HomeReport;
     "machine-new", 1: machine::WrittenMachine<'_>;
     "plan", 1: plan::Planned<'_>;
+    "plan-end", 1: plan::PlanEnd;
+    "plan-move", 1: plan::PlannedLine<'_>;
     "profile", 1: profile::Profiles<'_>;
     "simulate", 1: job::RunResult;
     "status", 1: found::FoundBoard;

@@ -28,16 +28,21 @@ pub fn print(text: &str) -> Result<(), Failure> {
     })
 }
 
-/// True if `--json` is one of the arguments.
+/// True if `--json` or `--json-lines` is one of the arguments.
 static JSON_WANTED: AtomicBool = AtomicBool::new(false);
+/// True if a document is a line.
+static JSON_LINES: AtomicBool = AtomicBool::new(false);
 /// True if a document was printed. Each run prints one document, also if it fails.
 static JSON_PRINTED: AtomicBool = AtomicBool::new(false);
 
-/// Looks for `--json` before the arguments are parsed, so that it also applies to arguments that
-/// the parser refuses.
-pub fn json_is_wanted(mut arguments: impl Iterator<Item = OsString>) {
-    let options = arguments.by_ref().take_while(|argument| argument != "--");
-    JSON_WANTED.store(options.into_iter().any(|argument| argument == "--json"), Ordering::Relaxed);
+/// Looks for `--json` and `--json-lines` before the arguments are parsed, so that they also apply to
+/// arguments that the parser refuses.
+pub fn json_is_wanted(arguments: impl Iterator<Item = OsString>) {
+    for argument in arguments.take_while(|argument| argument != "--") {
+        let lines = argument == "--json-lines";
+        JSON_LINES.fetch_or(lines, Ordering::Relaxed);
+        JSON_WANTED.fetch_or(lines || argument == "--json", Ordering::Relaxed);
+    }
 }
 
 /// True if a document is wanted and none has been printed yet.
@@ -45,12 +50,21 @@ pub fn lacks_json() -> bool {
     JSON_WANTED.load(Ordering::Relaxed) && !JSON_PRINTED.load(Ordering::Relaxed)
 }
 
-/// Prints one JSON document, preceded by the name and the version of its schema.
+/// Prints the JSON document of a run, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
-    let text = serde_json::to_string_pretty(&Named::new(document))
+    let named = Named::new(document);
+    let lines = JSON_LINES.load(Ordering::Relaxed);
+    let text =
+        if lines { serde_json::to_string(&named) } else { serde_json::to_string_pretty(&named) };
+    print(&format!("{}\n", text.map_err(|error| Failure::Run(error.to_string()))?))
+}
+
+/// Prints a document that the document of the run follows, as a line.
+pub fn print_json_line(document: &impl Document) -> Result<(), Failure> {
+    let line = serde_json::to_string(&Named::new(document))
         .map_err(|error| Failure::Run(error.to_string()))?;
-    print(&format!("{text}\n"))
+    print(&format!("{line}\n"))
 }
 
 /// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.

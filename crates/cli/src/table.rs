@@ -1,10 +1,10 @@
 //! The table of a plan: the greatest speeds and accelerations of each axis beside the machine's
 //! limits. A plan never exceeds a limit, because the planner would have refused it.
 
-use carrystep_core::Segment;
+use carrystep_core::{Segment, Timebase};
 use carrystep_files::unit::digits;
-use carrystep_files::{Axis, MoveFile, Unit, decimal};
-use carrystep_plan::Plan;
+use carrystep_files::{Axis, Machine, MoveFile, Unit, decimal};
+use carrystep_plan::{Peaks, Plan, PlannedMove};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use schemars::JsonSchema;
@@ -50,43 +50,75 @@ pub struct AxisLimits {
 
 /// Measures a plan against the limits of its machine.
 pub fn limits(file: &MoveFile, plan: &Plan) -> LimitsJson {
-    let axes: Vec<AxisLimits> =
-        file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
-    let (total_ticks, timebase) = (plan.total_ticks(), &plan.build.timebase);
-    LimitsJson {
-        total_ticks,
-        total_s: total_ticks as f64 * timebase.tick_seconds(),
-        tick_ns: timebase.tick_ns(),
-        tick_note: file.machine.chosen_tick.map(|chosen| chosen.to_string()),
-        axes,
+    let mut sum = LimitsSum::new(&file.machine);
+    plan.moves.iter().for_each(|planned| sum.add(planned));
+    sum.limits()
+}
+
+/// Measures moves, one after the other, against the limits of their machine.
+pub struct LimitsSum<'a> {
+    machine: &'a Machine,
+    total_ticks: u64,
+    axes: Vec<AxisSum>,
+}
+
+/// Sums and greatest values of one axis.
+#[derive(Clone, Default)]
+struct AxisSum {
+    segments: usize,
+    steps: i64,
+    travelled: i128,
+    peaks: Peaks,
+}
+
+impl<'a> LimitsSum<'a> {
+    pub fn new(machine: &'a Machine) -> Self {
+        Self { machine, total_ticks: 0, axes: vec![AxisSum::default(); machine.axes.len()] }
+    }
+
+    pub fn add(&mut self, planned: &PlannedMove) {
+        self.total_ticks = planned.start_tick + planned.ticks;
+        for (sum, axis) in self.axes.iter_mut().zip(&planned.axes) {
+            sum.segments += axis.segments.len();
+            sum.steps += axis.steps;
+            sum.travelled += axis.segments.iter().map(distance).sum::<i128>();
+            sum.peaks = sum.peaks.with(&axis.peaks);
+        }
+    }
+
+    pub fn limits(&self) -> LimitsJson {
+        let (machine, total_ticks) = (self.machine, self.total_ticks);
+        let axes = machine.axes.iter().zip(&self.axes);
+        LimitsJson {
+            total_ticks,
+            total_s: total_ticks as f64 * machine.timebase.tick_seconds(),
+            tick_ns: machine.timebase.tick_ns(),
+            tick_note: machine.chosen_tick.map(|chosen| chosen.to_string()),
+            axes: axes.map(|(axis, sum)| sum.limits(axis, &machine.timebase)).collect(),
+        }
     }
 }
 
-fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
-    let timebase = &plan.build.timebase;
-    let planned = || plan.moves.iter().map(|m| &m.axes[index]);
-    let greatest =
-        |of: fn(&carrystep_plan::Peaks) -> u64| planned().map(|a| of(&a.peaks)).max().unwrap_or(0);
-    let (v, a, start) =
-        (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
-    let steps: i64 = planned().map(|a| a.steps).sum();
-    let travelled: i128 = plan.axis_segments(index).map(|(_, segment)| distance(&segment)).sum();
-    let per_second = |units: u64, power: u32| {
-        units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed())
-    };
-    AxisLimits {
-        axis: axis.name.clone(),
-        unit: axis.unit.name.clone(),
-        steps_per_unit: axis.unit.steps,
-        segments: planned().map(|a| a.segments.len()).sum(),
-        steps,
-        residue: travelled - (i128::from(steps) << 64),
-        speed_steps_per_s: per_second(v, 1),
-        speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
-        acceleration_steps_per_s2: per_second(a, 2),
-        acceleration_limit_steps_per_s2: decimal::to_f64(&axis.accel_limit),
-        start_speed_steps_per_s: per_second(start, 1),
-        start_speed_limit_steps_per_s: decimal::to_f64(&axis.start_speed),
+impl AxisSum {
+    fn limits(&self, axis: &Axis, timebase: &Timebase) -> AxisLimits {
+        let Peaks { speed, acceleration, start_speed, .. } = self.peaks;
+        let per_second = |units: u64, power: u32| {
+            units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed())
+        };
+        AxisLimits {
+            axis: axis.name.clone(),
+            unit: axis.unit.name.clone(),
+            steps_per_unit: axis.unit.steps,
+            segments: self.segments,
+            steps: self.steps,
+            residue: self.travelled - (i128::from(self.steps) << 64),
+            speed_steps_per_s: per_second(speed, 1),
+            speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
+            acceleration_steps_per_s2: per_second(acceleration, 2),
+            acceleration_limit_steps_per_s2: decimal::to_f64(&axis.accel_limit),
+            start_speed_steps_per_s: per_second(start_speed, 1),
+            start_speed_limit_steps_per_s: decimal::to_f64(&axis.start_speed),
+        }
     }
 }
 

@@ -20,6 +20,17 @@ pub struct Peaks {
 }
 
 impl Peaks {
+    /// The greater value of each pair.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            speed: self.speed.max(other.speed),
+            acceleration: self.acceleration.max(other.acceleration),
+            jerk: self.jerk.max(other.jerk),
+            start_speed: self.start_speed.max(other.start_speed),
+        }
+    }
+
     /// Greatest speed, steps/s.
     pub fn steps_per_s(&self, timebase: &Timebase) -> f64 {
         per_tick(self.speed, timebase, 1)

@@ -25,8 +25,7 @@ use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
 use carrystep_files::{Axis, Move, MoveFile};
-use carrystep_profile::{Limits, Profile, Real, SharedProfile, Widened};
-use std::sync::Arc;
+use carrystep_profile::{Limits, Profile, Real, SharedProfile};
 
 /// Plans all moves of a file, with profiles computed in floats of type `F`.
 ///
@@ -39,9 +38,30 @@ use std::sync::Arc;
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::<F>::new(file)?;
-    let moves =
-        (0..file.moves.len()).map(|index| planner.plan_move(index)).collect::<Result<_, _>>()?;
+    let moves = planner.by_ref().collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
+}
+
+/// Plans the moves of a file one after the other, and keeps none of them. After an error it goes on
+/// as if the refused move did not exist, so a caller stops there.
+///
+/// # Errors
+/// A [`PlanError`] if no gateware can be built for the machine.
+pub fn planned_moves<F: Real>(
+    file: &MoveFile,
+) -> Result<impl Iterator<Item = Result<PlannedMove, PlanError>> + '_, PlanError> {
+    Planner::<F>::new(file)
+}
+
+impl<F: Real> Iterator for Planner<'_, F> {
+    type Item = Result<PlannedMove, PlanError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let index = self.next;
+        self.file.moves.get(index)?;
+        self.next += 1;
+        Some(self.plan_move(index))
+    }
 }
 
 /// Limits the tolerance of a fit in a short piece, in ticks, to the length of the piece in ticks
@@ -64,6 +84,8 @@ struct Planner<'a, F> {
     limits: Vec<ExactLimits>,
     float_limits: Vec<Limits<F>>,
     pins: Vec<Pins>,
+    /// The next move, counted from 0.
+    next: usize,
     /// Ticks planned so far, from the origin.
     ticks: u64,
 }
@@ -90,6 +112,7 @@ impl<'a, F: Real> Planner<'a, F> {
             limits: file.machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
             float_limits: file.machine.axes.iter().map(float_limits).collect(),
             pins: vec![Pins::new(&timebase); file.machine.axes.len()],
+            next: 0,
             ticks: 0,
         })
     }
@@ -353,7 +376,7 @@ impl<'a, F: Real> Planner<'a, F> {
         if let Some(last) = segments.last_mut() {
             last.last = true;
         }
-        let profile: SharedProfile = Arc::new(Widened::new(profile));
+        let profile = F::widened(profile);
         Ok(PlannedAxis { steps, segments, shape: profile.shape(), profile, peaks })
     }
 

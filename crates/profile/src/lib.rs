@@ -43,7 +43,6 @@ pub use refusal::{Limit, LimitRefusal, Limits};
 pub use scurve::ScurveRamp;
 pub use sine::SineRamp;
 pub use timeline::{Crossing, Leg, Timeline, Walk};
-pub use widened::Widened;
 
 /// Functions that return the profile for a distance, a time and limits, or a refusal, and functions
 /// that return the least time. The functions whose names end in `_ramp` return a single ramp up to

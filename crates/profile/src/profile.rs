@@ -2,15 +2,29 @@
 //!
 //! A new profile implements [`Profile`], and [`crate::Curve`] for its figures.
 
+use crate::widened::Widened;
 use num_traits::Float;
 use std::fmt::Debug;
 use std::sync::Arc;
 
 /// A float type that profiles can be computed in: f64 in the product, f32 where it is accurate
 /// enough.
-pub trait Real: Float + Debug + Send + Sync + 'static {}
+pub trait Real: Float + Debug + Send + Sync + 'static {
+    /// The profile for readers that need f64.
+    fn widened(profile: SharedProfile<Self>) -> SharedProfile;
+}
 
-impl<F: Float + Debug + Send + Sync + 'static> Real for F {}
+impl Real for f64 {
+    fn widened(profile: SharedProfile) -> SharedProfile {
+        profile
+    }
+}
+
+impl Real for f32 {
+    fn widened(profile: SharedProfile<Self>) -> SharedProfile {
+        Arc::new(Widened::new(profile))
+    }
+}
 
 /// Converts a constant of a formula to the nearest float.
 pub(crate) fn real<F: Real>(value: f64) -> F {
@@ -49,6 +63,14 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     ///
     /// The result is well conditioned near rest at both ends of the move.
     fn crossing(&self, x: F) -> F;
+
+    /// The time at which the axis passes position `x`, seconds, and its speed and acceleration
+    /// then: [`Self::crossing`], [`Self::speed`] and [`Self::acceleration`] in one call, which is
+    /// all that a reader of every pulse needs.
+    fn passing(&self, x: F) -> [F; 3] {
+        let t = self.crossing(x);
+        [t, self.speed(t), self.acceleration(t)]
+    }
 
     /// Times inside the move at which the formula changes, seconds, ascending.
     fn breakpoints(&self) -> &[F];

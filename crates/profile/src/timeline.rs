@@ -47,13 +47,13 @@ impl Leg {
     /// The moment at which pulse `k` (1..=steps) is due.
     pub fn crossing(&self, phase: StartPhase, k: u64) -> Crossing {
         let x = phase.pulse_half_steps(k, self.backward) as f64 / 2.0;
-        let seconds = self.profile.crossing(x);
+        let [seconds, speed, acceleration] = self.profile.passing(x);
         Crossing {
             start_tick: self.start_tick,
             seconds,
             backward: self.backward,
-            speed: self.profile.speed(seconds),
-            acceleration: self.profile.acceleration(seconds),
+            speed,
+            acceleration,
         }
     }
 

@@ -4,14 +4,14 @@ use crate::profile::{Profile, Real, SharedProfile, real};
 
 /// A profile that was computed in `F`, for readers that need f64.
 #[derive(Debug, Clone)]
-pub struct Widened<F: Real> {
+pub(crate) struct Widened<F: Real> {
     inner: SharedProfile<F>,
     breakpoints: Vec<f64>,
 }
 
 impl<F: Real> Widened<F> {
     /// Creates the f64 view of a profile.
-    pub fn new(inner: SharedProfile<F>) -> Self {
+    pub(crate) fn new(inner: SharedProfile<F>) -> Self {
         let breakpoints = inner.breakpoints().iter().map(|&b| wide(b)).collect();
         Self { inner, breakpoints }
     }

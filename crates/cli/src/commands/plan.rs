@@ -2,12 +2,11 @@
 
 use crate::arguments::PlanArguments as Arguments;
 use crate::failure::{Failure, refused};
-use crate::job;
-use crate::output;
-use crate::table::{self, LimitsJson};
+use crate::table::{self, LimitsJson, LimitsSum};
+use crate::{interrupt, job, output};
 use carrystep_core::Segment;
-use carrystep_files::{Axis, MoveFile};
-use carrystep_plan::{Plan, PlannedMove, plan};
+use carrystep_files::{Axis, Move, MoveFile};
+use carrystep_plan::{Plan, PlannedMove, plan, planned_moves};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -19,6 +18,25 @@ pub struct Planned<'a> {
     tick_ns: u64,
     limits: LimitsJson,
     moves: Vec<MoveJson<'a>>,
+}
+
+/// What `--json-lines` prints for each move.
+#[derive(JsonSchema, Serialize)]
+pub struct PlannedLine<'a> {
+    /// The number of the move, counted from 1.
+    number: usize,
+    #[serde(flatten)]
+    planned: MoveJson<'a>,
+}
+
+/// What `--json-lines` prints at the end.
+#[derive(JsonSchema, Serialize)]
+pub struct PlanEnd {
+    passed: bool,
+    tick_ns: u64,
+    /// Number of moves.
+    moves: usize,
+    limits: LimitsJson,
 }
 
 #[derive(JsonSchema, Serialize)]
@@ -53,6 +71,9 @@ struct SegmentJson {
 /// Plans a move file and shows the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
+    if arguments.json_lines {
+        return lines(&file);
+    }
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     if arguments.json {
         return output::print_json(&json(&file, &plan));
@@ -61,6 +82,35 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
+    let moves = plan.moves.iter().zip(&file.moves);
+    Planned {
+        passed: true,
+        tick_ns: plan.build.timebase.tick_ns(),
+        limits: table::limits(file, plan),
+        moves: moves.map(|(planned, asked)| move_json(file, planned, asked)).collect(),
+    }
+}
+
+/// Prints each move as soon as it is planned.
+fn lines(file: &MoveFile) -> Result<(), Failure> {
+    let mut sum = LimitsSum::new(&file.machine);
+    let moves = planned_moves::<f64>(file).map_err(|error| refused(file, &error))?;
+    for (index, (planned, asked)) in moves.zip(&file.moves).enumerate() {
+        interrupt::check()?;
+        let planned = planned.map_err(|error| refused(file, &error))?;
+        sum.add(&planned);
+        let planned = move_json(file, &planned, asked);
+        output::print_json_line(&PlannedLine { number: index + 1, planned })?;
+    }
+    output::print_json(&PlanEnd {
+        passed: true,
+        tick_ns: file.machine.timebase.tick_ns(),
+        moves: file.moves.len(),
+        limits: sum.limits(),
+    })
+}
+
+fn move_json<'a>(file: &'a MoveFile, planned: &PlannedMove, asked: &Move) -> MoveJson<'a> {
     let segment = |s: &Segment| SegmentJson {
         ticks: s.ticks,
         v: s.v.to_string(),
@@ -68,7 +118,7 @@ fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
         j: s.j.to_string(),
         last: s.last,
     };
-    let moves = plan.moves.iter().zip(&file.moves).map(|(planned, asked)| MoveJson {
+    MoveJson {
         start_tick: planned.start_tick,
         rest_ticks: planned.rest_ticks,
         ticks: planned.ticks,
@@ -82,12 +132,6 @@ fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
                 segments: planned.segments.iter().map(segment).collect(),
             })
             .collect(),
-    });
-    Planned {
-        passed: true,
-        tick_ns: plan.build.timebase.tick_ns(),
-        limits: table::limits(file, plan),
-        moves: moves.collect(),
     }
 }
 

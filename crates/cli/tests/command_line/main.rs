@@ -27,6 +27,7 @@ mod homing;
 mod inputs;
 #[cfg(target_os = "linux")]
 mod interrupts;
+mod json_lines;
 mod json_names;
 mod junit;
 mod machine_new;
