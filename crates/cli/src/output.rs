@@ -20,12 +20,17 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let painted =
         if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
-    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| {
-        match error.kind() {
-            ErrorKind::BrokenPipe => Failure::ReaderGone,
-            _ => Failure::input(format!("cannot write to standard output: {error}")),
-        }
-    })
+    out.write_all(painted.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|error| not_printed(&error))
+}
+
+/// The reason why standard output could not be written.
+fn not_printed(error: &std::io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Failure::ReaderGone,
+        _ => Failure::input(format!("cannot write to standard output: {error}")),
+    }
 }
 
 /// True if `--json` is one of the arguments.
@@ -45,12 +50,18 @@ pub fn lacks_json() -> bool {
     JSON_WANTED.load(Ordering::Relaxed) && !JSON_PRINTED.load(Ordering::Relaxed)
 }
 
-/// Prints one JSON document, preceded by the name and the version of its schema.
+/// Prints one JSON document, preceded by the name and the version of its schema. The text is
+/// written in blocks, because a plan of many moves has hundreds of megabytes of it.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
-    let text = serde_json::to_string_pretty(&Named::new(document))
-        .map_err(|error| Failure::Run(error.to_string()))?;
-    print(&format!("{text}\n"))
+    let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
+    serde_json::to_writer_pretty(&mut out, &Named::new(document)).map_err(|error| {
+        match error.io_error_kind() {
+            Some(_) => not_printed(&error.into()),
+            None => Failure::Run(error.to_string()),
+        }
+    })?;
+    writeln!(out).and_then(|()| out.flush()).map_err(|error| not_printed(&error))
 }
 
 /// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.

@@ -9,7 +9,7 @@ use carrystep_core::Segment;
 use carrystep_files::{Axis, MoveFile};
 use carrystep_plan::{Plan, PlannedMove, plan};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
 /// What `--json` prints.
@@ -37,7 +37,9 @@ struct AxisJson<'a> {
     steps: i64,
     /// Exact target minus rounded target so far, in steps.
     rounding_steps: f64,
-    segments: Vec<SegmentJson>,
+    #[serde(serialize_with = "segments")]
+    #[schemars(with = "Vec<SegmentJson>")]
+    segments: &'a [Segment],
 }
 
 /// Numbers of 64 bits are strings, because many JSON readers keep only 53 bits.
@@ -48,6 +50,18 @@ struct SegmentJson {
     a: String,
     j: String,
     last: bool,
+}
+
+/// Writes the segments one after another. All of them as text would need several times the memory of
+/// the plan.
+fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(segments.iter().map(|s| SegmentJson {
+        ticks: s.ticks,
+        v: s.v.to_string(),
+        a: s.a.to_string(),
+        j: s.j.to_string(),
+        last: s.last,
+    }))
 }
 
 /// Plans a move file and shows the plan.
@@ -61,13 +75,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
-    let segment = |s: &Segment| SegmentJson {
-        ticks: s.ticks,
-        v: s.v.to_string(),
-        a: s.a.to_string(),
-        j: s.j.to_string(),
-        last: s.last,
-    };
     let moves = plan.moves.iter().zip(&file.moves).map(|(planned, asked)| MoveJson {
         start_tick: planned.start_tick,
         rest_ticks: planned.rest_ticks,
@@ -79,7 +86,7 @@ fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
                 shape: planned.shape,
                 steps: planned.steps,
                 rounding_steps,
-                segments: planned.segments.iter().map(segment).collect(),
+                segments: &planned.segments,
             })
             .collect(),
     });
