@@ -20,12 +20,17 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let painted =
         if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
-    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| {
-        match error.kind() {
-            ErrorKind::BrokenPipe => Failure::ReaderGone,
-            _ => Failure::input(format!("cannot write to standard output: {error}")),
-        }
-    })
+    out.write_all(painted.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|error| not_printed(&error))
+}
+
+/// The reason why standard output could not be written.
+fn not_printed(error: &std::io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Failure::ReaderGone,
+        _ => Failure::input(format!("cannot write to standard output: {error}")),
+    }
 }
 
 /// True if `--json` or `--json-lines` is one of the arguments.
@@ -53,18 +58,29 @@ pub fn lacks_json() -> bool {
 /// Prints the JSON document of a run, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
-    let named = Named::new(document);
-    let lines = JSON_LINES.load(Ordering::Relaxed);
-    let text =
-        if lines { serde_json::to_string(&named) } else { serde_json::to_string_pretty(&named) };
-    print(&format!("{}\n", text.map_err(|error| Failure::Run(error.to_string()))?))
+    write_json(document, JSON_LINES.load(Ordering::Relaxed))
 }
 
 /// Prints a document that the document of the run follows, as a line.
 pub fn print_json_line(document: &impl Document) -> Result<(), Failure> {
-    let line = serde_json::to_string(&Named::new(document))
-        .map_err(|error| Failure::Run(error.to_string()))?;
-    print(&format!("{line}\n"))
+    write_json(document, true)
+}
+
+/// Writes a document to standard output, in one line or indented. The text is written in blocks,
+/// because a plan of many moves has hundreds of megabytes of it.
+fn write_json(document: &impl Document, in_a_line: bool) -> Result<(), Failure> {
+    let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
+    let named = Named::new(document);
+    let written = if in_a_line {
+        serde_json::to_writer(&mut out, &named)
+    } else {
+        serde_json::to_writer_pretty(&mut out, &named)
+    };
+    written.map_err(|error| match error.io_error_kind() {
+        Some(_) => not_printed(&error.into()),
+        None => Failure::Run(error.to_string()),
+    })?;
+    writeln!(out).and_then(|()| out.flush()).map_err(|error| not_printed(&error))
 }
 
 /// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.

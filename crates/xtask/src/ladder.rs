@@ -1,7 +1,7 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
 use crate::shell::{self, TaskResult};
-use crate::{accuracy, arrows, decisions, readme, testing, tools};
+use crate::{accuracy, arrows, bench, decisions, readme, testing, tools};
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an
 /// error.
@@ -14,17 +14,8 @@ pub fn climb() -> TaskResult {
     let tests = testing::build()?;
     readme::check()?;
     accuracy::check()?;
-    bench(false, true)?;
+    bench::run(false, true)?;
     tests.run()
-}
-
-/// Times everything; what is printed is the bench's own.
-pub fn bench(json: bool, smoke: bool) -> TaskResult {
-    tools::install()?;
-    let mut arguments = vec!["bench", "--quiet", "--workspace", "--bench", "levels", "--"];
-    arguments.extend(json.then_some("--json"));
-    arguments.extend(smoke.then_some("--smoke"));
-    shell::run("cargo", &arguments)
 }
 
 /// Rung 7 by itself, with its table.

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod arrows;
+mod bench;
 mod circles;
 mod decisions;
 mod ladder;
@@ -61,7 +62,8 @@ enum Chore {
     Lint,
     /// Check that the link's core needs no `std`, on a bare microcontroller.
     Bare,
-    /// Time the fast model beside every other level, and the writers beside Verilator's.
+    /// Time the fast model beside every other level, the writers beside Verilator's, and each command
+    /// with growing work.
     Bench {
         /// One JSON document instead of the table.
         #[arg(long)]
@@ -102,7 +104,7 @@ fn main() -> ExitCode {
         Chore::Decisions => decisions::write(),
         Chore::Lint => ladder::lint(),
         Chore::Bare => ladder::bare(),
-        Chore::Bench { json, smoke } => ladder::bench(json, smoke),
+        Chore::Bench { json, smoke } => bench::run(json, smoke),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
         Chore::Accuracy => accuracy::write(),

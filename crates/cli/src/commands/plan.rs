@@ -8,7 +8,7 @@ use carrystep_core::Segment;
 use carrystep_files::{Axis, Move, MoveFile};
 use carrystep_plan::{Plan, PlannedMove, plan, planned_moves};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
 /// What `--json` prints.
@@ -55,7 +55,9 @@ struct AxisJson<'a> {
     steps: i64,
     /// Exact target minus rounded target so far, in steps.
     rounding_steps: f64,
-    segments: Vec<SegmentJson>,
+    #[serde(serialize_with = "segments")]
+    #[schemars(with = "Vec<SegmentJson>")]
+    segments: &'a [Segment],
 }
 
 /// Numbers of 64 bits are strings, because many JSON readers keep only 53 bits.
@@ -66,6 +68,18 @@ struct SegmentJson {
     a: String,
     j: String,
     last: bool,
+}
+
+/// Writes the segments one after another. All of them as text would need several times the memory of
+/// the plan.
+fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(segments.iter().map(|s| SegmentJson {
+        ticks: s.ticks,
+        v: s.v.to_string(),
+        a: s.a.to_string(),
+        j: s.j.to_string(),
+        last: s.last,
+    }))
 }
 
 /// Plans a move file and shows the plan.
@@ -99,8 +113,8 @@ fn lines(file: &MoveFile) -> Result<(), Failure> {
         interrupt::check()?;
         let planned = planned.map_err(|error| refused(file, &error))?;
         sum.add(&planned);
-        let planned = move_json(file, &planned, asked);
-        output::print_json_line(&PlannedLine { number: index + 1, planned })?;
+        let line = PlannedLine { number: index + 1, planned: move_json(file, &planned, asked) };
+        output::print_json_line(&line)?;
     }
     output::print_json(&PlanEnd {
         passed: true,
@@ -110,14 +124,7 @@ fn lines(file: &MoveFile) -> Result<(), Failure> {
     })
 }
 
-fn move_json<'a>(file: &'a MoveFile, planned: &PlannedMove, asked: &Move) -> MoveJson<'a> {
-    let segment = |s: &Segment| SegmentJson {
-        ticks: s.ticks,
-        v: s.v.to_string(),
-        a: s.a.to_string(),
-        j: s.j.to_string(),
-        last: s.last,
-    };
+fn move_json<'a>(file: &'a MoveFile, planned: &'a PlannedMove, asked: &Move) -> MoveJson<'a> {
     MoveJson {
         start_tick: planned.start_tick,
         rest_ticks: planned.rest_ticks,
@@ -129,7 +136,7 @@ fn move_json<'a>(file: &'a MoveFile, planned: &PlannedMove, asked: &Move) -> Mov
                 shape: planned.shape,
                 steps: planned.steps,
                 rounding_steps,
-                segments: planned.segments.iter().map(segment).collect(),
+                segments: &planned.segments,
             })
             .collect(),
     }

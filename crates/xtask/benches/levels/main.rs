@@ -1,8 +1,10 @@
 //! `cargo xtask bench` measures every level on the same moves, side by side in one run.
 //!
 //! The fast model and Verilator are measured in processor time over the whole move, each in its
-//! fastest configuration. The other levels are measured over the beginning of the move.
+//! fastest configuration. The other levels are measured over the beginning of the move. At the end
+//! the released command itself is measured, with growing work.
 
+mod growth;
 mod levels;
 mod moves;
 mod report;
@@ -17,6 +19,7 @@ use clap::Parser;
 use moves::{DENSITIES, Density, Moves, STEADY};
 use report::{BenchReport, BenchRow};
 use std::io::Write as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 use verilator::Verilated;
@@ -38,6 +41,9 @@ struct Arguments {
     /// Only see that everything runs: about a second for each row, and no figure is judged.
     #[arg(long)]
     smoke: bool,
+    /// The command `carrystep` of the same build; `cargo xtask bench` passes it.
+    #[arg(long, value_name = "FILE")]
+    carrystep: PathBuf,
     /// Passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
@@ -45,7 +51,7 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let text = measure(arguments.smoke).and_then(|report| {
+    let text = measure(&arguments.carrystep, arguments.smoke).and_then(|report| {
         let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
         Ok((if arguments.json { format!("{json}\n") } else { report.to_string() }, report.passed))
     });
@@ -55,7 +61,7 @@ fn main() -> ExitCode {
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn measure(smoke: bool) -> Result<BenchReport, String> {
+fn measure(carrystep: &Path, smoke: bool) -> Result<BenchReport, String> {
     let moves = DENSITIES.iter().map(Moves::load).collect::<Result<Vec<_>, _>>()?;
     let build = &moves[0].plan.build;
     let verilog = carrystep_verilog::parallel_verilog(build, AXES, "sim/bench/machine.toml")
@@ -94,6 +100,7 @@ fn measure(smoke: bool) -> Result<BenchReport, String> {
             ));
         }
     }
+    let growth = growth::measure(carrystep, smoke, &mut failures)?;
     if smoke {
         failures.clear();
     }
@@ -116,6 +123,7 @@ fn measure(smoke: bool) -> Result<BenchReport, String> {
         vcd_mb_per_s: ports.megabytes_per_second(),
         waveform_mb_per_s: waveform.megabytes_per_second(),
         verilator_vcd_mb_per_s: theirs.megabytes_per_second(),
+        growth,
         measured_s: begin.elapsed().as_secs_f64(),
         failures,
     })

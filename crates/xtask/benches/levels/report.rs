@@ -34,6 +34,8 @@ pub struct BenchReport {
     /// MB/s.
     pub waveform_mb_per_s: f64,
     pub verilator_vcd_mb_per_s: f64,
+    /// How the time of each command grows with its work.
+    pub growth: Growth,
     pub measured_s: f64,
     /// What is wrong with the run; empty if it passed.
     pub failures: Vec<String>,
@@ -57,6 +59,32 @@ pub struct BenchRow {
     pub verilator: f64,
     pub ratio: f64,
     pub ratio_wanted: f64,
+}
+
+/// The growth of all commands.
+#[derive(Debug, Serialize)]
+pub struct Growth {
+    /// Processor time of `carrystep --version`, ms. It is subtracted from the time of each run.
+    pub start_up_ms: f64,
+    /// The greatest ratio with which a row passes.
+    pub ratio_wanted: f64,
+    pub rows: Vec<GrowthRow>,
+}
+
+/// Processor time of a command per unit of work, with 1, 10 and 100 times the work.
+#[derive(Debug, Serialize)]
+pub struct GrowthRow {
+    pub command: &'static str,
+    pub unit: &'static str,
+    /// The amount of work at factor 1.
+    pub units: u64,
+    pub us_per_unit_1: f64,
+    pub us_per_unit_10: f64,
+    /// Null in a smoke run, as is `ratio_100`.
+    pub us_per_unit_100: Option<f64>,
+    /// The time per unit as a multiple of that at factor 1.
+    pub ratio_10: f64,
+    pub ratio_100: Option<f64>,
 }
 
 impl fmt::Display for BenchReport {
@@ -105,10 +133,45 @@ impl fmt::Display for BenchReport {
             "VCD of the ports: {:.0} MB/s, Verilator's own trace of them {:.0} MB/s; our whole waveform {:.0} MB/s",
             self.vcd_mb_per_s, self.verilator_vcd_mb_per_s, self.waveform_mb_per_s
         )?;
+        write!(f, "{}", self.growth)?;
         writeln!(f, "measured in {:.0} s", self.measured_s)?;
         if !self.judged {
             writeln!(f, "a smoke run: nothing was judged")?;
         }
         self.failures.iter().try_for_each(|failure| writeln!(f, "FAILED: {failure}"))
+    }
+}
+
+impl fmt::Display for Growth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "\nprocessor time per unit of work at 1, 10 and 100 times the work, without the {:.1} ms to start:\n",
+            self.start_up_ms
+        )?;
+        writeln!(
+            f,
+            "| command | unit | units at 1 | us at 1 | at 10 | at 100 | 10 / 1 | 100 / 1 |"
+        )?;
+        writeln!(f, "|---|---|---|---|---|---|---|---|")?;
+        let cell = |value: Option<f64>, digits: usize| {
+            value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        for row in &self.rows {
+            let digits = if row.us_per_unit_1 < 10.0 { 3 } else { 1 };
+            writeln!(
+                f,
+                "| `{}` | {} | {} | {} | {} | {} | {:.2} | {} |",
+                row.command,
+                row.unit,
+                row.units,
+                cell(Some(row.us_per_unit_1), digits),
+                cell(Some(row.us_per_unit_10), digits),
+                cell(row.us_per_unit_100, digits),
+                row.ratio_10,
+                cell(row.ratio_100, 2)
+            )?;
+        }
+        writeln!(f, "\na ratio is at most {}", self.ratio_wanted)
     }
 }

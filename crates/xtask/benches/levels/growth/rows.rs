@@ -1,0 +1,57 @@
+//! The commands whose growth is measured, and the amount of work of each. To add a command: a line
+//! in `ROWS`.
+
+use super::inputs::Input;
+
+/// A command whose work grows with its input.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    /// The words of the command line. `MOVE`, `CAPTURE`, `SWEEP` and `OUT` stand for files, `UNITS`
+    /// for the amount of work.
+    pub command: &'static str,
+    pub input: Input,
+    /// The unit of work.
+    pub unit: &'static str,
+    /// The amount of work at factor 1. It takes about 50 ms of processor time or more, except where
+    /// the command accepts too little input for that at the greatest factor.
+    pub units: u64,
+}
+
+const fn moves(command: &'static str, units: u64) -> Row {
+    Row { command, input: Input::Moves, unit: "move", units }
+}
+
+/// All commands whose work grows with their input, except `run`, which keeps the pace of its board.
+pub const ROWS: [Row; 14] = [
+    // At the greatest factor, the move file has nearly the 4 MiB that carrystep reads.
+    moves("plan MOVE", 1_000),
+    moves("plan MOVE --json", 1_000),
+    moves("simulate MOVE", 250),
+    moves("simulate MOVE --core parallel", 1_000),
+    moves("simulate MOVE --vcd OUT", 250),
+    moves("simulate MOVE --fst OUT", 250),
+    moves("simulate MOVE --csv OUT", 250),
+    moves("simulate MOVE --plot OUT", 250),
+    Row { command: "simulate MOVE", input: Input::OneMove, unit: "pulse", units: 1_000_000 },
+    Row { command: "check CAPTURE MOVE", input: Input::Capture, unit: "move", units: 500 },
+    Row { command: "sweep SWEEP --sample UNITS", input: Input::Sweep, unit: "case", units: 200 },
+    // A list of a profile and the ramp of a table have at most a million steps.
+    Row {
+        command: "profile trapezoid --steps UNITS --speed 50000 --accel 500000 --csv OUT",
+        input: Input::Arguments,
+        unit: "step",
+        units: 10_000,
+    },
+    Row {
+        command: "profile trapezoid --steps UNITS --speed 50000 --accel 500000 --json",
+        input: Input::Arguments,
+        unit: "step",
+        units: 10_000,
+    },
+    Row {
+        command: "table sine --ramp-steps UNITS --clock-hz 16000000 --prescaler 256 --top-speed 50000 --pulses-by-time 0.001",
+        input: Input::Arguments,
+        unit: "step",
+        units: 10_000,
+    },
+];

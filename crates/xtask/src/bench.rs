@@ -1,0 +1,61 @@
+//! Builds the benchmark and the released command that it measures, and runs it.
+
+use crate::shell::{self, TaskResult};
+use crate::tools;
+use serde_json::Value;
+
+/// One call of cargo for both, with all crates of the workspace: their features are then those of a
+/// test run, which has compiled everything but the benchmark itself.
+const BUILD: [&str; 9] = [
+    "build",
+    "--quiet",
+    "--release",
+    "--workspace",
+    "--bench",
+    "levels",
+    "--bin",
+    "carrystep",
+    "--message-format=json-render-diagnostics",
+];
+
+/// Times everything. What is printed is the benchmark's own output.
+pub fn run(json: bool, smoke: bool) -> TaskResult {
+    tools::install()?;
+    let messages = shell::read_stdout("cargo", &BUILD)?;
+    let levels = executable(&messages, "levels", "bench")?;
+    let carrystep = executable(&messages, "carrystep", "bin")?;
+    let mut arguments = vec!["--carrystep", &carrystep];
+    arguments.extend(json.then_some("--json"));
+    arguments.extend(smoke.then_some("--smoke"));
+    shell::run(&levels, &arguments)
+}
+
+/// The path of an executable in cargo's messages, one JSON document a line.
+fn executable(messages: &str, name: &str, kind: &str) -> Result<String, String> {
+    let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let mut paths = messages
+        .filter(|message| message["target"]["name"] == name && message["target"]["kind"][0] == kind)
+        .filter_map(|message| message["executable"].as_str().map(str::to_owned));
+    paths.next().ok_or_else(|| format!("cargo has built no {kind} {name}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::executable;
+    use serde_json::json;
+
+    #[test]
+    fn executable_is_found_by_name_and_kind() {
+        let built = |name: &str, kind: &str, path: &str| {
+            json!({"target": {"name": name, "kind": [kind]}, "executable": path}).to_string()
+        };
+        let messages = [
+            "a build script prints this".to_owned(),
+            built("levels", "lib", "/lib"),
+            built("levels", "bench", "/bench"),
+        ]
+        .join("\n");
+        assert_eq!(executable(&messages, "levels", "bench"), Ok("/bench".to_owned()));
+        assert!(executable(&messages, "carrystep", "bin").is_err());
+    }
+}
