@@ -48,9 +48,14 @@ pub fn lacks_json() -> bool {
 /// Prints one JSON document, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
+    print(&json_text(document)?)
+}
+
+/// The text of a JSON document, preceded by the name and the version of its schema.
+pub fn json_text(document: &impl Document) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(&Named::new(document))
         .map_err(|error| Failure::Run(error.to_string()))?;
-    print(&format!("{text}\n"))
+    Ok(text + "\n")
 }
 
 /// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.
