@@ -48,14 +48,15 @@ pub struct KeptShard {
 
 impl KeptShard {
     /// Claims the file and reads the progress that it keeps. `fresh` is the progress of a shard that
-    /// begins; the result is that, or the progress from the file. Unless the shard is complete, the
-    /// file is written, so that a folder that cannot be written is detected before the work.
+    /// begins; the result is that, or the progress from the file. Unless the file keeps a complete
+    /// shard, it is written, so that a folder that cannot be written is detected before the work.
     ///
     /// # Errors
     /// The file cannot be read or written, keeps no progress, is damaged, or is of another run.
     pub fn open(path: &Path, fresh: Progress) -> Result<(Self, Progress), SweepError> {
         let failed = |fault| SweepError::Part { path: path.display().to_string(), fault };
         let (file, left) = StateFile::open(path)?;
+        let is_new = left.is_none();
         let progress = match left {
             None => fresh,
             Some(bytes) => {
@@ -72,7 +73,7 @@ impl KeptShard {
         };
         let path = path.to_owned();
         let mut kept = Self { path, file, written: Instant::now(), took: Duration::ZERO };
-        if !progress.is_complete() {
+        if is_new || !progress.is_complete() {
             kept.save(&progress)?;
         }
         Ok((kept, progress))

@@ -28,17 +28,16 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
         .file
         .as_ref()
         .map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
-    let (report, junit, written) = match &arguments.file {
+    let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
+    let written = arguments.report.as_deref().map(OutputFile::create).transpose()?;
+    let report = match &arguments.file {
         Some(file) => {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
-            let (junit, written) = outputs(arguments, name)?;
-            (shard(arguments, &sweep)?, junit, written)
+            shard(arguments, &sweep)?
         }
         None => {
             let parts = arguments.merge.iter().map(|path| Part::read(path));
-            let report = SweepReport::merge(parts.collect::<Result<Vec<_>, _>>()?)?;
-            let (junit, written) = outputs(arguments, name)?;
-            (report, junit, written)
+            SweepReport::merge(parts.collect::<Result<Vec<_>, _>>()?)?
         }
     };
     if let Some(junit) = junit {
@@ -59,16 +58,6 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
         Some(false) => Err(Failure::Check),
         None => Err(Failure::NothingTried),
     }
-}
-
-/// Begins the files for the report.
-fn outputs(
-    arguments: &Sweep,
-    name: String,
-) -> Result<(Option<JunitFile>, Option<OutputFile>), Failure> {
-    let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
-    let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
-    Ok((junit, report))
 }
 
 /// Judges the cases of a shard, from where an earlier run has stopped.
