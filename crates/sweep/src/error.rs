@@ -1,6 +1,6 @@
 //! Why a sweep cannot run, or why its parts cannot be merged.
 
-use crate::report::Difference;
+use crate::difference::Difference;
 use crate::shard::Shard;
 use carrystep_files::{InputError, InputFailure, StateFailure};
 use std::fmt;

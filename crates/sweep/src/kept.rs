@@ -5,9 +5,10 @@
 //! process leaves a whole file. A file that was changed or cut off in another way does not have its
 //! SHA-256 and is refused.
 
+use crate::difference::Difference;
 use crate::error::{PartFault, SweepError};
 use crate::progress::Progress;
-use crate::report::{Difference, SweepReport};
+use crate::report::SweepReport;
 use carrystep_files::StateFile;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

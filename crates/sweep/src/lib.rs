@@ -7,6 +7,7 @@
 //! other programs start the shards of a sweep on many machines.
 
 mod cluster;
+mod difference;
 mod error;
 mod file;
 mod kept;
@@ -17,11 +18,12 @@ mod run;
 mod shard;
 
 pub use cluster::{Cluster, ClusterFile};
+pub use difference::Difference;
 pub use error::{PartFault, SweepError, Unfinished};
 pub use file::{Case, SweepFile, Values};
 pub use kept::KeptShard;
 pub use merge::Part;
 pub use progress::Progress;
-pub use report::{CaseVerdict, Difference, FailedCase, JudgedBy, SweepReport, Worst};
+pub use report::{CaseVerdict, FailedCase, JudgedBy, SweepReport, Worst};
 pub use run::run;
 pub use shard::Shard;

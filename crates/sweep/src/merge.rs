@@ -1,9 +1,10 @@
 //! Merges the shards of a sweep into one report, or refuses to.
 
+use crate::difference::Difference;
 use crate::error::{PartFault, SweepError, Unfinished};
 use crate::kept;
 use crate::progress::Progress;
-use crate::report::{Difference, SweepReport};
+use crate::report::SweepReport;
 use crate::shard::Shard;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -2,6 +2,7 @@
 //!
 //! The names of the fields are part of `--json` and may not change.
 
+use crate::difference::Difference;
 use crate::error::SweepError;
 use crate::file::{Case, SweepFile, Values};
 use crate::shard::Shard;
@@ -230,17 +231,6 @@ impl SweepReport {
         let ((what, one), (_, other)) = pairs.find(|(one, other)| one != other)?;
         Some(Difference { what, one, other })
     }
-}
-
-/// A property in which two reports differ.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
-    /// The property.
-    pub what: &'static str,
-    /// Its value in the first report.
-    pub one: String,
-    /// Its value in the other report.
-    pub other: String,
 }
 
 /// The text `name = value` of each placeholder, separated by commas.

@@ -3,11 +3,15 @@
 use crate::daemons::{Slurm, process_of};
 use crate::folder::{Folder, kept, shown, succeeded};
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 const SHARDS: u64 = 64;
 
 /// The shard that takes long and is killed.
 const KILLED: &str = "5/64";
+
+/// The time in which Slurm removes the files of a task that was killed.
+const SETTLED: Duration = Duration::from_secs(3);
 
 /// Submits the sweep and returns the job ids of the array and of the merge.
 fn submit(slurm: &Slurm, folder: &Folder) -> (String, String) {
@@ -57,11 +61,20 @@ fn shards_that_are_killed_or_fail_are_finished_later_and_merge_to_one_run() {
     });
     let before = kept(&path).unwrap();
     assert!(0 < before.0 && before.0 < before.1, "{before:?}");
-    slurm.do_run("scontrol", &["requeue", &task]);
-    // After a failure, Slurm lets a job wait for two minutes.
-    slurm.do_run("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"]);
     let mut last = before;
-    slurm.wait("the end of the requeued shard", |_| {
+    let mut requeued: Option<Instant> = None;
+    slurm.wait("the end of the requeued shard", |slurm| {
+        let states = slurm.states();
+        let is = |state: &str| states.contains(&format!("{task} {state}"));
+        // Slurm removes the files of the killed task some moments after its end. A task that starts
+        // before that loses its script and fails, so Slurm lets a requeued task wait for two
+        // minutes. Some seconds are enough here; if they were not, the task is requeued again.
+        if is("FAILED") {
+            slurm.do_run("scontrol", &["requeue", &task]);
+            requeued = Some(Instant::now());
+        } else if is("PENDING") && requeued.is_some_and(|at| at.elapsed() > SETTLED) {
+            slurm.run("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"]);
+        }
         let now = kept(&path).unwrap();
         assert!(now.0 >= last.0, "the shard has begun anew: {now:?} after {last:?}");
         last = now;
