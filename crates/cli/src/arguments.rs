@@ -4,10 +4,10 @@
 mod machine;
 mod port;
 mod profile;
+mod sweep;
 mod table;
 
 use carrystep_simulators::Level;
-use carrystep_sweep::Shard;
 use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser};
@@ -21,6 +21,7 @@ pub use profile::ProfileArguments;
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
+pub use sweep::Sweep;
 pub use table::{TableArguments, TableKind};
 
 /// Every carry is a step: plan stepper moves for an FPGA that only adds, simulate its gateware
@@ -265,37 +266,6 @@ pub struct Verilog {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// One JSON document instead of the table.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// The arguments of `carrystep sweep`.
-#[derive(Debug, Args)]
-pub struct Sweep {
-    /// The sweep: a move file with blanks, and what they are filled with.
-    #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
-    pub file: Option<PathBuf>,
-    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
-    /// an adder an axis.
-    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
-    pub core: Core,
-    /// So many random cases instead of the whole grid.
-    #[arg(long, value_name = "CASES")]
-    pub sample: Option<u64>,
-    /// Seed of the random cases.
-    #[arg(long, default_value_t = 1, value_name = "NUMBER")]
-    pub seed: u64,
-    /// Only this part of the cases: 3/16 is the third of sixteen.
-    #[arg(long, default_value_t = Shard::WHOLE, value_name = "N/OF")]
-    pub shard: Shard,
-    /// Make one report of the JSON reports of all shards.
-    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "core", "sample", "seed", "shard"])]
-    pub merge: Vec<PathBuf>,
-    /// Also write the result as JUnit XML, a test case for the whole and one for each case that
-    /// failed.
-    #[arg(long, value_name = "FILE")]
-    pub junit: Option<PathBuf>,
-    /// One JSON document instead of the table; shards are merged from these.
     #[arg(long)]
     pub json: bool,
 }

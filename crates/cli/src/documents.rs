@@ -5,7 +5,9 @@
 //! `cargo xtask generate` rewrites `docs/schemas/`. A new field leaves the version unchanged. A
 //! field that is removed or changes its meaning increments it.
 
-use crate::commands::{boards, build, check, doctor, home, machine, plan, profile, table, verilog};
+use crate::commands::{
+    boards, build, check, doctor, home, machine, plan, profile, sweep, table, verilog,
+};
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job};
 use schemars::Schema;
@@ -40,6 +42,7 @@ documents! {
     "simulate", 1: job::RunResult;
     "status", 1: found::FoundBoard;
     "sweep", 1: carrystep_sweep::SweepReport;
+    "sweep-files", 1: sweep::WrittenForCluster<'_>;
     "table", 1: table::Tabled<'_>;
     "verilog", 1: verilog::WrittenVerilog;
     "verilog-board", 1: verilog::WrittenForBoard<'_>;

@@ -16,11 +16,12 @@ pub fn watch() -> &'static AtomicBool {
     &ASKED
 }
 
+/// Whether the flag is set.
+pub fn is_asked() -> bool {
+    ASKED.load(Ordering::Relaxed)
+}
+
 /// Fails if the flag is set.
 pub fn check() -> Result<(), Failure> {
-    if ASKED.load(Ordering::Relaxed) {
-        Err(Failure::Run("interrupted: nothing is kept".into()))
-    } else {
-        Ok(())
-    }
+    if is_asked() { Err(Failure::Run("interrupted: nothing is kept".into())) } else { Ok(()) }
 }

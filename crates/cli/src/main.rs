@@ -11,6 +11,7 @@ mod documents;
 mod drive;
 mod ending;
 mod excerpt;
+mod executable;
 mod failure;
 mod figures;
 mod found;

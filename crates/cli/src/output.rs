@@ -83,6 +83,13 @@ fn write_json(document: &impl Document, in_a_line: bool) -> Result<(), Failure> 
     writeln!(out).and_then(|()| out.flush()).map_err(|error| not_printed(&error))
 }
 
+/// The text of a JSON document, preceded by the name and the version of its schema.
+pub fn json_text(document: &impl Document) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(&Named::new(document))
+        .map_err(|error| Failure::Run(error.to_string()))?;
+    Ok(text + "\n")
+}
+
 /// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.
 /// `carrystep-files` refuses a path that is an input or another output of the same command.
 pub struct OutputFile {

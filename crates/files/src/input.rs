@@ -49,14 +49,19 @@ pub enum InputFault {
 /// of this process.
 pub fn open(path: &Path) -> Result<File, InputFailure> {
     let failed = |why: InputFault| InputFailure { path: path.to_owned(), why };
+    let file = open_regular(path).map_err(failed)?;
+    registry::add_input(path).map_err(|output| failed(InputFault::Output(output)))?;
+    Ok(file)
+}
+
+/// Opens a regular file and does not register it.
+fn open_regular(path: &Path) -> Result<File, InputFault> {
     // Opening a device can have an effect, and opening a pipe can block, so the kind of the file is
     // checked first.
-    regular(&std::fs::metadata(path).map_err(|error| failed(error.into()))?).map_err(failed)?;
-    let file = without_waiting(path).map_err(|error| failed(error.into()))?;
+    regular(&std::fs::metadata(path)?)?;
+    let file = without_waiting(path)?;
     // The kind is checked again, because the name may meanwhile belong to another file.
-    let there = file.metadata().map_err(|error| failed(error.into()))?;
-    regular(&there).map_err(failed)?;
-    registry::add_input(path).map_err(|output| failed(InputFault::Output(output)))?;
+    regular(&file.metadata()?)?;
     Ok(file)
 }
 
@@ -65,18 +70,31 @@ pub fn open(path: &Path) -> Result<File, InputFailure> {
 /// # Errors
 /// As [`open`]; also if the file is too long, or if reading fails.
 pub fn read_text(path: &Path) -> Result<Vec<u8>, InputFailure> {
-    let failed = |why: InputFault| InputFailure { path: path.to_owned(), why };
-    let file = open(path)?;
-    let size = file.metadata().map_err(|error| failed(error.into()))?.len();
+    contents(open(path)?).map_err(|why| InputFailure { path: path.to_owned(), why })
+}
+
+/// Reads what a process has written before it was started again. The file may also be an output of
+/// this process, so it is not registered as an input. `None` if there is no such file.
+pub(crate) fn read_own(path: &Path) -> Result<Option<Vec<u8>>, InputFailure> {
+    match open_regular(path).and_then(contents) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(InputFault::Io(error)) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(why) => Err(InputFailure { path: path.to_owned(), why }),
+    }
+}
+
+/// All bytes of a file of at most [`MAX_TEXT_BYTES`].
+fn contents(file: File) -> Result<Vec<u8>, InputFault> {
+    let size = file.metadata()?.len();
     if size > MAX_TEXT_BYTES {
-        return Err(failed(InputFault::Size { size: size.to_string() }));
+        return Err(InputFault::Size { size: size.to_string() });
     }
     let mut bytes = Vec::new();
     // The reported size is not sufficient: files of the kernel report 0, and a log grows while it
     // is read.
-    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut bytes).map_err(|error| failed(error.into()))?;
+    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_TEXT_BYTES {
-        return Err(failed(InputFault::Size { size: format!("more than {MAX_TEXT_BYTES}") }));
+        return Err(InputFault::Size { size: format!("more than {MAX_TEXT_BYTES}") });
     }
     Ok(bytes)
 }

@@ -6,6 +6,7 @@
 //! - An input must be a regular file ([`read_text`], [`open`]), because a device or a pipe could
 //!   block or never end.
 //! - An output ([`NewFile`]) appears under its name when it is complete, and otherwise not at all.
+//! - A [`StateFile`] is replaced again and again, and always holds a whole state.
 //! - No output replaces a file that the same process reads, and no two outputs are the same file.
 //!   Files are compared by device and inode and not by name. This crate registers every input and
 //!   every output when it is opened, so that no command can omit the comparison.
@@ -22,6 +23,7 @@ mod number;
 mod output;
 mod place;
 mod registry;
+mod state_file;
 pub mod unit;
 
 pub use bigdecimal::BigDecimal;
@@ -32,4 +34,5 @@ pub use machine::{Axis, Machine, TooManyAxes};
 pub use move_file::{Move, MoveFile, PathKind};
 pub use names::{did_you_mean, nearest};
 pub use output::{NewFile, OutputClaim, OutputFailure};
+pub use state_file::{StateFailure, StateFile};
 pub use unit::Unit;

@@ -38,6 +38,8 @@ pub struct MoveFile {
     pub moves: Vec<Move>,
     /// Text of the move file, for errors that are found later.
     pub source: SourceText,
+    /// The machine file, if the move file names one.
+    pub machine_source: Option<SourceText>,
 }
 
 /// One move of all axes.
@@ -105,6 +107,7 @@ impl MoveFile {
         let raw: RawMoveFile = source.parse()?;
         let machine_file = raw.machine_file.as_ref().map(Spanned::span);
         let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
+        let mut machine_source = None;
         let machine = match (raw.machine_file, raw.machine) {
             (Some(file), None) => {
                 let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
@@ -119,7 +122,8 @@ impl MoveFile {
                 // If the machine file cannot be read, the error points at its name in the move
                 // file.
                 let named = |error: InputError| InputError::at(&source, file.span(), error.message);
-                Machine::from_source(&SourceText::read(&path).map_err(named)?)?
+                let text = machine_source.insert(SourceText::read(&path).map_err(named)?);
+                Machine::from_source(text)?
             }
             (None, Some(machine)) => machine.check(&source)?,
             (Some(file), Some(_)) => {
@@ -135,7 +139,7 @@ impl MoveFile {
                     .help("name a machine_file, or describe the [machine] here"));
             }
         };
-        Self::on(machine, source, raw.moves, too_many)
+        Ok(Self { machine_source, ..Self::on(machine, source, raw.moves, too_many)? })
     }
 
     /// Checks moves for a machine that is already known; the move file has no machine of its own.
@@ -162,7 +166,7 @@ impl MoveFile {
             return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
         }
         let moves = check_moves(&source, &machine, raw)?;
-        Ok(Self { machine, moves, source })
+        Ok(Self { machine, moves, source, machine_source: None })
     }
 
     /// Makes an error about a move, with the place of the move in the file.

@@ -7,7 +7,6 @@
 //! On Linux the file receives its name by a link, which cannot replace a file. If a file of that
 //! name exists, the new file first receives a temporary name and is then renamed. A process that is
 //! killed between these two system calls leaves the temporary name behind.
-//! killed between these two system calls leaves that name.
 
 use crate::place::{End, Identity, folder, follow};
 use crate::registry::{self, Collision};
@@ -137,10 +136,42 @@ impl OutputClaim {
     /// # Errors
     /// The operating system reports an error.
     pub fn begin(self, executable: bool) -> Result<NewFile, OutputFailure> {
-        match self.place(executable) {
-            Ok(place) => Ok(NewFile { claim: self, place }),
-            Err(source) => Err(OutputFailure { path: self.shown.clone(), source }),
-        }
+        let place = self.place(executable).map_err(|source| self.failed(source))?;
+        Ok(NewFile { claim: self, place })
+    }
+
+    /// Whether the output is a regular file, which is replaced, and no pipe or device.
+    pub(crate) fn is_file(&self) -> bool {
+        matches!(self.at, At::Name(_))
+    }
+
+    /// Writes a whole file to the disk and gives it the name. The claim remains.
+    pub(crate) fn replace(&self, bytes: &[u8]) -> Result<(), OutputFailure> {
+        let write = || {
+            let mut place = self.place(false)?;
+            place.file().write_all(bytes)?;
+            // After a power failure, the name must lead to the whole file or to the old one.
+            place.file().sync_all()?;
+            Ok(place)
+        };
+        self.name(write().map_err(|source| self.failed(source))?)
+    }
+
+    /// Gives a complete file its name; a file that had the name is replaced.
+    fn name(&self, place: Place) -> Result<(), OutputFailure> {
+        let named = match (place, &self.at) {
+            (Place::Nameless(file), At::Name(target)) => name(file, target),
+            (Place::Beside(file), At::Name(target)) => {
+                file.persist(target).map(drop).map_err(|error| error.error)
+            }
+            (Place::Nameless(_) | Place::Beside(_) | Place::Itself(_), _) => Ok(()),
+        };
+        named.map_err(|source| self.failed(source))
+    }
+
+    /// An error of this output.
+    pub(crate) fn failed(&self, source: io::Error) -> OutputFailure {
+        OutputFailure { path: self.shown.clone(), source }
     }
 
     fn place(&self, executable: bool) -> io::Result<Place> {
@@ -207,37 +238,32 @@ impl NewFile {
     /// The operating system reports an error; no file has appeared.
     pub fn appear(self) -> Result<PathBuf, OutputFailure> {
         let Self { claim, place } = self;
-        let appeared = match (place, &claim.at) {
-            (Place::Nameless(file), At::Name(target)) => name(file, target),
-            (Place::Beside(file), At::Name(target)) => {
-                file.persist(target).map(drop).map_err(|error| error.error)
-            }
-            (Place::Nameless(_) | Place::Beside(_) | Place::Itself(_), _) => Ok(()),
-        };
-        appeared.map_err(|source| OutputFailure { path: claim.shown.clone(), source })?;
+        claim.name(place)?;
         Ok(claim.shown.clone())
     }
+}
 
+impl Place {
     fn file(&mut self) -> &mut File {
-        match &mut self.place {
-            Place::Nameless(file) | Place::Itself(file) => file,
-            Place::Beside(file) => file.as_file_mut(),
+        match self {
+            Self::Nameless(file) | Self::Itself(file) => file,
+            Self::Beside(file) => file.as_file_mut(),
         }
     }
 }
 
 impl Write for NewFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file().write(bytes)
+        self.place.file().write(bytes)
     }
     fn flush(&mut self) -> io::Result<()> {
-        self.file().flush()
+        self.place.file().flush()
     }
 }
 
 impl Seek for NewFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.file().seek(to)
+        self.place.file().seek(to)
     }
 }
 

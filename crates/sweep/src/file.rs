@@ -3,6 +3,7 @@
 //! Case i depends only on the file, the seed and i. Any change of the order in which values are
 //! chosen changes every case.
 
+use crate::error::SweepError;
 use carrystep_files::{InputError, MoveFile, SourceText};
 use minijinja::{Environment, UndefinedBehavior};
 use rand_xoshiro::SplitMix64;
@@ -12,7 +13,6 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
-use thiserror::Error;
 
 /// The values of the placeholders of one case, by name.
 pub type Values = BTreeMap<String, Value>;
@@ -47,28 +47,6 @@ struct Raw {
     vary: BTreeMap<String, Choice>,
 }
 
-/// Why a sweep cannot run.
-#[derive(Debug, Error)]
-pub enum SweepError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// The file is not a sweep file.
-    #[error("{path}: {message}")]
-    Format {
-        /// The path of the file.
-        path: String,
-        /// What is wrong with it, in words.
-        message: String,
-    },
-    /// The sample has no cases.
-    #[error("--sample 0 tries nothing: give at least 1")]
-    NothingToTry,
-    /// The reports do not belong together.
-    #[error("{0}")]
-    Merge(String),
-}
-
 /// A sweep that can create each of its cases.
 pub struct SweepFile {
     source: SourceText,
@@ -87,6 +65,20 @@ pub struct Case {
     pub values: Values,
     /// The move file, or an error if the values do not give a valid one.
     pub file: Result<MoveFile, InputError>,
+    /// The machine file that the move file names: its path from the folder of the sweep file, and
+    /// the [`hash`] of its text.
+    pub(crate) machine_file: Option<(String, String)>,
+}
+
+/// The SHA-256 of these texts, as its first 16 hexadecimal digits.
+pub(crate) fn hash(texts: &[&[u8]]) -> String {
+    let mut hash = Sha256::new();
+    for text in texts {
+        // The length keeps texts apart that follow each other.
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl SweepFile {
@@ -107,6 +99,9 @@ impl SweepFile {
             match choice {
                 Choice::List(list) if list.is_empty() => {
                     return Err(wrong(format!("{name}: an empty list")));
+                }
+                Choice::List(list) if list.iter().any(Value::is_not_finite) => {
+                    return Err(wrong(format!("{name}: a number that is not finite")));
                 }
                 Choice::Range { .. } if sample.is_none() => {
                     return Err(wrong(format!(
@@ -137,17 +132,31 @@ impl SweepFile {
         self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
     }
 
+    /// The path of the file, as the user gave it.
+    pub fn path(&self) -> &Path {
+        &self.source.path
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
+    /// The number of random cases; `None` for the grid.
+    pub fn sample(&self) -> Option<u64> {
+        self.sample
+    }
+
+    /// The seed of the random cases.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// What two reports must agree on to be of the same sweep on the same core.
     pub fn fingerprint(&self, core: &str) -> String {
-        let mut hash = Sha256::new();
-        for text in [&self.source.text, core] {
-            // The length keeps texts apart that follow each other.
-            hash.update((text.len() as u64).to_le_bytes());
-            hash.update(text);
-        }
-        hash.update(self.seed.to_le_bytes());
-        hash.update(self.cases().to_le_bytes());
-        hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+        let numbers = [self.seed, self.cases(), u64::from(self.sample.is_some())];
+        let numbers = numbers.map(u64::to_le_bytes).concat();
+        hash(&[self.source.text.as_bytes(), core.as_bytes(), &numbers])
     }
 
     /// Case `number`, counted from 0. It is the same on every machine and in every shard.
@@ -183,7 +192,24 @@ impl SweepFile {
             }),
             Err(error) => Err(InputError::new(format!("{}: {error}", self.source.path.display()))),
         };
-        Case { number, values, file }
+        let machine = file.as_ref().ok().and_then(|file| file.machine_source.as_ref());
+        let machine_file = machine.map(|machine| self.named(machine));
+        Case { number, values, file, machine_file }
+    }
+
+    /// Path and hash of a machine file. The path is relative to the folder of the sweep file, so
+    /// that it is the same on machines on which that folder has different names.
+    fn named(&self, machine: &SourceText) -> (String, String) {
+        let folder = self.source.path.parent().unwrap_or(Path::new(""));
+        let path = machine.path.strip_prefix(folder).unwrap_or(&machine.path);
+        (path.display().to_string(), hash(&[machine.text.as_bytes()]))
+    }
+}
+
+impl Value {
+    /// Whether JSON has no number for it.
+    fn is_not_finite(&self) -> bool {
+        matches!(self, Self::Float(number) if !number.is_finite())
     }
 }
 

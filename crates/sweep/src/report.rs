@@ -2,15 +2,28 @@
 //!
 //! The names of the fields are part of `--json` and may not change.
 
-use crate::file::{SweepError, SweepFile, Values};
+use crate::difference::Difference;
+use crate::error::SweepError;
+use crate::file::{Case, SweepFile, Values};
 use crate::shard::Shard;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The number of failed cases in a shard that get a message. The others are only counted.
-const SPELLED_OUT: usize = 20;
+/// The number of failed cases in a report that get a message. The others are only counted.
+pub(crate) const SPELLED_OUT: usize = 20;
+
+/// What judges the cases. Reports can be merged only if all of this is the same.
+#[derive(Debug, Clone, Copy)]
+pub struct JudgedBy<'a> {
+    /// The gateware: engine or parallel.
+    pub core: &'a str,
+    /// The version of carrystep.
+    pub carrystep: &'a str,
+    /// The build of carrystep: a hash of its executable.
+    pub build: &'a str,
+}
 
 /// The result of a case.
 #[derive(Debug, Clone)]
@@ -62,6 +75,19 @@ pub struct SweepReport {
     pub sweep: String,
     /// The gateware: engine or parallel.
     pub core: String,
+    /// The version of carrystep.
+    pub carrystep: String,
+    /// The build of carrystep: the first 16 hexadecimal digits of the SHA-256 of its executable.
+    pub build: String,
+    /// The number of random cases; null for the grid.
+    pub sample: Option<u64>,
+    /// The seed of the random cases.
+    pub seed: u64,
+    /// Number of cases of the whole sweep.
+    pub cases: u64,
+    /// The machine files that the cases name: the path from the folder of the sweep file, and the
+    /// first 16 hexadecimal digits of a hash of the text.
+    pub machine_files: BTreeMap<String, String>,
     /// Which shards are in here.
     pub shards: Vec<Shard>,
     /// Number of cases that ran and passed.
@@ -78,11 +104,17 @@ pub struct SweepReport {
 
 impl SweepReport {
     /// A report of no case yet.
-    pub fn new(sweep: &SweepFile, shard: Shard, core: &str) -> Self {
+    pub fn new(sweep: &SweepFile, shard: Shard, by: JudgedBy<'_>) -> Self {
         Self {
             passed: None,
-            sweep: sweep.fingerprint(core),
-            core: core.to_owned(),
+            sweep: sweep.fingerprint(by.core),
+            core: by.core.to_owned(),
+            carrystep: by.carrystep.to_owned(),
+            build: by.build.to_owned(),
+            sample: sweep.sample(),
+            seed: sweep.seed(),
+            cases: sweep.cases(),
+            machine_files: BTreeMap::new(),
             shards: vec![shard],
             cases_passed: 0,
             cases_refused: 0,
@@ -92,22 +124,54 @@ impl SweepReport {
         }
     }
 
-    /// Adds the result of one case.
-    pub(crate) fn add(&mut self, case: u64, values: &Values, verdict: CaseVerdict) {
+    /// Adds the result of one case. The order in which cases are added has no effect.
+    ///
+    /// # Errors
+    /// The case names a machine file that was a different one for an earlier case.
+    pub(crate) fn add(&mut self, case: &Case, verdict: CaseVerdict) -> Result<(), SweepError> {
+        if let Some((path, hash)) = &case.machine_file {
+            self.name(path, hash)?;
+        }
+        let infinite =
+            |(name, value): (&&str, &f64)| (!value.is_finite()).then(|| name.to_string());
         match verdict {
             CaseVerdict::Refused(_) => self.cases_refused += 1,
-            CaseVerdict::Failed(message) => {
-                self.cases_failed += 1;
-                self.failures.push(FailedCase { case, values: values.clone(), message });
-            }
-            CaseVerdict::Passed(figures) => {
-                self.cases_passed += 1;
-                for (name, value) in figures {
-                    self.compare(name, Worst { value, case, values: values.clone() });
+            CaseVerdict::Failed(message) => self.fail(case, message),
+            CaseVerdict::Passed(figures) => match figures.iter().find_map(infinite) {
+                Some(name) => self.fail(case, format!("the figure '{name}' is not a number")),
+                None => {
+                    self.cases_passed += 1;
+                    for (name, value) in figures {
+                        let values = case.values.clone();
+                        self.compare(name, Worst { value, case: case.number, values });
+                    }
                 }
-            }
+            },
         }
         self.judge();
+        Ok(())
+    }
+
+    fn fail(&mut self, case: &Case, message: String) {
+        self.cases_failed += 1;
+        let place = self.failures.partition_point(|failed| failed.case < case.number);
+        if place < SPELLED_OUT {
+            let values = case.values.clone();
+            self.failures.insert(place, FailedCase { case: case.number, values, message });
+            self.failures.truncate(SPELLED_OUT);
+        }
+    }
+
+    /// Notes a machine file.
+    fn name(&mut self, path: &str, hash: &str) -> Result<(), SweepError> {
+        match self.machine_files.get(path) {
+            Some(known) if known == hash => Ok(()),
+            Some(_) => Err(SweepError::MachineChanged(path.to_owned())),
+            None => {
+                self.machine_files.insert(path.to_owned(), hash.to_owned());
+                Ok(())
+            }
+        }
     }
 
     fn judge(&mut self) {
@@ -127,9 +191,15 @@ impl SweepReport {
         }
     }
 
-    /// Merges this report with another part; the order has no effect.
-    #[must_use]
-    pub(crate) fn with(mut self, other: Self) -> Self {
+    /// Merges this report with another part; the order has no effect. The caller has checked that
+    /// both have different cases of one sweep, so the sums are at most its number of cases.
+    ///
+    /// # Errors
+    /// Cases of both parts name a machine file that was not the same.
+    pub(crate) fn with(mut self, other: Self) -> Result<Self, SweepError> {
+        for (path, hash) in &other.machine_files {
+            self.name(path, hash)?;
+        }
         self.cases_passed += other.cases_passed;
         self.cases_refused += other.cases_refused;
         self.cases_failed += other.cases_failed;
@@ -140,40 +210,26 @@ impl SweepReport {
         self.failures.sort_by_key(|failed| failed.case);
         self.failures.truncate(SPELLED_OUT);
         self.judge();
-        self
+        Ok(self)
     }
 
-    /// Merges all shards of a sweep into one report.
-    ///
-    /// # Errors
-    /// [`SweepError::Merge`] if the reports belong to different sweeps, or if a shard is missing or
-    /// occurs twice.
-    pub fn merge(reports: impl IntoIterator<Item = Self>) -> Result<Self, SweepError> {
-        let mut reports = reports.into_iter();
-        let mut whole =
-            reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
-        for report in reports {
-            if report.sweep != whole.sweep {
-                return Err(SweepError::Merge(format!(
-                    "{} and {} are not one sweep",
-                    whole.sweep, report.sweep
-                )));
-            }
-            whole.shards.extend(&report.shards);
-            whole = whole.with(report);
-        }
-        whole.shards.sort_unstable();
-        let count = whole.shards.first().map_or(0, |shard| shard.count);
-        let wanted: Vec<Shard> = (1..=count).map(|number| Shard { number, count }).collect();
-        if whole.shards != wanted {
-            let there: Vec<String> = whole.shards.iter().map(Shard::to_string).collect();
-            return Err(SweepError::Merge(format!(
-                "each shard is needed once; here are {}",
-                there.join(", ")
-            )));
-        }
-        whole.shards = vec![Shard::WHOLE];
-        Ok(whole)
+    /// The first property in which this report is of another sweep than `other`.
+    pub(crate) fn difference(&self, other: &Self) -> Option<Difference> {
+        let sample = |sample: Option<u64>| sample.map_or("none".to_owned(), |n| n.to_string());
+        let properties = |report: &Self| {
+            [
+                ("the version of carrystep", report.carrystep.clone()),
+                ("the build of carrystep", report.build.clone()),
+                ("the core", report.core.clone()),
+                ("--sample", sample(report.sample)),
+                ("--seed", report.seed.to_string()),
+                ("the hash of the sweep file and these options", report.sweep.clone()),
+                ("the number of cases", report.cases.to_string()),
+            ]
+        };
+        let mut pairs = properties(self).into_iter().zip(properties(other));
+        let ((what, one), (_, other)) = pairs.find(|(one, other)| one != other)?;
+        Some(Difference { what, one, other })
     }
 }
 

@@ -23,9 +23,25 @@ impl Shard {
     /// The whole sweep as one shard.
     pub const WHOLE: Self = Self { number: 1, count: 1 };
 
-    /// The numbers of the cases in this shard, out of `all` cases.
-    pub fn cases(self, all: u64) -> impl Iterator<Item = u64> {
-        (self.number - 1..all).step_by(usize::try_from(self.count).unwrap_or(usize::MAX))
+    /// Whether its numbers are those of a shard.
+    pub(crate) fn is_valid(self) -> bool {
+        (1..=self.count).contains(&self.number)
+    }
+
+    /// The number of cases in this shard, out of `all` cases.
+    pub fn length(self, all: u64) -> u64 {
+        all.checked_sub(self.number).map_or(0, |rest| rest / self.count + 1)
+    }
+
+    /// The number of the case that has this place in the shard, counted from 0.
+    pub fn case(self, place: u64) -> u64 {
+        self.number - 1 + place * self.count
+    }
+
+    /// The place of a case in this shard; `None` if the case is in another one.
+    pub(crate) fn place(self, case: u64) -> Option<u64> {
+        let before = case.checked_sub(self.number - 1)?;
+        before.is_multiple_of(self.count).then_some(before / self.count)
     }
 }
 
@@ -57,10 +73,27 @@ mod tests {
 
     #[test]
     fn shards_together_have_every_case_once() {
-        let mut all: Vec<u64> =
-            (1..=3).flat_map(|number| Shard { number, count: 3 }.cases(10)).collect();
-        all.sort_unstable();
-        assert_eq!(all, (0..10).collect::<Vec<_>>());
+        for all in [0, 1, 2, 3, 10, 12] {
+            for count in 1..=5 {
+                let mut cases = Vec::new();
+                for number in 1..=count {
+                    let shard = Shard { number, count };
+                    let own: Vec<u64> = (0..shard.length(all)).map(|at| shard.case(at)).collect();
+                    for (place, &case) in (0..).zip(&own) {
+                        assert_eq!(shard.place(case), Some(place));
+                    }
+                    cases.extend(own);
+                }
+                cases.sort_unstable();
+                assert_eq!(cases, (0..all).collect::<Vec<_>>());
+            }
+        }
+        assert_eq!(Shard { number: 2, count: 3 }.place(2), None);
+        assert_eq!(Shard::WHOLE.length(u64::MAX), u64::MAX);
+    }
+
+    #[test]
+    fn a_shard_is_a_number_of_a_count() {
         assert_eq!("3/16".parse(), Ok(Shard { number: 3, count: 16 }));
         assert!(
             ["0/3", "4/3", "3", "a/b", "1/0"].iter().all(|text| text.parse::<Shard>().is_err())

@@ -2,9 +2,10 @@
 //! of `NEEDED`.
 
 use crate::shell::{self, TaskResult};
+use std::path::Path;
 
 /// Each program, and the Debian package that contains it.
-const NEEDED: [(&str, &str); 14] = [
+const NEEDED: [(&str, &str); 20] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -19,7 +20,16 @@ const NEEDED: [(&str, &str); 14] = [
     ("icepack", "fpga-icestorm"),
     ("icebox_vlog", "fpga-icestorm"),
     ("icetime", "fpga-icestorm-chipdb"),
+    ("slurmctld", "slurmctld"),
+    ("slurmd", "slurmd"),
+    ("sbatch", "slurm-client"),
+    ("munged", "munge"),
+    ("parallel", "parallel"),
+    ("hostname", "hostname"),
 ];
+
+/// The folder of daemons, which is not on every user's path.
+const DAEMONS: &str = "/usr/sbin";
 
 /// Installs the missing tools, or reports which ones must be installed by hand.
 pub fn install() -> TaskResult {
@@ -53,7 +63,9 @@ pub fn install() -> TaskResult {
 fn missing() -> Vec<&'static str> {
     let mut packages: Vec<&str> = NEEDED
         .iter()
-        .filter(|(program, _)| !shell::is_there(program))
+        .filter(|(program, _)| {
+            !shell::is_there(program) && !Path::new(DAEMONS).join(program).exists()
+        })
         .map(|&(_, package)| package)
         .collect();
     packages.dedup();

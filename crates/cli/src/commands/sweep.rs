@@ -1,50 +1,51 @@
-//! `carrystep sweep`: many machines and moves over all processors, or the reports of many shards as
-//! one.
+//! `carrystep sweep`: many machines and moves over all processors, the reports of many shards as
+//! one, or the files with which a cluster runs the shards.
 
-use crate::arguments::{Core, Sweep};
+mod cluster;
+mod judge;
+
+use crate::arguments::Sweep;
 use crate::failure::Failure;
 use crate::junit::JunitFile;
-use crate::wanted::Wanted;
-use crate::{interrupt, job, output};
-use carrystep_check::AxisReport;
-use carrystep_plan::{PlanError, plan};
-use carrystep_simulators::Level;
-use carrystep_sweep::{Case, CaseVerdict, SweepError, SweepFile, SweepReport};
+use crate::output::OutputFile;
+use crate::{executable, interrupt, output};
+use carrystep_sweep::{
+    JudgedBy, KeptShard, Part, Progress, SweepError, SweepFile, SweepReport, run as run_cases,
+};
+pub use cluster::WrittenForCluster;
 use indicatif::{ProgressBar, ProgressDrawTarget};
-use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::Path;
 
-/// Runs a shard, or merges reports, and prints the report.
+/// Runs a shard, merges reports or writes files for a cluster, and prints the report.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
+    if let Some(file) = &arguments.file
+        && let Some(scheduler) = cluster::Scheduler::of(arguments)
+    {
+        return cluster::write(arguments, file, &scheduler);
+    }
     let name = arguments
         .file
         .as_ref()
         .map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
     let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
+    let written = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     let report = match &arguments.file {
         Some(file) => {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
-            let cases = arguments.shard.cases(sweep.cases()).count() as u64;
-            let bar =
-                ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
-            let report = carrystep_sweep::run(
-                &sweep,
-                arguments.shard,
-                arguments.core.name(),
-                |case| judge(case, arguments.core),
-                || bar.inc(1),
-            );
-            bar.finish_and_clear();
-            // After an interrupt, the remaining cases have not been judged.
-            interrupt::check()?;
-            report
+            shard(arguments, &sweep)?
         }
-        None => SweepReport::merge(
-            arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?,
-        )?,
+        None => {
+            let parts = arguments.merge.iter().map(|path| Part::read(path));
+            SweepReport::merge(parts.collect::<Result<Vec<_>, _>>()?)?
+        }
     };
     if let Some(junit) = junit {
         cases(junit, &report)?;
+    }
+    if let Some(mut written) = written {
+        written.text(&output::json_text(&report)?)?;
+        written.keep()?;
     }
     if arguments.json {
         output::print_json(&report)?;
@@ -52,10 +53,70 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
         output::print(&report.to_string())?;
     }
     match report.passed {
+        _ if arguments.no_verdict => Ok(()),
         Some(true) => Ok(()),
         Some(false) => Err(Failure::Check),
         None => Err(Failure::NothingTried),
     }
+}
+
+/// Judges the cases of a shard, from where an earlier run has stopped.
+fn shard(arguments: &Sweep, sweep: &SweepFile) -> Result<SweepReport, Failure> {
+    let build = executable::build()?;
+    let (core, carrystep) = (arguments.core.name(), env!("CARGO_PKG_VERSION"));
+    let by = JudgedBy { core, carrystep, build: &build };
+    let fresh = Progress::new(sweep, arguments.shard, by);
+    let (mut kept, progress) = match &arguments.keep {
+        Some(path) => {
+            let (kept, progress) = KeptShard::open(path, fresh)?;
+            (Some(kept), progress)
+        }
+        None => (None, fresh),
+    };
+    if progress.is_complete() {
+        return Ok(progress.into_report());
+    }
+    interrupt::watch();
+    let target = ProgressDrawTarget::stderr_with_hz(10);
+    let bar = ProgressBar::with_draw_target(Some(progress.cases()), target);
+    bar.set_position(progress.cases_done());
+    let judged = run_cases(
+        sweep,
+        progress,
+        |case| {
+            let verdict = judge::judge(case, arguments.core);
+            // An interrupt ends the simulation of this case, so its verdict has no meaning.
+            if interrupt::is_asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(verdict)
+            }
+        },
+        |progress| {
+            bar.inc(1);
+            kept.as_mut().map_or(Ok(()), |kept| kept.save_from_time_to_time(progress))
+        },
+    );
+    bar.finish_and_clear();
+    let progress = judged?;
+    if let Some(kept) = &mut kept {
+        kept.save(&progress)?;
+    }
+    if progress.is_complete() {
+        return Ok(progress.into_report());
+    }
+    Err(match &kept {
+        Some(kept) => stopped(&progress, kept.path()),
+        None => Failure::Run("interrupted: nothing is kept".to_owned()),
+    })
+}
+
+/// The failure of an interrupted run that keeps its progress.
+fn stopped(progress: &Progress, path: &Path) -> Failure {
+    let (done, all, path) = (progress.cases_done(), progress.cases(), path.display());
+    Failure::Run(format!(
+        "interrupted: {done} of {all} cases are kept in {path}; the same command continues with the others"
+    ))
 }
 
 /// Writes one test case for the whole sweep and one for each failed case that the report lists.
@@ -71,63 +132,6 @@ fn cases(mut junit: JunitFile, report: &SweepReport) -> Result<(), Failure> {
         );
     }
     junit.keep()
-}
-
-fn read(path: &Path) -> Result<SweepReport, Failure> {
-    let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
-    let text =
-        carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
-    serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
-}
-
-/// Plans, simulates and checks a case.
-fn judge(case: &Case, core: Core) -> CaseVerdict {
-    let Ok(file) = &case.file else { return CaseVerdict::Failed("no move file".to_owned()) };
-    let plan = match plan::<f64>(file) {
-        Ok(plan) => plan,
-        Err(error @ PlanError::Broken { .. }) => return CaseVerdict::Failed(error.to_string()),
-        Err(error) => return CaseVerdict::Refused(error.to_string()),
-    };
-    match job::run(file, &plan, core, Level::Fast, &Wanted::default()) {
-        Ok(done) if done.passed => CaseVerdict::Passed(figures(&done)),
-        Ok(done) => {
-            let first = done.check.failures().next();
-            CaseVerdict::Failed(
-                first.map_or_else(|| format!("faults: {}", done.faults), str::to_owned),
-            )
-        }
-        Err(failure) => CaseVerdict::Failed(failure.message()),
-    }
-}
-
-/// The worst figure of all axes, each as a fraction of its limit: 1 is at the limit.
-fn figures(done: &job::RunResult) -> BTreeMap<&'static str, f64> {
-    let needed = |required: f64, found: Option<f64>| found.map(|found| required / found);
-    let early = |axis: &AxisReport| axis.error_min_ns.map(|error| -error / axis.error_bound_ns);
-    let late = |axis: &AxisReport| axis.error_max_ns.map(|error| error / axis.error_bound_ns);
-    let mut worst = BTreeMap::new();
-    let mut add = |name, part: Option<f64>| {
-        if let Some(part) = part {
-            let old = worst.entry(name).or_insert(part);
-            *old = part.max(*old);
-        }
-    };
-    for axis in &done.check.axes {
-        add("early", early(axis));
-        add("late", late(axis));
-        add("step high", needed(axis.step_high_required_ns, axis.step_high_min_ns));
-        add("step low", needed(axis.step_low_required_ns, axis.step_low_min_ns));
-        add("dir set-up", needed(axis.dir_setup_required_ns, axis.dir_setup_min_ns));
-        add("dir hold", needed(axis.dir_hold_required_ns, axis.dir_hold_min_ns));
-    }
-    for limits in &done.limits.axes {
-        add("speed", Some(limits.speed_steps_per_s / limits.speed_limit_steps_per_s));
-        add(
-            "acceleration",
-            Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2),
-        );
-    }
-    worst
 }
 
 impl From<SweepError> for Failure {

@@ -30,12 +30,15 @@ mod interrupts;
 mod json_lines;
 mod json_names;
 mod junit;
+#[cfg(target_os = "linux")]
+mod kept_shards;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
 mod plots;
 mod profile;
 mod schemas;
+mod shard_merges;
 #[cfg(unix)]
 mod stop_on_the_wire;
 #[cfg(unix)]
