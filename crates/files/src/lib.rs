@@ -25,6 +25,7 @@ mod place;
 mod registry;
 mod state_file;
 pub mod unit;
+mod unnamed;
 
 pub use bigdecimal::BigDecimal;
 pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};

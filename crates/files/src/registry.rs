@@ -72,6 +72,13 @@ pub(crate) fn add_output(shown: &Path, identity: Identity) -> Result<u64, Collis
     Ok(number)
 }
 
+/// Notes that the output of this number is another file now, of the same name.
+pub(crate) fn move_output(number: u64, identity: Identity) {
+    if let Some(output) = registry().outputs.iter_mut().find(|output| output.number == number) {
+        output.identity = identity;
+    }
+}
+
 /// Removes the output of this number, because it is finished or abandoned.
 pub(crate) fn drop_output(number: u64) {
     registry().outputs.retain(|output| output.number != number);

@@ -72,6 +72,22 @@ mod tests {
         assert_eq!(std::fs::read_dir(path.parent().expect("a folder")).expect("it").count(), 1);
     }
 
+    /// A system gives the number of a removed file to a new one. The claim must follow its file.
+    #[test]
+    fn claim_is_of_the_file_that_has_the_name_now() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("state");
+        let (file, _) = StateFile::open(&path).expect("a claim");
+        for round in 0..50 {
+            file.replace(b"state").expect("space on the disk");
+            assert!(StateFile::open(&path).is_err(), "an output has one writer");
+            let other = folder.path().join(round.to_string());
+            std::fs::write(&other, "another file").expect("space on the disk");
+            let error = StateFile::open(&other).err().map(|error| error.to_string());
+            assert_eq!(error, None);
+        }
+    }
+
     #[test]
     fn folders_and_inputs_are_refused() {
         let folder = tempfile::tempdir().expect("a folder");
