@@ -2,7 +2,6 @@
 //!
 //! A new profile implements [`Profile`], and [`crate::Curve`] for its figures.
 
-use crate::widened::Widened;
 use num_traits::Float;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -12,18 +11,6 @@ use std::sync::Arc;
 pub trait Real: Float + Debug + Send + Sync + 'static {
     /// The profile for readers that need f64.
     fn widened(profile: SharedProfile<Self>) -> SharedProfile;
-}
-
-impl Real for f64 {
-    fn widened(profile: SharedProfile) -> SharedProfile {
-        profile
-    }
-}
-
-impl Real for f32 {
-    fn widened(profile: SharedProfile<Self>) -> SharedProfile {
-        Arc::new(Widened::new(profile))
-    }
 }
 
 /// Converts a constant of a formula to the nearest float.

@@ -1,19 +1,32 @@
-//! A view in f64 of a profile of any float type.
+//! The view in f64 of a profile of each float type.
 
 use crate::profile::{Profile, Real, SharedProfile, real};
+use std::sync::Arc;
 
 /// A profile that was computed in `F`, for readers that need f64.
 #[derive(Debug, Clone)]
-pub(crate) struct Widened<F: Real> {
+struct Widened<F: Real> {
     inner: SharedProfile<F>,
     breakpoints: Vec<f64>,
 }
 
 impl<F: Real> Widened<F> {
     /// Creates the f64 view of a profile.
-    pub(crate) fn new(inner: SharedProfile<F>) -> Self {
+    fn new(inner: SharedProfile<F>) -> Self {
         let breakpoints = inner.breakpoints().iter().map(|&b| wide(b)).collect();
         Self { inner, breakpoints }
+    }
+}
+
+impl Real for f64 {
+    fn widened(profile: SharedProfile) -> SharedProfile {
+        profile
+    }
+}
+
+impl Real for f32 {
+    fn widened(profile: SharedProfile<Self>) -> SharedProfile {
+        Arc::new(Widened::new(profile))
     }
 }
 
