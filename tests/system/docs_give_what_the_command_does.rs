@@ -47,10 +47,16 @@ fn pages_give_the_exit_statuses_of_the_command() {
         ],
     );
     says(
-        "docs/performance.md",
+        "docs/sweeps.md",
         &[
             format!("and makes the exit status {check}."),
             format!("`passed` is null and the exit status is {nothing}:"),
+            format!("| the disk is full | exit status {input};"),
+        ],
+    );
+    says(
+        "docs/performance.md",
+        &[
             format!("the run ends with status {run} and the message `interrupted"),
             format!("at the first block that does not fit, with status {input}."),
         ],
