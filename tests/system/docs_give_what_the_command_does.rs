@@ -2,8 +2,8 @@
 //! documents, the scripts of the action, and long moves and runs.
 
 use carrystep_core::engine::MAX_AXES;
-use carrystep_tests::pages::{self, says, word};
-use carrystep_tests::sources::{behind, power_of_ten, whole};
+use carrystep_tests::pages::{self, grouped, says, word};
+use carrystep_tests::sources::{behind, constant, power_of_ten, whole};
 
 /// The exit status of a kind of failure, as the source of the command gives it.
 fn status(kind: &str) -> u64 {
@@ -121,4 +121,87 @@ fn readme_says_how_long_the_hour_takes() {
     let seconds: f64 = rest.split(' ').next().and_then(|s| s.parse().ok()).expect("seconds");
     assert!(seconds < 60.0, "{seconds}");
     says("README.md", &["one hour of six axes in [under a minute]".to_owned()]);
+}
+
+/// The numbers between the brackets of a constant array of a source file.
+fn array(file: &str, name: &str) -> Vec<u64> {
+    let source = pages::file(file);
+    let (_, rest) = source.split_once(&format!("const {name}: [")).expect("a constant array");
+    let (_, rest) = rest.split_once(" = [").expect("its values");
+    let (values, _) = rest.split_once(']').expect("their end");
+    values.split(", ").map(|value| value.parse().expect("a number")).collect()
+}
+
+#[test]
+fn performance_page_gives_how_growth_is_measured() {
+    let growth = "crates/xtask/benches/levels/growth.rs";
+    let factors = array(growth, "FACTORS");
+    let [one, ten, hundred] = factors[..] else { panic!("{factors:?}") };
+    let ratio = constant(growth, "RATIO_AT_MOST");
+    let turns = array(growth, "TURNS");
+    let runs = |size| word(turns.iter().filter(|turn| **turn == size).count() as u64);
+    let more = word(whole(constant(growth, "MORE")));
+    let mebibytes = constant("crates/files/src/input.rs", "MAX_TEXT_BYTES") / 1024.0_f64.powi(2);
+    let list = whole(constant("crates/profile/src/reference/row.rs", "MOST_ROWS"));
+    assert_eq!(list, whole(constant("crates/table/src/request.rs", "MAX_RAMP")));
+    let inputs = "crates/xtask/benches/levels/growth/inputs.rs";
+    let shortest = whole(behind(inputs, "let steps = "));
+    let longest = shortest + whole(behind(inputs, "number / 2 % ")) - 1;
+    let words = format!("more than {ratio} times as long as at {one}");
+    says(
+        "docs/performance.md",
+        &[
+            format!("with {one}, {ten} and {hundred} times the work, and fails"),
+            format!("at {ten} or {hundred} times the work takes {words}"),
+            format!(
+                "{} runs at {one}, {} at {ten} and {} at {hundred}.",
+                runs(0),
+                runs(1),
+                runs(2)
+            ),
+            format!("up to {more} more rounds follow"),
+            format!("S-curves of {shortest} to {longest} steps"),
+            format!("a move file has at most {mebibytes} MiB"),
+            format!("a table's ramp at most {} steps", grouped(list)),
+        ],
+    );
+    says(
+        "CHANGELOG.md",
+        &[
+            format!("at {one}, {ten} and {hundred} times the work. It fails"),
+            format!("at {ten} or {hundred} takes {words}"),
+        ],
+    );
+}
+
+#[test]
+fn performance_page_gives_the_rows_of_growth() {
+    let source = pages::joined("crates/xtask/benches/levels/growth/rows.rs").replace('_', "");
+    let page = pages::file("docs/performance.md");
+    let (_, table) = page.split_once("| command | unit |").expect("the table");
+    let rows: Vec<&str> = table.lines().skip(2).take_while(|line| !line.is_empty()).collect();
+    let number: usize = whole(behind("crates/xtask/benches/levels/growth/rows.rs", "[Row; "))
+        .try_into()
+        .expect("a small number");
+    assert_eq!(rows.len(), number);
+    let ratio = constant("crates/xtask/benches/levels/growth.rs", "RATIO_AT_MOST");
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let (command, unit, units) = (cells[0].trim_matches('`'), cells[1], cells[2]);
+        let as_moves = source.contains(&format!("moves(\"{command}\", {units})"));
+        let begin = format!("command: \"{command}\", input: Input::");
+        let end = format!("unit: \"{unit}\", units: {units}");
+        let as_row = source
+            .split(&begin)
+            .skip(1)
+            .any(|rest| rest.split_once('}').is_some_and(|(rest, _)| rest.contains(&end)));
+        assert!(as_row || (as_moves && unit == "move"), "{row}");
+        let figures: Vec<f64> =
+            cells[3..].iter().map(|cell| cell.parse().expect("a figure")).collect();
+        for (time, shown) in [(1, 3), (2, 4)] {
+            let of_times = figures[time] / figures[0];
+            assert!((of_times - figures[shown]).abs() < 0.01, "{row}");
+            assert!(figures[shown] <= ratio, "{row}");
+        }
+    }
 }

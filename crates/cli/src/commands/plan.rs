@@ -11,6 +11,9 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
+/// Number of bytes from which the table is printed.
+const BLOCK: usize = 1 << 16;
+
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
 pub struct Planned<'a> {
@@ -70,8 +73,8 @@ struct SegmentJson {
     last: bool,
 }
 
-/// Writes the segments one after another. All of them as text would need several times the memory of
-/// the plan.
+/// Writes the segments one after another. All of them as text would need several times the memory
+/// of the plan.
 fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(segments.iter().map(|s| SegmentJson {
         ticks: s.ticks,
@@ -92,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         return output::print_json(&json(&file, &plan));
     }
-    output::print(&text(&file, &plan, arguments.segments))
+    table(&file, &plan, arguments.segments)
 }
 
 fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
@@ -142,42 +145,57 @@ fn move_json<'a>(file: &'a MoveFile, planned: &'a PlannedMove, asked: &Move) -> 
     }
 }
 
-fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
+/// Prints the table in blocks, because that of many moves has tens of megabytes.
+fn table(file: &MoveFile, plan: &Plan, segments: bool) -> Result<(), Failure> {
     let mut text = String::new();
-    for (index, (planned, asked)) in plan.moves.iter().zip(&file.moves).enumerate() {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}", heading(index + 1, planned, &asked.profile.to_string()));
-        let rows = planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding);
-        let timebase = &plan.build.timebase;
-        let cells = rows.clone().map(|((planned, Axis { name, unit, .. }), _)| {
-            [
-                name.clone(),
-                planned.steps.to_string(),
-                unit.own(planned.steps as f64, 0),
-                planned.shape.to_owned(),
-                planned.segments.len().to_string(),
-                unit.own(planned.peaks.steps_per_s(timebase), 1),
-                unit.own(planned.peaks.steps_per_s2(timebase), 2),
-            ]
-        });
-        let head = ["axis", "steps", "distance", "shape", "seg.", "speed", "acceleration"];
-        let _ = table::columns(&mut text, head, cells, |column| column == 0 || column == 3);
-        for ((planned, axis), rounding) in rows {
-            text.push_str(&rounded(axis, *rounding));
-            for (index, Segment { ticks, v, a, j, last }) in
-                planned.segments.iter().filter(|_| segments).enumerate()
-            {
-                let name = if index == 0 { axis.name.as_str() } else { "" };
-                let mark = if *last { "  last" } else { "" };
-                let _ = writeln!(
-                    text,
-                    "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}"
-                );
-            }
+    for (index, planned) in plan.moves.iter().enumerate() {
+        add_move(&mut text, file, (index, planned), segments);
+        if text.len() >= BLOCK {
+            output::print(&text)?;
+            text.clear();
         }
     }
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{}", table::limits(file, plan));
-    text
+    output::print(&text)
+}
+
+/// Adds the table of a move, which has this index in the file.
+fn add_move(
+    text: &mut String,
+    file: &MoveFile,
+    (index, planned): (usize, &PlannedMove),
+    segments: bool,
+) {
+    let asked = &file.moves[index];
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}", heading(index + 1, planned, &asked.profile.to_string()));
+    let rows = planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding);
+    let timebase = &file.machine.timebase;
+    let cells = rows.clone().map(|((planned, Axis { name, unit, .. }), _)| {
+        [
+            name.clone(),
+            planned.steps.to_string(),
+            unit.own(planned.steps as f64, 0),
+            planned.shape.to_owned(),
+            planned.segments.len().to_string(),
+            unit.own(planned.peaks.steps_per_s(timebase), 1),
+            unit.own(planned.peaks.steps_per_s2(timebase), 2),
+        ]
+    });
+    let head = ["axis", "steps", "distance", "shape", "seg.", "speed", "acceleration"];
+    let _ = table::columns(text, head, cells, |column| column == 0 || column == 3);
+    for ((planned, axis), rounding) in rows {
+        text.push_str(&rounded(axis, *rounding));
+        for (index, Segment { ticks, v, a, j, last }) in
+            planned.segments.iter().filter(|_| segments).enumerate()
+        {
+            let name = if index == 0 { axis.name.as_str() } else { "" };
+            let mark = if *last { "  last" } else { "" };
+            let _ =
+                writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
+        }
+    }
 }
 
 /// The line that reports the rounding to whole steps; empty if there is none.

@@ -22,9 +22,12 @@ const RATIO_AT_MOST: f64 = 1.3;
 /// meets all of them. The least time of each factor counts.
 const TURNS: [usize; 8] = [0, 1, 0, 2, 0, 1, 0, 0];
 
-/// The turns that follow where a ratio is too large, because a single disturbance of the longest
-/// run must not fail the row.
-const MORE_TURNS: [usize; 3] = [2, 1, 0];
+/// The turns that follow where a ratio is too large, because a disturbance of the machine must not
+/// fail the row.
+const MORE_TURNS: [usize; 4] = [0, 2, 1, 2];
+
+/// How often these turns follow at most.
+const MORE: usize = 2;
 
 /// The turns of a smoke run, which leaves out the longest run.
 const SMOKE_TURNS: [usize; 2] = [0, 1];
@@ -99,8 +102,10 @@ impl<'a> Timing<'a> {
             take(&mut timing, &SMOKE_TURNS)?;
         } else {
             take(&mut timing, &TURNS)?;
-            if (1..FACTORS.len()).any(|size| timing.ratio(size) > RATIO_AT_MOST) {
-                take(&mut timing, &MORE_TURNS)?;
+            for _ in 0..MORE {
+                if (1..FACTORS.len()).any(|size| timing.ratio(size) > RATIO_AT_MOST) {
+                    take(&mut timing, &MORE_TURNS)?;
+                }
             }
         }
         Ok(timing)

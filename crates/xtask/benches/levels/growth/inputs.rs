@@ -1,25 +1,10 @@
 //! The files that the measured commands read and write. All of them are in a temporary folder.
 
 use super::child;
-use super::rows::Row;
+use super::rows::{Input, Row};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// What a command reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Input {
-    /// A move file with one move per unit.
-    Moves,
-    /// A move file with a single move, of one step per unit.
-    OneMove,
-    /// The VCD of a move file with one move per unit, and that file.
-    Capture,
-    /// A sweep. The number of its cases is an argument.
-    Sweep,
-    /// Nothing but arguments.
-    Arguments,
-}
 
 /// The machine of the moves: that of this file, which has a jerk limit.
 const MACHINE: &str = include_str!("../../../../../sim/curves.toml");

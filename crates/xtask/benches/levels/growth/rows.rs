@@ -1,7 +1,20 @@
 //! The commands whose growth is measured, and the amount of work of each. To add a command: a line
 //! in `ROWS`.
 
-use super::inputs::Input;
+/// What a command reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// A move file with one move per unit.
+    Moves,
+    /// A move file with a single move, of one step per unit.
+    OneMove,
+    /// The VCD of a move file with one move per unit, and that file.
+    Capture,
+    /// A sweep. The number of its cases is an argument.
+    Sweep,
+    /// Nothing but arguments.
+    Arguments,
+}
 
 /// A command whose work grows with its input.
 #[derive(Debug, Clone, Copy)]
@@ -22,28 +35,29 @@ const fn moves(command: &'static str, units: u64) -> Row {
 }
 
 /// All commands whose work grows with their input, except `run`, which keeps the pace of its board.
-pub const ROWS: [Row; 14] = [
+pub const ROWS: [Row; 15] = [
     // At the greatest factor, the move file has nearly the 4 MiB that carrystep reads.
     moves("plan MOVE", 1_000),
     moves("plan MOVE --json", 1_000),
+    moves("plan MOVE --json-lines", 1_000),
     moves("simulate MOVE", 250),
     moves("simulate MOVE --core parallel", 1_000),
     moves("simulate MOVE --vcd OUT", 250),
     moves("simulate MOVE --fst OUT", 250),
     moves("simulate MOVE --csv OUT", 250),
     moves("simulate MOVE --plot OUT", 250),
-    Row { command: "simulate MOVE", input: Input::OneMove, unit: "pulse", units: 1_000_000 },
+    Row { command: "simulate MOVE", input: Input::OneMove, unit: "pulse", units: 400_000 },
     Row { command: "check CAPTURE MOVE", input: Input::Capture, unit: "move", units: 500 },
     Row { command: "sweep SWEEP --sample UNITS", input: Input::Sweep, unit: "case", units: 200 },
-    // A list of a profile and the ramp of a table have at most a million steps.
+    // Each curve of a profile and the ramp of a table have at most a million steps.
     Row {
-        command: "profile trapezoid --steps UNITS --speed 50000 --accel 500000 --csv OUT",
+        command: "profile trapezoid scurve sine logistic --steps UNITS --speed 50000 --accel 500000 --jerk 1.6e7 --csv OUT",
         input: Input::Arguments,
         unit: "step",
         units: 10_000,
     },
     Row {
-        command: "profile trapezoid --steps UNITS --speed 50000 --accel 500000 --json",
+        command: "profile trapezoid scurve sine logistic --steps UNITS --speed 50000 --accel 500000 --jerk 1.6e7 --json",
         input: Input::Arguments,
         unit: "step",
         units: 10_000,
