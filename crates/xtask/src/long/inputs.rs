@@ -155,7 +155,7 @@ mod tests {
         assert!(runs_of(&["README.md", "crates/cli/src/main.rs"]).is_empty());
         assert_eq!(
             runs_of(&["crates/link/src/lib.rs"]),
-            ["bad-line", "garbage", "dead-host", "verilog-board"]
+            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board"]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
         assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());
