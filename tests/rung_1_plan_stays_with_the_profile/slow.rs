@@ -62,7 +62,7 @@ fn slow_moves(profile: ProfileKind) -> impl Strategy<Value = SlowMove> {
 /// Applies both judges: edges computed from the integers, and pulses on the pins.
 fn holds(file: &MoveFile, plan: &Plan) -> Result<(), TestCaseError> {
     verify(file, plan, Some(2e-9));
-    let report = moves::check(file, plan, &plan.lines(), &plan.program(), &plan.build);
+    let report = moves::check(file, plan, &plan.courses(), &plan.program(), &plan.build);
     prop_assert!(report.passed, "{report}\n{}", file.source.text);
     Ok(())
 }

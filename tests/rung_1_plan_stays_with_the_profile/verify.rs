@@ -94,6 +94,7 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
         limits_hold(plan, index, axis, timebase.tick_ns(), slack.is_some());
         let start = i128::from(file.machine.phase.start_value());
         let (edges, _) = edges_of(plan.axis_segments(index), start, timebase.phase_bits());
+        let legs: Vec<_> = timelines[index].legs().collect();
         let crossings: Vec<_> = timelines[index].crossings(file.machine.phase).collect();
         assert_eq!(edges.len(), crossings.len(), "{}: pulses", axis.name);
         pins_are_free(plan, index, &edges);
@@ -104,8 +105,7 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
             let ticks = (edge.tick - due.start_tick) as f64
                 + f64::from(edge.phase) / f64::from(timebase.phases());
             let error = ticks * h - due.seconds;
-            let leg =
-                timelines[index].legs().iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
+            let leg = legs.iter().rfind(|leg| leg.start_tick <= edge.tick).unwrap();
             let a = steepest(&*leg.profile, due.seconds - h, due.seconds + h);
             // At phase zero the last pulse is due at rest; it cannot be later than its tick.
             let v = due.speed.max(h * a / 8.0);

@@ -142,7 +142,7 @@ fn checker_rejects_axes_that_leave_the_straight_line() {
     free.moves.iter_mut().for_each(|moved| moved.path = PathKind::Free);
     for (file, is_straight) in [(file, true), (free, false)] {
         let plan = carrystep_plan::plan::<f64>(&file).expect("a plan");
-        let report = moves::check(&file, &plan, &straight.lines(), &plan.program(), &plan.build);
+        let report = moves::check(&file, &plan, &straight.courses(), &plan.program(), &plan.build);
         let off = report.failures().any(|failure| failure.contains("off its line"));
         assert_eq!((report.passed(), off), (is_straight, !is_straight), "{report}");
     }

@@ -5,7 +5,7 @@ use carrystep_check::{AxisSetup, CheckReport, Checker, Origin, Setup};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment};
 use carrystep_files::{Machine, MoveFile, SourceText};
 use carrystep_plan::Plan;
-use carrystep_profile::{StraightLine, Timeline};
+use carrystep_profile::Course;
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level};
 use std::path::Path;
@@ -101,15 +101,14 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
 pub fn check(
     file: &MoveFile,
     plan: &Plan,
-    lines: &[StraightLine],
+    courses: &[Course],
     program: &Program,
     build: &Build,
 ) -> CheckReport {
-    let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
-    let mut checker =
-        Checker::new(Setup { lines: lines.to_vec(), ..check_setup(file, plan, &timelines, &job) });
-    let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
+    let setup = check_setup(file, plan, &job);
+    let mut checker = Checker::new(Setup { courses: courses.to_vec().into(), ..setup });
+    let mut feed = PinFeed::new(build.timebase, file.machine.axes.len(), &mut checker);
     let outcome = carrystep_simulators::run(Level::Fast, &job, &mut |cycle, outputs| {
         feed.observe(cycle, outputs);
     });
@@ -118,30 +117,22 @@ pub fn check(
 }
 
 /// The setup of the checker for a planned move file in a run of `job`.
-fn check_setup<'a>(
-    file: &'a MoveFile,
-    plan: &Plan,
-    timelines: &'a [Timeline],
-    job: &Job<'_>,
-) -> Setup<'a> {
+fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, job: &Job<'_>) -> Setup<'a> {
     let time = plan.build.timebase;
     let load = carrystep_simulators::origin(job).expect("the program starts");
-    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {
-        let steps = plan.moves.iter().map(|m| m.axes[i].steps);
-        AxisSetup {
-            name: &axis.name,
-            unit: Some(&axis.unit),
-            timeline,
-            pins_ns: axis.pins_ns,
-            expected_pulses: steps.clone().map(i64::unsigned_abs).sum(),
-            expected_position: steps.sum(),
-        }
-    };
+    let axes = file.machine.axes.iter().zip(plan.timelines());
+    let axes = axes.map(|(axis, timeline)| AxisSetup {
+        name: &axis.name,
+        unit: Some(&axis.unit),
+        travel: timeline.legs().collect(),
+        timeline,
+        pins_ns: axis.pins_ns,
+    });
     Setup {
         timebase: time,
         phase: plan.build.phase,
-        axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
-        lines: plan.lines(),
+        axes: axes.collect(),
+        courses: plan.courses().into(),
         origin: Origin::Known { ps: time.clock_to_ps(load + time.latency_clocks()).cast_signed() },
         slack_ps: 0,
     }

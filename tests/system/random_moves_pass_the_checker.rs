@@ -27,7 +27,7 @@ fn passes(random: &RandomMoves) -> Result<Judged, TestCaseError> {
     for file in random.files() {
         let plan =
             plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}\n{}", file.source.text));
-        let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
+        let report = moves::check(&file, &plan, &plan.courses(), &plan.program(), &plan.build);
         prop_assert!(report.passed, "{report}\n{}", file.source.text);
         judged.pulses += report.axes.iter().map(|axis| axis.pulses_found).sum::<u64>();
         if plan.build.timebase.phases() == 16 {

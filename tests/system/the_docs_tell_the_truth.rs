@@ -120,7 +120,7 @@ fn slow_moves_are_as_accurate_as_the_page_says() {
             let limits = format!("speed_limit = {SPEED}\naccel_limit = {ACCEL}");
             let file = one_axis(&limits, &moved);
             let plan = planned(&file);
-            let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
+            let report = moves::check(&file, &plan, &plan.courses(), &plan.program(), &plan.build);
             assert!(report.passed, "{report}");
             let axis = &report.axes[0];
             cells.push(plan.moves[0].axes[0].segments.len().to_string());

@@ -1,21 +1,23 @@
 //! The crossings that an axis has still to make, in order.
 //!
 //! They are computed in groups: an edge is compared with the next two of them without copying them,
-//! and the computations of one group do not wait for each other.
+//! and the computations of one group do not wait for each other. A move is read when an edge may
+//! belong to it, and not before, because the moves may still be planned.
 
 use crate::ideal::Due;
 use carrystep_core::StartPhase;
-use carrystep_profile::{Crossing, Timeline};
+use carrystep_profile::{Crossing, Leg, Reader, Timeline};
 
 /// The number of crossings that are computed together.
-const GROUP: usize = 64;
-
-/// Adds the next crossings to a list, at most [`GROUP`] of them.
-type Refill<'a> = Box<dyn FnMut(&mut Vec<(Crossing, Due)>) + Send + 'a>;
+const GROUP: u64 = 64;
 
 /// The crossings of an axis, from the next one on.
-pub(crate) struct Ahead<'a> {
-    refill: Refill<'a>,
+pub(crate) struct Ahead {
+    phase: StartPhase,
+    tick_ps: u64,
+    legs: Reader<Leg>,
+    /// The leg that was read last, and the number of its next crossing that is not in `group`.
+    leg: Option<(Leg, u64)>,
     group: Vec<(Crossing, Due)>,
     /// The place of the next crossing in `group`.
     at: usize,
@@ -23,15 +25,11 @@ pub(crate) struct Ahead<'a> {
     number: u64,
 }
 
-impl<'a> Ahead<'a> {
+impl Ahead {
     /// All crossings of a timeline. `tick_ps` is the length of a tick.
-    pub(crate) fn new(timeline: &'a Timeline, phase: StartPhase, tick_ps: u64) -> Self {
-        let with_due = move |crossing: Crossing| (crossing, Due::of(&crossing, tick_ps));
-        let mut all = timeline.crossings(phase).map(with_due);
-        let mut refill: Refill<'a> = Box::new(move |group| group.extend(all.by_ref().take(GROUP)));
-        let mut group = Vec::with_capacity(GROUP + 1);
-        refill(&mut group);
-        Self { refill, group, at: 0, number: 1 }
+    pub(crate) fn new(timeline: &Timeline, phase: StartPhase, tick_ps: u64) -> Self {
+        let (legs, group) = (timeline.legs(), Vec::with_capacity(GROUP as usize + 1));
+        Self { phase, tick_ps, legs, leg: None, group, at: 0, number: 1 }
     }
 
     /// Number of the next crossing, counted from 1.
@@ -39,20 +37,45 @@ impl<'a> Ahead<'a> {
         self.number
     }
 
-    /// The next crossing and the one after it. If an edge is nearer to the second one, a pulse is
-    /// missing.
-    pub(crate) fn next(&self) -> [Option<&(Crossing, Due)>; 2] {
-        [self.group.get(self.at), self.group.get(self.at + 1)]
+    /// Whether the next two crossings are computed.
+    pub(crate) fn has_two(&self) -> bool {
+        self.at + 1 < self.group.len()
+    }
+
+    /// Computes the next two crossings, as far as they are in moves that begin by `tick`.
+    pub(crate) fn look_to(&mut self, tick: u64) {
+        while !self.has_two() {
+            if self.leg.as_ref().is_none_or(|(leg, next)| *next > leg.steps) {
+                let Some(leg) = self.legs.next_by(tick) else { return };
+                self.leg = Some((leg, 1));
+            }
+            self.refill();
+        }
+    }
+
+    /// Adds crossings of the leg that was read last.
+    fn refill(&mut self) {
+        let Some((leg, next)) = &mut self.leg else { return };
+        let last = leg.steps.min(*next + GROUP - 1);
+        let crossings = (*next..=last).map(|k| leg.crossing(self.phase, k));
+        self.group.extend(crossings.map(|crossing| (crossing, Due::of(&crossing, self.tick_ps))));
+        *next = last + 1;
+    }
+
+    /// The next crossing (0) or the one after it (1), if it is computed. If an edge is nearer to
+    /// the second one, a pulse is missing.
+    pub(crate) fn next(&self, which: usize) -> Option<&(Crossing, Due)> {
+        self.group.get(self.at + which)
     }
 
     /// Goes on to the crossing after the next one.
     pub(crate) fn advance(&mut self) {
         self.number += 1;
         self.at += 1;
-        if self.at + 1 >= self.group.len() {
+        if !self.has_two() {
             self.group.drain(..self.at.min(self.group.len()));
             self.at = 0;
-            (self.refill)(&mut self.group);
+            self.refill();
         }
     }
 }

@@ -12,23 +12,21 @@ use crate::report::AxisReport;
 use crate::spread::Spread;
 use carrystep_core::{PinTimes, StartPhase, Timebase};
 use carrystep_files::Unit;
-use carrystep_profile::{Crossing, Timeline};
+use carrystep_profile::{Crossing, Timeline, Travel};
 
 /// The values against which one axis is checked.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct AxisSetup<'a> {
     /// The name of the axis in the report.
     pub name: &'a str,
     /// The unit of the axis in messages; `None`: steps.
     pub unit: Option<&'a Unit>,
     /// The float profile of all moves.
-    pub timeline: &'a Timeline,
+    pub timeline: Timeline,
+    /// What the axis does in all moves together.
+    pub travel: Travel,
     /// The pin times that the driver requires, ns.
     pub pins_ns: PinTimes,
-    /// Number of pulses of all moves together.
-    pub expected_pulses: u64,
-    /// Steps forward minus steps backward after all moves.
-    pub expected_position: i64,
 }
 
 /// Allowance for rounding, ps. Times are rounded to ps and P to 32 bits; together both stay below
@@ -72,7 +70,12 @@ fn profile_period(since: f64, late: f64, before: f64) -> f64 {
 
 /// The state of the check of one axis.
 pub(crate) struct AxisCheck<'a> {
-    setup: AxisSetup<'a>,
+    name: &'a str,
+    unit: Option<&'a Unit>,
+    pins_ns: PinTimes,
+    travel: Travel,
+    /// When the first pulse is due; `None` if the axis has none.
+    first: Option<Due>,
     timebase: Timebase,
     slack_ps: f64,
     /// The greatest tolerance of a fit, ps.
@@ -80,7 +83,7 @@ pub(crate) struct AxisCheck<'a> {
     /// The allowed deviation of a period, ps, before its edge counts as an extra or a missing
     /// pulse. A fit may shift both edges of the period.
     tolerance_ps: f64,
-    ahead: Ahead<'a>,
+    ahead: Ahead,
     watch: PinWatch,
     position: i64,
     wrong_direction: u64,
@@ -104,20 +107,21 @@ impl<'a> AxisCheck<'a> {
         timebase: Timebase,
         slack_ps: u64,
     ) -> Self {
-        let ahead = Ahead::new(setup.timeline, phase, tick_ps(&timebase));
-        let fit_ps = setup
-            .timeline
-            .legs()
-            .iter()
-            .map(|leg| (leg.fit_seconds * PS).round())
-            .fold(0.0, f64::max);
+        let AxisSetup { name, unit, timeline, travel, pins_ns } = setup;
+        let tick_ps = tick_ps(&timebase);
+        let fit_ps = (travel.fit_seconds * PS).round();
+        let first = travel.first.as_ref();
         Self {
-            setup,
+            name,
+            unit,
+            pins_ns,
+            first: first.map(|leg| Due::of(&leg.crossing(phase, 1), tick_ps)),
+            travel,
             timebase,
             slack_ps: slack_ps as f64,
             fit_ps,
             tolerance_ps: phase_ps(&timebase) + slack_ps as f64 + 2.0 * fit_ps,
-            ahead,
+            ahead: Ahead::new(&timeline, phase, tick_ps),
             watch: PinWatch::default(),
             position: 0,
             wrong_direction: 0,
@@ -134,20 +138,20 @@ impl<'a> AxisCheck<'a> {
     }
 
     fn fail(&mut self, what: &str) {
-        self.failures.push(format!("axis {}: {what}", self.setup.name));
+        self.failures.push(format!("axis {}: {what}", self.name));
     }
 
     fn fail_pulse(&mut self, what: &str) {
         if self.pulse_failures.len() < SPELLED_OUT {
-            self.pulse_failures.push(format!("axis {}: {what}", self.setup.name));
+            self.pulse_failures.push(format!("axis {}: {what}", self.name));
         } else {
             self.omitted += 1;
         }
     }
 
-    /// When the first pulse is due; `None` if there is none, or after it.
+    /// When the first pulse is due; `None` if there is none.
     pub(crate) fn first(&self) -> Option<Due> {
-        self.ahead.next()[0].filter(|_| self.ahead.number() == 1).map(|(_, due)| *due)
+        self.first
     }
 
     pub(crate) fn initial(&mut self, pin: Pin, level: bool) {
@@ -167,11 +171,12 @@ impl<'a> AxisCheck<'a> {
     fn pulse(&mut self, change: PinChange, base: Base) {
         let backward = self.watch.backward();
         self.position += if backward { -1 } else { 1 };
+        self.look_ahead(change.ps, base);
         let mut compared = self.compare(change.ps, base);
         if self.is_extra(&compared) {
             let after = match self.ahead.number() - 1 {
                 0 => "before pulse 1".to_owned(),
-                k if self.ahead.next()[0].is_none() => format!("after pulse {k}, the last"),
+                k if k == self.travel.pulses => format!("after pulse {k}, the last"),
                 k => format!("after pulse {k}"),
             };
             self.fail_pulse(&format!("one pulse too many at {}, {after}", moment(change.ps)));
@@ -179,10 +184,10 @@ impl<'a> AxisCheck<'a> {
         }
         while self.is_missing(&compared, change.ps, base) {
             self.miss(base.ps);
+            self.look_ahead(change.ps, base);
             compared = self.compare(change.ps, base);
         }
-        let (Some(&(crossing, _)), Some(lateness_ps)) =
-            (self.ahead.next()[0], compared.lateness_ps)
+        let (Some(&(crossing, _)), Some(lateness_ps)) = (self.ahead.next(0), compared.lateness_ps)
         else {
             return;
         };
@@ -201,21 +206,42 @@ impl<'a> AxisCheck<'a> {
         self.ahead.advance();
     }
 
-    /// Compares an edge with the next crossing.
-    fn compare(&self, ps: u64, base: Base) -> Compared {
-        let lateness_ps = self.lateness_ps(0, ps, base);
-        let last = match self.last {
+    /// Computes the next two crossings, as far as an edge at `ps` may belong to one of them.
+    ///
+    /// An edge is nearer to the last paired pulse than to a crossing that is twice as far from this
+    /// pulse as the edge is.
+    fn look_ahead(&mut self, ps: u64, base: Base) {
+        if self.ahead.has_two() || self.ahead.number() > self.travel.pulses {
+            return;
+        }
+        let tick = self.since_last(ps, base).map_or(u64::MAX, |(since, before)| {
+            let now = nearest(i128::from(ps) - i128::from(base.ps));
+            let latest = now + since + 2.0 * (self.tolerance_ps + before.abs());
+            // A cast saturates: before the origin the tick is 0.
+            (latest / tick_ps(&self.timebase) as f64) as u64 + 2
+        });
+        self.ahead.look_to(tick);
+    }
+
+    /// The time from the last paired pulse to `ps`, ps, and the lateness of that pulse. Before the
+    /// first one the origin counts as a pulse in time, unless it is only an estimate.
+    fn since_last(&self, ps: u64, base: Base) -> Option<(f64, f64)> {
+        match self.last {
             Some(last) => Some((ps.saturating_sub(last.ps) as f64, last.lateness_ps)),
             None if base.is_sure => Some((nearest(i128::from(ps) - i128::from(base.ps)), 0.0)),
             None => None,
-        };
-        Compared { lateness_ps, last }
+        }
+    }
+
+    /// Compares an edge with the next crossing.
+    fn compare(&self, ps: u64, base: Base) -> Compared {
+        Compared { lateness_ps: self.lateness_ps(0, ps, base), last: self.since_last(ps, base) }
     }
 
     /// The lateness of an edge, if it belongs to the next crossing (0) or to the one after it (1),
     /// ps.
     fn lateness_ps(&self, which: usize, ps: u64, base: Base) -> Option<f64> {
-        Some(self.ahead.next()[which]?.1.lateness_ps(ps, base.ps))
+        Some(self.ahead.next(which)?.1.lateness_ps(ps, base.ps))
     }
 
     fn is_extra(&self, compared: &Compared) -> bool {
@@ -246,7 +272,7 @@ impl<'a> AxisCheck<'a> {
 
     /// Records that the next crossing has no pulse.
     fn miss(&mut self, origin_ps: i64) {
-        if let Some((_, due)) = self.ahead.next()[0] {
+        if let Some((_, due)) = self.ahead.next(0) {
             let due = moment(due.at_ps(origin_ps));
             self.fail_pulse(&format!("pulse {} is missing, due at {due}", self.ahead.number()));
             self.ahead.advance();
@@ -255,9 +281,14 @@ impl<'a> AxisCheck<'a> {
 
     /// Records the crossings that are left when the capture ends.
     fn miss_rest(&mut self, origin_ps: i64) {
-        match self.ahead.next() {
-            [Some((_, first)), Some(_)] => {
-                let (number, due) = (self.ahead.number(), moment(first.at_ps(origin_ps)));
+        let number = self.ahead.number();
+        let left = self.travel.pulses.saturating_sub(number - 1);
+        if left > 0 {
+            self.ahead.look_to(u64::MAX);
+        }
+        match self.ahead.next(0) {
+            Some((_, first)) if left > 1 => {
+                let due = moment(first.at_ps(origin_ps));
                 self.fail_pulse(&format!(
                     "pulse {number} and all behind it are missing, due from {due}"
                 ));
@@ -302,13 +333,13 @@ impl<'a> AxisCheck<'a> {
         }
         self.miss_rest(origin_ps.saturating_add(shift_ps));
         let found = self.watch.pulses();
-        if found != self.setup.expected_pulses {
-            self.fail(&format!("{found} pulses, {} expected", self.setup.expected_pulses));
+        if found != self.travel.pulses {
+            self.fail(&format!("{found} pulses, {} expected", self.travel.pulses));
         }
-        if self.position != self.setup.expected_position {
+        if self.position != self.travel.position {
             self.fail(&format!(
                 "final position {}, {} expected",
-                self.position, self.setup.expected_position
+                self.position, self.travel.position
             ));
         }
         let phase = phase_ps(&self.timebase);
@@ -320,7 +351,7 @@ impl<'a> AxisCheck<'a> {
             ));
         }
         let Shortest { step_high, step_low, dir_setup, dir_hold } = self.watch.shortest();
-        let required = self.setup.pins_ns;
+        let required = self.pins_ns;
         self.judge_pin("STEP high", step_high, required.step_high);
         self.judge_pin("STEP low", step_low, required.step_low);
         self.judge_pin("DIR set-up", dir_setup, required.dir_setup);
@@ -329,12 +360,12 @@ impl<'a> AxisCheck<'a> {
         let errors = self.errors.shifted(-(shift_ps as f64));
         self.failures.append(&mut self.pulse_failures);
         AxisReport {
-            axis: self.setup.name.to_owned(),
-            unit: self.setup.unit.cloned(),
+            axis: self.name.to_owned(),
+            unit: self.unit.cloned(),
             passed: self.failures.is_empty(),
-            pulses_expected: self.setup.expected_pulses,
+            pulses_expected: self.travel.pulses,
             pulses_found: found,
-            position_expected: self.setup.expected_position,
+            position_expected: self.travel.position,
             position_found: self.position,
             pulses_wrong_direction: self.wrong_direction,
             error_min_ns: errors.min().map(|e| e.value / NS),

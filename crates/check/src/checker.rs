@@ -16,7 +16,7 @@ use crate::line_check::LinesCheck;
 use crate::origin::{Origin, RunningOrigin};
 use crate::report::{CheckReport, OriginKind};
 use carrystep_core::{StartPhase, Timebase};
-use carrystep_profile::StraightLine;
+use carrystep_profile::{Course, Reader};
 use std::fmt;
 
 /// The values against which a capture is checked.
@@ -28,8 +28,8 @@ pub struct Setup<'a> {
     pub phase: StartPhase,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
-    /// The moves in which the axes keep to a straight line.
-    pub lines: Vec<StraightLine>,
+    /// The courses of all moves; an empty list if the axes do not keep to a line in any of them.
+    pub courses: Reader<Course>,
     /// The time from which times are counted.
     pub origin: Origin,
     /// Uncertainty of the capture's times, ps: the sample period of a logic analyser, or 0 for a
@@ -55,8 +55,8 @@ impl fmt::Debug for Checker<'_> {
 impl<'a> Checker<'a> {
     /// A checker that has not seen any change.
     pub fn new(setup: Setup<'a>) -> Self {
-        let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
-        let lines = LinesCheck::new(lines, phase, axes.len());
+        let Setup { timebase, phase, axes, courses, origin, slack_ps } = setup;
+        let lines = LinesCheck::new(courses, phase, axes.len());
         let axes =
             axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
         Self {
@@ -76,9 +76,11 @@ impl<'a> Checker<'a> {
         // distance that it travels in this time; `finish` makes the result a part of the axis'
         // `passed`.
         let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / PS;
-        let axes = self.axes.into_iter().enumerate();
-        let axes: Vec<_> =
-            axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
+        let offs: Vec<_> = (0..self.axes.len()).map(|i| self.lines.off(i, late)).collect();
+        // The moves behind the end of the capture are not read for the lines.
+        drop(self.lines);
+        let axes = self.axes.into_iter().zip(offs);
+        let axes: Vec<_> = axes.map(|(axis, off)| axis.finish(base, shift, off)).collect();
         CheckReport {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,

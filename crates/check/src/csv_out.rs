@@ -23,9 +23,9 @@ pub fn csv_writer<'a>(
     timebase: &Timebase,
     phase: StartPhase,
     origin_ps: i64,
-    axes: impl IntoIterator<Item = (&'a str, &'a Timeline)>,
+    axes: impl IntoIterator<Item = (&'a str, Timeline)>,
 ) -> Box<dyn PinSink + 'a> {
-    let follow = |(name, timeline)| (name, Follower::new(timeline, phase, timebase, origin_ps));
+    let follow = |(name, timeline)| (name, Follower::new(&timeline, phase, timebase, origin_ps));
     boxed(Box::new(out), origin_ps, axes.into_iter().map(follow).collect())
 }
 
@@ -33,7 +33,7 @@ pub fn csv_writer<'a>(
 fn boxed<'a>(
     out: Box<dyn Write + 'a>,
     origin_ps: i64,
-    axes: Vec<(&'a str, Follower<'a>)>,
+    axes: Vec<(&'a str, Follower)>,
 ) -> Box<dyn PinSink + 'a> {
     Box::new(CsvWriter { out: csv::Writer::from_writer(out), origin_ps, axes, begun: false })
 }
@@ -41,7 +41,7 @@ fn boxed<'a>(
 struct CsvWriter<'a> {
     out: csv::Writer<Box<dyn Write + 'a>>,
     origin_ps: i64,
-    axes: Vec<(&'a str, Follower<'a>)>,
+    axes: Vec<(&'a str, Follower)>,
     begun: bool,
 }
 

@@ -33,8 +33,8 @@ impl Pulse {
 }
 
 /// Pairs the k-th rising edge of an axis with the k-th crossing of its profile.
-pub struct Follower<'a> {
-    crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
+pub struct Follower {
+    crossings: Box<dyn Iterator<Item = Crossing>>,
     origin_ps: i64,
     tick_ps: u64,
     step: bool,
@@ -42,17 +42,17 @@ pub struct Follower<'a> {
     last: Option<Pulse>,
 }
 
-impl fmt::Debug for Follower<'_> {
+impl fmt::Debug for Follower {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Follower").field("last", &self.last).finish_non_exhaustive()
     }
 }
 
-impl<'a> Follower<'a> {
+impl Follower {
     /// Follows one axis. `origin_ps` is the load of the first move plus the latency L, ps of the
     /// capture.
     pub fn new(
-        timeline: &'a Timeline,
+        timeline: &Timeline,
         phase: StartPhase,
         timebase: &Timebase,
         origin_ps: i64,

@@ -32,6 +32,7 @@ mod vcd_pins;
 mod view;
 mod wave_format;
 mod waves;
+mod worst_lines;
 
 pub use axis_check::AxisSetup;
 pub use beside::check_beside;

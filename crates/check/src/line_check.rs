@@ -3,12 +3,15 @@
 //! An axis that has made c of its n steps is where the line is at c / n, within half a step and the
 //! distance that it travels while its edges are late or early. A point of the line is that near to
 //! all axes if there is such a point for each pair of axes. The pairs are compared after every
-//! pulse, in whole numbers.
+//! pulse, in whole numbers. Of a line that all axes have travelled, only what may be the worst of
+//! all lines is kept (`worst_lines.rs`).
 
 use crate::edge::{Pin, PinChange};
 use crate::ideal::nearest;
+use crate::worst_lines::{OnLine, WorstLines};
 use carrystep_core::StartPhase;
-use carrystep_profile::StraightLine;
+use carrystep_profile::{Course, Reader};
+use std::collections::VecDeque;
 
 /// The greatest deviation of two axes from each other on one line.
 #[derive(Debug, Clone, Copy)]
@@ -25,12 +28,14 @@ struct Worst {
 /// Follows all axes along one line.
 #[derive(Debug)]
 struct LineCheck {
-    line: StraightLine,
-    /// For each pair of axes, at the place that [`pair`] gives, while the axes are on the line.
+    /// Steps of each axis; negative is backward.
+    steps: Vec<i64>,
+    /// Greatest speed along the line, as the fraction of the line that is travelled in a second.
+    speed: f64,
+    /// Pulses that each axis has to make before the line.
+    before: Vec<u64>,
+    /// For each pair of axes, at the place that [`pair`] gives.
     pairs: Vec<Option<Worst>>,
-    /// For each axis, when all axes have travelled the line: its greatest deviation as
-    /// [`Self::worst`] gives it.
-    done: Vec<Option<(f64, u64)>>,
 }
 
 /// How far an axis was off its line.
@@ -47,28 +52,36 @@ pub(crate) struct Off {
 /// Follows all axes through all moves.
 #[derive(Debug)]
 pub(crate) struct LinesCheck {
-    lines: Vec<LineCheck>,
+    courses: Reader<Course>,
     phase: StartPhase,
     /// Whether the STEP of each axis is high.
     high: Vec<bool>,
     pulses: Vec<u64>,
+    /// Pulses that each axis has to make in the moves that were read.
+    required: Vec<u64>,
+    /// The lines that were read and that not all axes have travelled yet.
+    lines: VecDeque<LineCheck>,
+    /// Number of lines that all axes have travelled.
+    travelled: usize,
     /// Of each axis, the number of the first line that its pulses have not passed.
     reached: Vec<usize>,
+    /// For each axis, the lines that all axes have travelled.
+    worst: Vec<WorstLines>,
 }
 
 impl LinesCheck {
-    /// The lines are in the order of the moves.
-    pub(crate) fn new(lines: Vec<StraightLine>, phase: StartPhase, axes: usize) -> Self {
-        let lines = lines
-            .into_iter()
-            .map(|line| LineCheck { line, pairs: Vec::new(), done: Vec::new() })
-            .collect();
+    /// `courses` are those of all moves.
+    pub(crate) fn new(courses: Reader<Course>, phase: StartPhase, axes: usize) -> Self {
         Self {
-            lines,
+            courses,
             phase,
             high: vec![false; axes],
             pulses: vec![0; axes],
+            required: vec![0; axes],
+            lines: VecDeque::new(),
+            travelled: 0,
             reached: vec![0; axes],
+            worst: vec![WorstLines::default(); axes],
         }
     }
 
@@ -93,13 +106,45 @@ impl LinesCheck {
     fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
-        let place = &mut self.reached[axis];
-        while let Some(check) = self.lines.get_mut(*place) {
-            let (before, steps) = (check.line.before[axis], check.line.steps[axis].unsigned_abs());
-            match pulse.saturating_sub(before) {
+        while self.required[axis] < pulse {
+            let Some(course) = self.courses.next() else { break };
+            self.begin(course);
+        }
+        let place = self.reached[axis].max(self.travelled);
+        for (number, check) in (self.travelled..).zip(&mut self.lines).skip(place - self.travelled)
+        {
+            self.reached[axis] = number;
+            match pulse.saturating_sub(check.before[axis]) {
                 0 => return,
-                done if done <= steps => return check.measure(axis, &self.pulses, self.phase),
-                _ => *place += 1,
+                done if done <= check.steps[axis].unsigned_abs() => {
+                    check.measure(axis, &self.pulses, self.phase);
+                    return self.end_travelled();
+                }
+                _ => {}
+            }
+        }
+        self.reached[axis] = self.travelled + self.lines.len();
+    }
+
+    /// Adds the next move, if its axes travel along a line.
+    fn begin(&mut self, Course { steps, line_speed }: Course) {
+        let before = self.required.clone();
+        for (sum, steps) in self.required.iter_mut().zip(&steps) {
+            *sum += steps.unsigned_abs();
+        }
+        if let Some(speed) = line_speed.filter(|_| steps.iter().any(|&steps| steps != 0)) {
+            let pairs = vec![None; steps.len() * steps.len()];
+            self.lines.push_back(LineCheck { steps, speed, before, pairs });
+        }
+    }
+
+    /// Ends the check of the first lines, as far as all axes have travelled them.
+    fn end_travelled(&mut self) {
+        while self.lines.front().is_some_and(|check| check.is_over(&self.pulses)) {
+            let Some(check) = self.lines.pop_front() else { return };
+            self.travelled += 1;
+            for (axis, worst) in self.worst.iter_mut().enumerate() {
+                check.deviation(axis).into_iter().for_each(|deviation| worst.add(deviation));
             }
         }
     }
@@ -107,10 +152,12 @@ impl LinesCheck {
     /// The deviation of an axis that came nearest to its bound, if edges may be off by up to
     /// `seconds`; `None` if the axis is not part of any line.
     pub(crate) fn off(&self, axis: usize, seconds: f64) -> Option<Off> {
-        let offs = self.lines.iter().filter_map(|check| {
-            let (beyond, pulse) = check.worst(axis)?;
-            let (n, speed) = (check.line.steps[axis].unsigned_abs() as f64, check.line.speed);
-            Some(Off { steps: 0.5 + n * beyond, bound: 0.5 + n * speed * seconds, pulse })
+        let last = self.lines.iter().filter_map(|check| check.deviation(axis));
+        let all = self.worst[axis].iter().chain(last);
+        let offs = all.map(|OnLine { steps, speed, pulse }| Off {
+            steps,
+            bound: 0.5 + speed * seconds,
+            pulse,
         });
         offs.max_by(|a, b| (a.steps - a.bound).total_cmp(&(b.steps - b.bound)))
     }
@@ -119,12 +166,8 @@ impl LinesCheck {
 impl LineCheck {
     /// Compares the axis that has stepped with every other axis.
     fn measure(&mut self, axis: usize, pulses: &[u64], phase: StartPhase) {
-        if self.pairs.is_empty() {
-            self.pairs = vec![None; pulses.len() * pulses.len()];
-        }
         let (here, n) = self.place(axis, pulses, phase);
-        for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0)
-        {
+        for other in (0..pulses.len()).filter(|&other| other != axis && self.steps[other] != 0) {
             let (there, m) = self.place(other, pulses, phase);
             let apart = (here * m - there * n).abs() - (n + m);
             let worst = &mut self.pairs[pair(axis, other, pulses.len())];
@@ -133,41 +176,37 @@ impl LineCheck {
                 *worst = Some(Worst { apart, pulse: pulses[axis], all_pulses });
             }
         }
-        if self.is_over(axis, pulses) && (0..pulses.len()).all(|axis| self.is_over(axis, pulses)) {
-            self.done = (0..pulses.len()).map(|axis| self.worst(axis)).collect();
-            self.pairs = Vec::new();
-        }
     }
 
-    /// Whether the axis has made all its pulses on this line.
-    fn is_over(&self, axis: usize, pulses: &[u64]) -> bool {
-        pulses[axis].saturating_sub(self.line.before[axis]) >= self.line.steps[axis].unsigned_abs()
+    /// Whether all axes have made their pulses on this line.
+    fn is_over(&self, pulses: &[u64]) -> bool {
+        let left = |axis: usize| pulses[axis].saturating_sub(self.before[axis]);
+        (0..pulses.len()).all(|axis| left(axis) >= self.steps[axis].unsigned_abs())
     }
 
-    /// The greatest deviation of an axis from any other one, as a fraction of the line, and the
-    /// pulse after which it occurred; the first one of equal ones.
-    fn worst(&self, axis: usize) -> Option<(f64, u64)> {
-        if let Some(worst) = self.done.get(axis) {
-            return *worst;
-        }
-        let steps = &self.line.steps;
-        let of = |axis: usize| steps[axis].unsigned_abs() as f64;
-        let each = (0..steps.len()).filter(|&other| other != axis).filter_map(|other| {
-            let worst = (*self.pairs.get(pair(axis, other, steps.len()))?)?;
+    /// The greatest deviation of an axis from any other one; the first one of equal ones.
+    fn deviation(&self, axis: usize) -> Option<OnLine> {
+        let of = |axis: usize| self.steps[axis].unsigned_abs() as f64;
+        let each = (0..self.steps.len()).filter(|&other| other != axis).filter_map(|other| {
+            let worst = (*self.pairs.get(pair(axis, other, self.steps.len()))?)?;
             Some((nearest(worst.apart) / (4.0 * of(axis) * of(other)), worst))
         });
         let first_of_greatest = each.max_by(|(a, before), (b, after)| {
             a.total_cmp(b).then(after.all_pulses.cmp(&before.all_pulses))
         });
-        first_of_greatest.map(|(beyond, worst)| (beyond, worst.pulse))
+        first_of_greatest.map(|(beyond, worst)| OnLine {
+            steps: 0.5 + of(axis) * beyond,
+            speed: of(axis) * self.speed,
+            pulse: worst.pulse,
+        })
     }
 
     /// The middle of an axis' current place on the line, in half steps, and the number of its
     /// steps.
     fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, i128) {
-        let steps = self.line.steps[axis];
+        let steps = self.steps[axis];
         let n = steps.unsigned_abs();
-        let done = i128::from(pulses[axis].saturating_sub(self.line.before[axis]).min(n));
+        let done = i128::from(pulses[axis].saturating_sub(self.before[axis]).min(n));
         // A pulse is due in the middle of its step, or at phase zero at its end, which is the start
         // of the step for a backward move.
         let middle = match phase {
@@ -188,8 +227,8 @@ mod tests {
     use super::*;
 
     fn check(pulses: &[usize]) -> Off {
-        let line = StraightLine { before: vec![0; 2], steps: vec![4, -2], speed: 1.0 };
-        let mut check = LinesCheck::new(vec![line], StartPhase::Half, 2);
+        let line = Course { steps: vec![4, -2], line_speed: Some(1.0) };
+        let mut check = LinesCheck::new(vec![line].into(), StartPhase::Half, 2);
         pulses.iter().for_each(|&axis| check.pulse(axis));
         check.off(0, 0.01).unwrap()
     }

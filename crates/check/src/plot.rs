@@ -1,6 +1,7 @@
 //! Draws speed and error of every axis against time, as an SVG.
 //!
-//! This file collects the points; `plot/draw.rs` draws them.
+//! This file collects the points, `plot/profile_line.rs` those of the profile; `plot/draw.rs` draws
+//! them.
 
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
@@ -13,6 +14,9 @@ use carrystep_profile::Timeline;
 use std::fmt;
 
 mod draw;
+mod profile_line;
+
+use profile_line::ProfileLine;
 
 /// Number of stretches of time to which the pulses are thinned out. Each keeps two points.
 const STRETCHES: usize = 400;
@@ -35,27 +39,29 @@ pub struct PlotSetup<'a> {
 }
 
 /// One axis of a plot.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct PlotAxis<'a> {
     /// The name of the axis.
     pub name: &'a str,
     /// The float profile, which is drawn as a line.
-    pub timeline: &'a Timeline,
+    pub timeline: Timeline,
 }
 
 /// Collects and thins out the points of the picture from a stream of pin changes.
 pub struct Plot<'a> {
     title: &'a str,
     origin_ps: i64,
-    tick_seconds: f64,
+    tick_ps: u64,
     span_s: f64,
     axes: Vec<Curves<'a>>,
 }
 
 /// The curves of one axis.
 struct Curves<'a> {
-    axis: PlotAxis<'a>,
-    follower: Follower<'a>,
+    name: &'a str,
+    follower: Follower,
+    /// The speed of the profile.
+    line: ProfileLine,
     /// Signed speed of each period, steps/s, at the middle of the period.
     speed: Thin,
     /// Error of each pulse, ns.
@@ -75,23 +81,26 @@ impl<'a> Plot<'a> {
     /// A plot that has not seen any pulse.
     pub fn new(setup: PlotSetup<'a>) -> Self {
         let PlotSetup { title, timebase, phase, origin_ps, total_ticks, axes } = setup;
-        let span_s = total_ticks as f64 * tick_ps(&timebase) as f64 / PS;
+        let tick_ps = tick_ps(&timebase);
+        let span_s = total_ticks as f64 * tick_ps as f64 / PS;
         let curves = |axis: PlotAxis<'a>| Curves {
-            axis,
-            follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
+            name: axis.name,
+            line: ProfileLine::new(&axis.timeline, tick_ps as f64 / PS, span_s),
+            follower: Follower::new(&axis.timeline, phase, &timebase, origin_ps),
             speed: Thin::new(span_s, STRETCHES),
             error: Thin::new(span_s, STRETCHES),
         };
         let axes = axes.into_iter().map(curves).collect();
-        Self { title, origin_ps, tick_seconds: timebase.tick_seconds(), span_s, axes }
+        Self { title, origin_ps, tick_ps, span_s, axes }
     }
 
     /// Draws the picture. The bounds come from the report of the same capture.
     ///
     /// # Errors
     /// [`TraceError::Plot`] if the drawing library fails.
-    pub fn svg(&self, report: &CheckReport) -> Result<String, TraceError> {
-        draw::svg(self, report)
+    pub fn svg(mut self, report: &CheckReport) -> Result<String, TraceError> {
+        self.axes.iter_mut().for_each(|axis| axis.line.reach(u64::MAX));
+        draw::svg(&self, report)
     }
 }
 
@@ -105,6 +114,8 @@ impl PinSink for Plot<'_> {
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
         let Some(axis) = self.axes.get_mut(usize::from(change.axis)) else { return Ok(()) };
+        let since = i128::from(change.ps) - i128::from(self.origin_ps);
+        axis.line.reach(u64::try_from(since).unwrap_or(0) / self.tick_ps);
         if let Some(pulse) = axis.follower.change(change) {
             let time = (i128::from(pulse.ps) - i128::from(self.origin_ps)) as f64 / PS;
             if let (Some(speed), Some(period)) = (pulse.speed(), pulse.period_ps) {

@@ -35,13 +35,18 @@ impl<'a> SpeedRegister<'a> {
         starts.into_iter().chain(over).min()
     }
 
-    /// V in 2^-64 step per tick during tick `tick`, counted from 0. Ticks must not decrease from
-    /// call to call.
-    pub(crate) fn at(&mut self, tick: u64) -> i64 {
+    /// Goes on to the segment of tick `tick`. Ticks must not decrease from call to call.
+    pub(crate) fn go_to(&mut self, tick: u64) {
         while let Some(next) = self.next.filter(|&(start, _)| start <= tick) {
             self.running = Some(next);
             self.next = self.segments.next();
         }
+    }
+
+    /// V in 2^-64 step per tick during tick `tick`, counted from 0. Ticks must not decrease from
+    /// call to call.
+    pub(crate) fn at(&mut self, tick: u64) -> i64 {
+        self.go_to(tick);
         let Some((start, segment)) = self.running else { return 0 };
         let n = i128::from(tick.saturating_sub(start));
         if n >= i128::from(segment.ticks) {

@@ -41,7 +41,7 @@ pub struct AxisWaves<'a> {
     /// The name of the axis, which is the scope of its signals.
     pub name: &'a str,
     /// The float profile.
-    pub timeline: &'a Timeline,
+    pub timeline: Timeline,
     /// The segments in order, each with its first tick from the origin.
     pub segments: Box<dyn Iterator<Item = (u64, Segment)> + 'a>,
 }
@@ -65,8 +65,8 @@ struct AxisWriter<'a> {
     /// Number of the axis.
     number: usize,
     name: &'a str,
-    profile: Walk<'a>,
-    follower: Follower<'a>,
+    profile: Walk,
+    follower: Follower,
     register: SpeedRegister<'a>,
     levels: [bool; 2],
     v: i64,
@@ -81,7 +81,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
             number,
             name: axis.name,
             profile: axis.timeline.walk(),
-            follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
+            follower: Follower::new(&axis.timeline, phase, &timebase, origin_ps),
             register: SpeedRegister::new(axis.segments),
             levels: [false; 2],
             v: 0,
@@ -224,10 +224,11 @@ impl<'a, F: Format> WaveWriter<'a, F> {
                 let axis = &mut self.axes[index];
                 axis.levels[usize::from(change.pin == Pin::Dir)] = change.level;
                 axis.follower.change(change);
+                self.go_to(change.ps);
                 return Ok(());
             }
             Place::Within => {}
-            Place::After => return Ok(()),
+            Place::After => return self.leave(),
         }
         self.advance(change.ps)?;
         let axis = &mut self.axes[index];
@@ -239,6 +240,24 @@ impl<'a, F: Format> WaveWriter<'a, F> {
                 real(&mut self.out, error, ns)?;
             }
             self.sample(index, change.ps)?;
+        }
+        Ok(())
+    }
+
+    /// Goes on to `ps`, before the window, so that the moves behind are not kept.
+    fn go_to(&mut self, ps: u64) {
+        let tick = self.since_origin(ps) / tick_ps(&self.own.timebase);
+        for axis in &mut self.axes {
+            axis.register.go_to(tick);
+            axis.profile.go_to(tick as f64);
+        }
+    }
+
+    /// Writes what is left of the window. The moves behind it are not read.
+    fn leave(&mut self) -> io::Result<()> {
+        if let Some(last) = self.view.last_ps() {
+            self.advance(last)?;
+            self.axes.clear();
         }
         Ok(())
     }

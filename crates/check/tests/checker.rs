@@ -6,7 +6,7 @@
 mod common;
 
 use carrystep_check::*;
-use carrystep_profile::StraightLine;
+use carrystep_profile::Course;
 use common::*;
 
 fn sorted(mut train: Vec<PinChange>) -> Vec<PinChange> {
@@ -226,8 +226,8 @@ fn pulse_that_is_high_at_the_start_is_named() {
 fn axes_are_compared_with_their_line() {
     let machine = Machine::there_and_back(3);
     let steps = vec![1000, -500, 333];
-    let out = StraightLine { before: vec![0; 3], steps, speed: 8.0 };
-    let setup = Setup { lines: vec![out], ..machine.setup(KNOWN) };
+    let out = Course { steps, line_speed: Some(8.0) };
+    let setup = Setup { courses: vec![out].into(), ..machine.setup(KNOWN) };
     let train = machine.train();
     let correct = machine.check_setup(&train, setup.clone());
     assert!(correct.passed, "{correct}");

@@ -12,7 +12,8 @@ use common::*;
 fn csv_has_a_line_for_every_pulse() {
     let machine = Machine::there_and_back(2);
     let mut bytes = Vec::new();
-    let axes = machine.timelines.iter().zip(NAMES).map(|(timeline, name)| (name, timeline));
+    let axes =
+        machine.timelines.iter().cloned().zip(NAMES).map(|(timeline, name)| (name, timeline));
     play(
         &machine.train(),
         &mut *csv_writer(&mut bytes, &machine.timebase, StartPhase::Half, ORIGIN_PS, axes),

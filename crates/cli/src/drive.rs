@@ -6,15 +6,21 @@ use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::failure::Failure;
 use crate::found;
+use crate::job;
 use crate::memory::{self, BoardMemory, MetLimit};
-use carrystep_core::engine::{Cause, Guard};
-use carrystep_files::{Axis, MoveFile, Unit};
-use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
-use carrystep_plan::Plan;
+use carrystep_core::Segment;
+use carrystep_core::engine::Cause;
+use carrystep_files::{Axis, MoveSource, Unit};
+use carrystep_link::supply::Supply;
+use carrystep_link::{Command, Ended, HostError, SegmentSource, Status};
+use carrystep_plan::{AxisTotals, PlannedMove, Survey};
+use carrystep_profile::Reader;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::collections::VecDeque;
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How a run on a board ended.
@@ -135,14 +141,11 @@ impl fmt::Display for Driven {
     }
 }
 
-/// A plan in the form in which the link sends it.
+/// A plan that the link can send.
 pub struct Streamed {
-    commands: Vec<Command>,
-    steps: Vec<i64>,
-    units: Vec<Unit>,
+    survey: Survey,
     seconds: f64,
     near: Vec<Near>,
-    guard: Guard,
 }
 
 /// The motion of an axis beside a limit that it has met.
@@ -154,28 +157,39 @@ struct Near {
 }
 
 impl Streamed {
-    /// Converts a plan to commands of the link.
+    /// Plans all moves.
     ///
-    /// # Errors The machine's line is too slow to keep the queues of this plan full.
-    pub fn new(file: &MoveFile, plan: &Plan, baud: u32) -> Result<Self, Failure> {
-        let commands: Vec<Command> = plan.program().iter().filter_map(Command::of).collect();
-        let axes = file.machine.axes.len();
-        supply::check(&commands, axes as u8, plan.build.timebase.tick_ns(), baud)
-            .map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
-        let steps = (0..axes)
-            .map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum())
-            .collect();
-        let near = |(number, axis): (usize, &Axis)| {
-            let mut steps = plan.moves.iter().map(|planned| planned.axes[number].steps);
+    /// # Errors A move cannot be made, or the machine's line is too slow to keep the queues full.
+    pub fn new(source: MoveSource) -> Result<Self, Failure> {
+        let (machine, path) = (&source.machine, source.path.display().to_string());
+        let axes = machine.axes.len() as u8;
+        let mut supply = Some(Supply::new(axes, machine.timebase.tick_ns(), machine.baud));
+        // A move that cannot be made is told before a line that is too slow.
+        let mut starved = None;
+        let survey = job::survey(source, |planned| {
+            for command in planned.commands().iter().filter_map(Command::of) {
+                if let Some(Err(error)) = supply.as_mut().map(|supply| supply.add(&command)) {
+                    starved = Some(error);
+                    supply = None;
+                }
+            }
+            Ok(())
+        })?;
+        let starved = starved.or_else(|| supply.and_then(|supply| supply.finish().err()));
+        if let Some(error) = starved {
+            return Err(Failure::input(format!("{path}: {error}")));
+        }
+        let near = |(axis, totals): (&Axis, &AxisTotals)| {
+            let first = totals.travel.first.as_ref();
             Near {
-                first: steps.find(|&steps| steps != 0).map_or(0, |steps| steps.signum() as i8),
-                clear: axis.move_off(&file.machine),
+                first: first.map_or(0, |leg| leg.forward().signum() as i8),
+                clear: axis.move_off(survey.machine()),
             }
         };
-        let near = file.machine.axes.iter().enumerate().map(near).collect();
-        let units = file.machine.axes.iter().map(|axis| axis.unit.clone()).collect();
-        let seconds = plan.total_ticks() as f64 * plan.build.timebase.tick_seconds();
-        Ok(Self { commands, steps, units, seconds, near, guard: file.machine.guard.clone() })
+        let axes = survey.machine().axes.iter().zip(&survey.totals().axes);
+        let near = axes.map(near).collect();
+        let seconds = survey.totals().ticks as f64 * survey.build().timebase.tick_seconds();
+        Ok(Self { survey, seconds, near })
     }
 
     /// Refuses a program whose first motion takes an axis further toward a limit that it has met
@@ -247,8 +261,7 @@ pub fn drive(
     if !into_limit {
         streamed.check_limits(&memory, &start, &axes)?;
     }
-    let program =
-        Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
+    let program = PlannedProgram::new(&streamed.survey);
     let line = Line::new(&axes, streamed.seconds);
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
@@ -275,7 +288,7 @@ pub fn drive(
         // The stop was requested, so it is cleared here and the next run does not report it.
         board.clear().map_err(told)?;
     }
-    if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.guard) {
+    if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.survey.machine().guard) {
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
@@ -301,13 +314,15 @@ pub fn drive(
     let is_culprit =
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
+    streamed.survey.whole()?;
+    let (machine, totals) = (streamed.survey.machine(), streamed.survey.totals());
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],
         position: end.positions[number],
-        steps_planned: streamed.steps[number],
-        unit: streamed.units[number].name.clone(),
-        steps_per_unit: streamed.units[number].steps,
+        steps_planned: totals.axes[number].travel.position,
+        unit: machine.axes[number].unit.name.clone(),
+        steps_per_unit: machine.axes[number].unit.steps,
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| {
@@ -327,6 +342,51 @@ pub fn drive(
         run_s: begun.elapsed().as_secs_f64(),
         axes,
     })
+}
+
+/// The segments of a plan, which is made while they are sent.
+struct PlannedProgram {
+    moves: Reader<Arc<PlannedMove>>,
+    /// For each axis, the segments of the moves that were read and that have not been sent.
+    segments: Vec<VecDeque<Segment>>,
+    /// The starts of these moves.
+    starts: VecDeque<u8>,
+}
+
+impl PlannedProgram {
+    fn new(survey: &Survey) -> Self {
+        let segments = survey.machine().axes.iter().map(|_| VecDeque::new()).collect();
+        Self { moves: survey.begin().moves, segments, starts: VecDeque::new() }
+    }
+
+    /// Reads the next move; `None` if there is none.
+    fn read(&mut self) -> Option<()> {
+        for command in self.moves.next()?.commands().iter().filter_map(Command::of) {
+            match command {
+                Command::Segment { axis, segment } => {
+                    self.segments.get_mut(usize::from(axis))?.push_back(segment);
+                }
+                Command::Start { mask } => self.starts.push_back(mask),
+            }
+        }
+        Some(())
+    }
+}
+
+impl SegmentSource for PlannedProgram {
+    fn segment(&mut self, axis: u8) -> Option<Segment> {
+        while self.segments.get(usize::from(axis))?.is_empty() {
+            self.read()?;
+        }
+        self.segments[usize::from(axis)].pop_front()
+    }
+
+    fn start(&mut self) -> Option<u8> {
+        while self.starts.is_empty() {
+            self.read()?;
+        }
+        self.starts.pop_front()
+    }
 }
 
 /// The progress line on a terminal: elapsed part of the planned time, and the positions of the axes

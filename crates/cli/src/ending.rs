@@ -128,7 +128,8 @@ fn render(error: &InputError, terminal: bool) -> String {
     };
     let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
     diagnostic.help = error.help.as_deref().map(harmless);
-    let code = Excerpt::new(source.path.display().to_string(), &harmless(&source.text), span);
+    let name = source.path.display().to_string();
+    let code = Excerpt::new(name, &harmless(&source.text), span).after(error.lines_before);
     drawn(diagnostic.with_label(LabeledSpan::underline(code.span())), code, terminal)
 }
 

@@ -55,6 +55,11 @@ impl Excerpt {
         }
     }
 
+    /// The same excerpt of a text that follows this number of lines of the file.
+    pub fn after(self, lines: usize) -> Self {
+        Self { first_line: self.first_line + lines, ..self }
+    }
+
     /// The position of the error in the excerpt, in bytes.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()

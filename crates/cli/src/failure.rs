@@ -2,8 +2,7 @@
 
 use carrystep_boards::BoardError;
 use carrystep_check::TraceError;
-use carrystep_files::{InputError, MoveFile};
-use carrystep_plan::PlanError;
+use carrystep_files::InputError;
 use carrystep_simulators::LevelError;
 use carrystep_tools::SynthesisError;
 use carrystep_verilog::ExportError;
@@ -88,13 +87,4 @@ impl From<TraceError> for Failure {
     fn from(error: TraceError) -> Self {
         Self::Input(InputError::new(error.to_string()))
     }
-}
-
-/// The failure for a move that the planner refuses, with the place of the move in the file.
-pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
-    let message = error.to_string();
-    Failure::Input(match error.move_index() {
-        Some(index) => file.move_error(index, message),
-        None => InputError::new(message),
-    })
 }

@@ -1,20 +1,22 @@
-//! Runs one planned move file at one level: it opens the outputs, runs the gateware, checks every
+//! Runs the moves of one file at one level: it opens the outputs, runs the gateware, checks every
 //! pulse and collects the results.
 
 use crate::arguments::Core;
 use crate::failure::Failure;
 use crate::gateware::{self, CorePlan};
 use crate::interrupt;
-use crate::progress::RunProgress;
+use crate::pass::PlanCommands;
+use crate::progress::{PlanProgress, RunProgress};
 use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
     AxisSetup, AxisWaves, CheckReport, Origin, PinSink, Plot, PlotAxis, PlotSetup, Setup, Tee,
     Waves, check_beside, csv_writer, fst_writer, save_file, vcd_writer,
 };
-use carrystep_files::MoveFile;
-use carrystep_plan::Plan;
-use carrystep_profile::Timeline;
+use carrystep_core::Segment;
+use carrystep_files::MoveSource;
+use carrystep_plan::{Pass, PlannedMove, Survey};
+use carrystep_profile::{Course, Reader, Timeline};
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level, LevelError};
@@ -22,6 +24,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -75,46 +78,53 @@ impl fmt::Display for RunResult {
     }
 }
 
-/// Reads a move file. `fit_ns` (ns) overrides the fit tolerance of all its moves.
-pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
-    let mut file = MoveFile::load(path)?;
-    if let Some(fit_ns) = fit_ns {
-        file.moves.iter_mut().for_each(|moved| moved.fit_ns = fit_ns);
-    }
-    Ok(file)
+/// Opens a move file. `fit_ns` (ns) overrides the fit tolerance of all its moves.
+pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveSource, Failure> {
+    Ok(MoveSource::open(path)?.with_fit(fit_ns))
+}
+
+/// Plans all moves, so that a move that cannot be made is refused before anything happens. `watch`
+/// sees each of them.
+pub fn survey(
+    source: MoveSource,
+    mut watch: impl FnMut(&PlannedMove) -> Result<(), Failure>,
+) -> Result<Survey, Failure> {
+    let mut progress = PlanProgress::new();
+    Survey::new(source, |planned| {
+        progress.one();
+        watch(planned)?;
+        interrupt::check()
+    })
 }
 
 /// The setup of the checker for a capture of this plan.
 pub fn check_setup<'a>(
-    file: &'a MoveFile,
-    plan: &Plan,
-    timelines: &'a [Timeline],
+    survey: &'a Survey,
+    timelines: &[Timeline],
+    courses: Reader<Course>,
     origin: Origin,
 ) -> Setup<'a> {
-    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {
-        let steps = plan.moves.iter().map(|m| m.axes[i].steps);
-        AxisSetup {
-            name: &axis.name,
-            unit: Some(&axis.unit),
-            timeline,
-            pins_ns: axis.pins_ns,
-            expected_pulses: steps.clone().map(i64::unsigned_abs).sum(),
-            expected_position: steps.sum(),
-        }
-    };
+    let axes = survey.machine().axes.iter().zip(&survey.totals().axes).zip(timelines);
+    let axes = axes.map(|((axis, totals), timeline)| AxisSetup {
+        name: &axis.name,
+        unit: Some(&axis.unit),
+        timeline: timeline.clone(),
+        travel: totals.travel.clone(),
+        pins_ns: axis.pins_ns,
+    });
     Setup {
-        timebase: plan.build.timebase,
-        phase: plan.build.phase,
-        axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
-        lines: plan.lines(),
+        timebase: survey.build().timebase,
+        phase: survey.build().phase,
+        axes: axes.collect(),
+        courses,
         origin,
         slack_ps: 0,
     }
 }
 
 /// Refuses a plan that is longer than a capture can be.
-pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
-    let ns = u128::from(plan.total_ticks()) * u128::from(plan.build.timebase.tick_ns());
+pub fn fits_a_capture(survey: &Survey) -> Result<(), Failure> {
+    let ns = u128::from(survey.totals().ticks) * u128::from(survey.build().timebase.tick_ns());
     if ns <= u128::from(LONGEST_S) * 1_000_000_000 {
         return Ok(());
     }
@@ -126,77 +136,80 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
 
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(
-    file: &MoveFile,
-    plan: &Plan,
+    survey: &Survey,
     core: Core,
     level: Level,
     wanted: &Wanted,
 ) -> Result<RunResult, Failure> {
+    let (machine, build, totals) = (survey.machine(), survey.build(), survey.totals());
+    let title = survey.source().path.display().to_string();
     let engine = match core {
-        Core::Engine => {
-            Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?)
-        }
+        Core::Engine => Some(gateware::engine(machine, &title)?),
         Core::Parallel => None,
     };
     carrystep_simulators::available(level)?;
-    fits_a_capture(plan)?;
+    fits_a_capture(survey)?;
     let mut files = wanted.begin()?;
-    let program = plan.program();
+    let program = PlanCommands::new(survey);
     // Set when an output fails, so that the run ends early.
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
-    let timebase = plan.build.timebase;
-    let progress =
-        RunProgress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
+    let (timebase, phase) = (build.timebase, build.phase);
+    let progress = RunProgress::new(level, totals.ticks * u64::from(timebase.clocks_per_tick()));
     let how_far = Some(progress.how_far());
     let on = match &engine {
         None => CorePlan::Parallel(Job {
-            axes: file.machine.axes.len(),
+            axes: machine.axes.len(),
             halt,
             how_far,
-            ..Job::new(&plan.build, &program, plan.total_ticks())
+            ..Job::new(build, &program, totals.ticks)
         }),
         Some(engine) => CorePlan::Engine(EngineJob {
             halt,
             how_far,
-            ..EngineJob::new(engine, &program, plan.total_ticks())
+            ..EngineJob::new(engine, &program, totals.ticks)
         }),
     };
     let load = on.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
-    let timelines = plan.timelines();
+    let total_s = totals.ticks as f64 * timebase.tick_seconds();
+    let view = wanted.part.view(machine, origin_ps, total_s)?;
 
-    let setup = check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps });
-    let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
-    let total_s = plan.total_ticks() as f64 * timebase.tick_seconds();
-    let view = wanted.part.view(&file.machine, origin_ps, total_s)?;
+    // Each of those who follow the plan has a place of its own in this pass. Nothing else keeps a
+    // place, so that the moves behind the last of them are freed.
+    let Pass { moves, timelines, courses } = survey.begin();
+    let setup = check_setup(survey, &timelines, courses, Origin::Known { ps: origin_ps });
+    let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let named = || names.iter().copied().zip(timelines.iter().cloned());
+    let segments = |axis: usize| {
+        let of_move = move |planned: Arc<PlannedMove>| {
+            planned.axis_segments(axis).collect::<Vec<(u64, Segment)>>()
+        };
+        Box::new(moves.clone().flat_map(of_move))
+    };
     let waves = || Waves {
         timebase,
-        phase: plan.build.phase,
+        phase,
         origin_ps,
-        total_ticks: plan.total_ticks(),
+        total_ticks: totals.ticks,
         axes: named()
             .enumerate()
-            .map(|(i, (name, timeline))| AxisWaves {
-                name,
-                timeline,
-                segments: Box::new(plan.axis_segments(i)),
-            })
+            .map(|(axis, (name, timeline))| AxisWaves { name, timeline, segments: segments(axis) })
             .collect(),
         view: view.clone(),
     };
-    let phase = plan.build.phase;
     let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();
     writers.extend(files.vcd.as_mut().map(|out| vcd_writer(out, waves())));
     writers.extend(files.fst.as_mut().map(|out| fst_writer(out, waves())));
     let csv = files.csv.as_mut();
     writers.extend(csv.map(|out| csv_writer(out, &timebase, phase, origin_ps, named())));
-    let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
         let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
-        let total_ticks = plan.total_ticks();
+        let total_ticks = totals.ticks;
         Plot::new(PlotSetup { title: &title, timebase, phase, origin_ps, total_ticks, axes })
     });
+    program.share(moves);
+    drop(timelines);
 
     let started = Instant::now();
     let (outcome, check) = check_beside(setup, |checker| -> Result<_, Failure> {
@@ -206,7 +219,7 @@ pub fn run(
         if let Some(sink) = plot.as_mut() {
             tee.add(sink);
         }
-        let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
+        let mut feed = PinFeed::new(timebase, machine.axes.len(), &mut tee);
         let outcome = on.run(level, &mut |cycle, step, dir| {
             progress.how_far().at(cycle);
             feed.pins(cycle, step, dir);
@@ -223,14 +236,15 @@ pub fn run(
         feed.end(outcome.clocks)?;
         Ok(outcome)
     });
+    survey.whole()?;
     let outcome = outcome?;
     let run_s = started.elapsed().as_secs_f64();
     drop(progress);
     drop(writers);
 
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {
-        let shown = named().enumerate().filter(|(axis, _)| view.shows(*axis));
-        let names: Vec<&str> = shown.map(|(_, (name, _))| name).collect();
+        let shown = names.iter().enumerate().filter(|(axis, _)| view.shows(*axis));
+        let names: Vec<&str> = shown.map(|(_, name)| *name).collect();
         let length_ps = view.length_ps(timebase.clock_to_ps(outcome.clocks));
         out.text(&save_file(&seen_from(out.path(), vcd), &names, length_ps)?)?;
     }
@@ -238,8 +252,8 @@ pub fn run(
         out.text(&plot.svg(&check)?)?;
     }
 
-    let limits = table::limits(file, plan);
-    let positions: Vec<i32> = outcome.positions.into_iter().take(file.machine.axes.len()).collect();
+    let limits = table::limits(machine, totals);
+    let positions: Vec<i32> = outcome.positions.into_iter().take(machine.axes.len()).collect();
     let landed = positions
         .iter()
         .zip(&check.axes)

@@ -25,9 +25,11 @@ mod memory;
 #[cfg(unix)]
 mod operated;
 mod output;
+mod pass;
 mod progress;
 #[cfg(unix)]
 mod shipped;
+mod spool;
 mod switches;
 mod table;
 mod wanted;

@@ -25,6 +25,12 @@ pub fn print(text: &str) -> Result<(), Failure> {
         .map_err(|error| not_printed(&error))
 }
 
+/// Prints a part of a text as it is.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| not_printed(&error))
+}
+
 /// The reason why standard output could not be written.
 fn not_printed(error: &std::io::Error) -> Failure {
     match error.kind() {
@@ -61,13 +67,27 @@ pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     write_json(document, JSON_LINES.load(Ordering::Relaxed))
 }
 
+/// Prints the JSON document of a run whose last member is an empty list. `elements` prints what
+/// the list has instead of nothing.
+pub fn print_json_around(
+    document: &impl Document,
+    elements: impl FnOnce() -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    const END: &str = "]\n}\n";
+    let text = json_text(document)?;
+    JSON_PRINTED.store(true, Ordering::Relaxed);
+    print_bytes(text.strip_suffix(END).unwrap_or(&text).as_bytes())?;
+    elements()?;
+    print_bytes(END.as_bytes())
+}
+
 /// Prints a document that the document of the run follows, as a line.
 pub fn print_json_line(document: &impl Document) -> Result<(), Failure> {
     write_json(document, true)
 }
 
 /// Writes a document to standard output, in one line or indented. The text is written in blocks,
-/// because a plan of many moves has hundreds of megabytes of it.
+/// because some documents are long.
 fn write_json(document: &impl Document, in_a_line: bool) -> Result<(), Failure> {
     let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
     let named = Named::new(document);

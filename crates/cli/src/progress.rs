@@ -105,15 +105,53 @@ fn clock_face(seconds: f64) -> String {
     }
 }
 
+/// The number of moves that have been planned.
+pub struct PlanProgress {
+    begun: Instant,
+    moves: u64,
+    bar: Option<ProgressBar>,
+}
+
+impl PlanProgress {
+    /// A display that appears when planning takes longer than [`SHORT`].
+    pub fn new() -> Self {
+        Self { begun: Instant::now(), moves: 0, bar: None }
+    }
+
+    /// Counts a move.
+    pub fn one(&mut self) {
+        const NOW_AND_THEN: u64 = 1000;
+        self.moves += 1;
+        if self.moves.is_multiple_of(NOW_AND_THEN) && self.begun.elapsed() >= SHORT {
+            let bar = self.bar.get_or_insert_with(spinner);
+            bar.set_message(format!("{} moves planned", self.moves));
+            bar.tick();
+        }
+    }
+}
+
+impl Drop for PlanProgress {
+    fn drop(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    bar
+}
+
 /// A spinner with the current stage, for work of unknown length.
 pub struct Stages(ProgressBar);
 
 impl Stages {
     /// A spinner without a stage.
     pub fn new() -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
-        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        let bar = spinner();
         bar.enable_steady_tick(Duration::from_millis(200));
         Self(bar)
     }

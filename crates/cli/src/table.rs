@@ -1,10 +1,10 @@
 //! The table of a plan: the greatest speeds and accelerations of each axis beside the machine's
 //! limits. A plan never exceeds a limit, because the planner would have refused it.
 
-use carrystep_core::{Segment, Timebase};
+use carrystep_core::Timebase;
 use carrystep_files::unit::digits;
-use carrystep_files::{Axis, Machine, MoveFile, Unit, decimal};
-use carrystep_plan::{Peaks, Plan, PlannedMove};
+use carrystep_files::{Axis, Machine, Unit, decimal};
+use carrystep_plan::{AxisTotals, Totals};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use schemars::JsonSchema;
@@ -35,7 +35,7 @@ pub struct AxisLimits {
     /// Steps per unit, as the nearest float.
     pub steps_per_unit: f64,
     /// Number of segments of the axis.
-    pub segments: usize,
+    pub segments: u64,
     /// Steps forward minus steps backward.
     pub steps: i64,
     /// P at the end minus P at the start, in 2^-64 step: exactly 0.
@@ -48,85 +48,33 @@ pub struct AxisLimits {
     pub start_speed_limit_steps_per_s: f64,
 }
 
-/// Measures a plan against the limits of its machine.
-pub fn limits(file: &MoveFile, plan: &Plan) -> LimitsJson {
-    let mut sum = LimitsSum::new(&file.machine);
-    plan.moves.iter().for_each(|planned| sum.add(planned));
-    sum.limits()
-}
-
-/// Measures moves, one after the other, against the limits of their machine.
-pub struct LimitsSum<'a> {
-    machine: &'a Machine,
-    total_ticks: u64,
-    axes: Vec<AxisSum>,
-}
-
-/// Sums and greatest values of one axis.
-#[derive(Clone, Default)]
-struct AxisSum {
-    segments: usize,
-    steps: i64,
-    travelled: i128,
-    peaks: Peaks,
-}
-
-impl<'a> LimitsSum<'a> {
-    pub fn new(machine: &'a Machine) -> Self {
-        Self { machine, total_ticks: 0, axes: vec![AxisSum::default(); machine.axes.len()] }
-    }
-
-    pub fn add(&mut self, planned: &PlannedMove) {
-        self.total_ticks = planned.start_tick + planned.ticks;
-        for (sum, axis) in self.axes.iter_mut().zip(&planned.axes) {
-            sum.segments += axis.segments.len();
-            sum.steps += axis.steps;
-            sum.travelled += axis.segments.iter().map(distance).sum::<i128>();
-            sum.peaks = sum.peaks.with(&axis.peaks);
-        }
-    }
-
-    pub fn limits(&self) -> LimitsJson {
-        let (machine, total_ticks) = (self.machine, self.total_ticks);
-        let axes = machine.axes.iter().zip(&self.axes);
-        LimitsJson {
-            total_ticks,
-            total_s: total_ticks as f64 * machine.timebase.tick_seconds(),
-            tick_ns: machine.timebase.tick_ns(),
-            tick_note: machine.chosen_tick.map(|chosen| chosen.to_string()),
-            axes: axes.map(|(axis, sum)| sum.limits(axis, &machine.timebase)).collect(),
-        }
+/// The totals of a plan beside the limits of its machine.
+pub fn limits(machine: &Machine, totals: &Totals) -> LimitsJson {
+    let axes = machine.axes.iter().zip(&totals.axes);
+    LimitsJson {
+        total_ticks: totals.ticks,
+        total_s: totals.ticks as f64 * machine.timebase.tick_seconds(),
+        tick_ns: machine.timebase.tick_ns(),
+        tick_note: machine.chosen_tick.map(|chosen| chosen.to_string()),
+        axes: axes.map(|(axis, totals)| axis_limits(axis, totals, &machine.timebase)).collect(),
     }
 }
 
-impl AxisSum {
-    fn limits(&self, axis: &Axis, timebase: &Timebase) -> AxisLimits {
-        let Peaks { speed, acceleration, start_speed, .. } = self.peaks;
-        let per_second = |units: u64, power: u32| {
-            units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed())
-        };
-        AxisLimits {
-            axis: axis.name.clone(),
-            unit: axis.unit.name.clone(),
-            steps_per_unit: axis.unit.steps,
-            segments: self.segments,
-            steps: self.steps,
-            residue: self.travelled - (i128::from(self.steps) << 64),
-            speed_steps_per_s: per_second(speed, 1),
-            speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
-            acceleration_steps_per_s2: per_second(acceleration, 2),
-            acceleration_limit_steps_per_s2: decimal::to_f64(&axis.accel_limit),
-            start_speed_steps_per_s: per_second(start_speed, 1),
-            start_speed_limit_steps_per_s: decimal::to_f64(&axis.start_speed),
-        }
+fn axis_limits(axis: &Axis, totals: &AxisTotals, timebase: &Timebase) -> AxisLimits {
+    AxisLimits {
+        axis: axis.name.clone(),
+        unit: axis.unit.name.clone(),
+        steps_per_unit: axis.unit.steps,
+        segments: totals.segments,
+        steps: totals.travel.position,
+        residue: totals.residue(),
+        speed_steps_per_s: totals.peaks.steps_per_s(timebase),
+        speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
+        acceleration_steps_per_s2: totals.peaks.steps_per_s2(timebase),
+        acceleration_limit_steps_per_s2: decimal::to_f64(&axis.accel_limit),
+        start_speed_steps_per_s: totals.peaks.start_steps_per_s(timebase),
+        start_speed_limit_steps_per_s: decimal::to_f64(&axis.start_speed),
     }
-}
-
-/// The exact distance of a segment, in 2^-64 step.
-fn distance(segment: &Segment) -> i128 {
-    let n = i128::from(segment.ticks);
-    let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
-    n * v + n * (n - 1) / 2 * a + n * (n - 1) * (n - 2) / 6 * j
 }
 
 impl LimitsJson {

@@ -23,14 +23,16 @@ pub struct InputError {
     pub message: String,
     /// The remedy, if there is one.
     pub help: Option<String>,
-    /// The file and the range of bytes in it that is wrong, if the error belongs to one.
+    /// The file and the range of bytes in its text that is wrong, if the error belongs to one.
     pub place: Option<(SourceText, Range<usize>)>,
+    /// Number of lines of the file before this text, if it is a part of a long file.
+    pub lines_before: usize,
 }
 
 impl InputError {
     /// Makes an error without a place.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: bounded(message.into()), help: None, place: None }
+        Self { message: bounded(message.into()), help: None, place: None, lines_before: 0 }
     }
 
     /// Makes an error at a range of bytes in a file.
@@ -48,7 +50,8 @@ impl InputError {
     /// Line and column of the place, both from 1.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let (source, span) = self.place.as_ref()?;
-        Some(line_column(source.text.get(..span.start)?))
+        let (line, column) = line_column(source.text.get(..span.start)?);
+        Some((self.lines_before + line, column))
     }
 }
 
@@ -91,7 +94,15 @@ impl SourceText {
     /// [`InputError`] at the place of a syntax error, an unknown key, a missing field or a wrong
     /// type.
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, InputError> {
-        toml::from_str(&self.text).map_err(|error| {
+        self.parse_as(&self.text)
+    }
+
+    /// Parses `text` as TOML in the place of this text; errors point to this text.
+    pub(crate) fn parse_as<T: serde::de::DeserializeOwned>(
+        &self,
+        text: &str,
+    ) -> Result<T, InputError> {
+        toml::from_str(text).map_err(|error| {
             let message = error.message();
             let told = InputError::at(self, error.span().unwrap_or(0..0), in_plain_words(message));
             match meant(message) {

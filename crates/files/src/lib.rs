@@ -1,6 +1,7 @@
 //! Reads and writes the user's files safely: machine and move files, and outputs.
 //!
-//! A machine file is read into a [`Machine`], a move file into a [`MoveFile`]. What is wrong in one
+//! A machine file is read into a [`Machine`], a move file into a [`MoveFile`], or, if it may be
+//! long, into a [`MoveSource`]. What is wrong in one
 //! is an [`InputError`] with the line and column where it stands.
 //!
 //! - An input must be a regular file ([`read_text`], [`open`]), because a device or a pipe could
@@ -16,14 +17,17 @@ pub mod decimal;
 pub mod driver;
 pub mod error;
 mod input;
+mod long_file;
 pub mod machine;
 pub mod move_file;
+mod moves;
 mod names;
 mod number;
 mod output;
 mod place;
 mod registry;
 mod state_file;
+mod toml_lines;
 pub mod unit;
 mod unnamed;
 
@@ -32,7 +36,8 @@ pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};
 pub use error::{InputError, SourceText};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
 pub use machine::{Axis, Machine, TooManyAxes};
-pub use move_file::{Move, MoveFile, PathKind};
+pub use move_file::{Move, MoveFile, MovePlace, PathKind};
+pub use moves::{MoveSource, Moves};
 pub use names::{did_you_mean, nearest};
 pub use output::{NewFile, OutputClaim, OutputFailure};
 pub use state_file::{StateFailure, StateFile};

@@ -252,7 +252,8 @@ impl RawMachine {
                 ),
                 _ => (error.to_string(), Some(nearest_ticks(clock_hz, tick_ns, phases, axes))),
             };
-            InputError { message, help, place: span.map(|span| (source.clone(), span)) }
+            let place = span.map(|span| (source.clone(), span));
+            InputError { message, help, place, lines_before: 0 }
         })?;
         Ok((timebase, chosen))
     }

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::Spanned;
 
 /// How the axes of a move are combined.
@@ -58,29 +59,41 @@ pub struct Move {
     pub steps: Vec<i64>,
     /// Accumulated rounding of each axis in steps: exact target minus rounded target.
     pub rounding: Vec<f64>,
-    /// Place of the move in the move file.
+    /// Place of the move in its file.
+    pub place: MovePlace,
+}
+
+/// Place of a move in its file, for errors that are found later.
+#[derive(Debug, Clone)]
+pub struct MovePlace {
+    /// The text of the file, or the part of a long file that has the move.
+    pub text: Arc<str>,
+    /// Number of lines of the file before this text.
+    pub lines_before: usize,
+    /// The bytes of the text that are the move.
     pub span: Range<usize>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a move file")]
-struct RawMoveFile {
+pub(crate) struct RawMoveFile {
     machine_file: Option<Spanned<PathBuf>>,
     machine: Option<RawMachine>,
     #[serde(default, rename = "move")]
-    moves: Vec<Spanned<RawMove>>,
+    pub(crate) moves: Vec<Spanned<RawMove>>,
 }
 
+/// A text of moves alone.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "moves")]
-struct RawMoves {
+pub(crate) struct RawMoves {
     #[serde(default, rename = "move")]
-    moves: Vec<Spanned<RawMove>>,
+    pub(crate) moves: Vec<Spanned<RawMove>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a [[move]] table")]
-struct RawMove {
+pub(crate) struct RawMove {
     profile: Spanned<ProfileKind>,
     #[serde(default)]
     path: PathKind,
@@ -104,42 +117,10 @@ impl MoveFile {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn from_source(source: SourceText) -> Result<Self, InputError> {
-        let raw: RawMoveFile = source.parse()?;
-        let machine_file = raw.machine_file.as_ref().map(Spanned::span);
-        let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
-        let mut machine_source = None;
-        let machine = match (raw.machine_file, raw.machine) {
-            (Some(file), None) => {
-                let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
-                if !path.exists() {
-                    return Err(InputError::at(
-                        &source,
-                        file.span(),
-                        format!("there is no machine file {}", path.display()),
-                    )
-                    .help("the path is relative to the move file"));
-                }
-                // If the machine file cannot be read, the error points at its name in the move
-                // file.
-                let named = |error: InputError| InputError::at(&source, file.span(), error.message);
-                let text = machine_source.insert(SourceText::read(&path).map_err(named)?);
-                Machine::from_source(text)?
-            }
-            (None, Some(machine)) => machine.check(&source)?,
-            (Some(file), Some(_)) => {
-                return Err(InputError::at(
-                    &source,
-                    file.span(),
-                    "both machine_file and [machine] are given",
-                )
-                .help("keep one of them"));
-            }
-            (None, None) => {
-                return Err(InputError::at(&source, 0..0, "no machine")
-                    .help("name a machine_file, or describe the [machine] here"));
-            }
-        };
-        Ok(Self { machine_source, ..Self::on(machine, source, raw.moves, too_many)? })
+        let mut raw: RawMoveFile = source.parse()?;
+        let moves = std::mem::take(&mut raw.moves);
+        let (machine, machine_source) = raw.machine(&source)?;
+        Ok(Self { machine_source, ..Self::on(machine, source, moves)? })
     }
 
     /// Checks moves for a machine that is already known; the move file has no machine of its own.
@@ -148,51 +129,130 @@ impl MoveFile {
     /// [`InputError`] with line and column of the first mistake.
     pub fn of_moves(machine: Machine, source: SourceText) -> Result<Self, InputError> {
         let raw: RawMoves = source.parse()?;
-        Self::on(machine, source, raw.moves, None)
+        if let Some(error) = too_many_axes(&machine, &source, 0..0) {
+            return Err(error);
+        }
+        Self::on(machine, source, raw.moves)
     }
 
     fn on(
         machine: Machine,
         source: SourceText,
         raw: Vec<Spanned<RawMove>>,
-        too_many: Option<Range<usize>>,
     ) -> Result<Self, InputError> {
-        if machine.axes.len() > AXES {
-            let message =
-                format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
-            return Err(InputError::at(&source, too_many.unwrap_or(0..0), message));
-        }
         if raw.is_empty() {
-            return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
+            return Err(no_moves(&source));
         }
-        let moves = check_moves(&source, &machine, raw)?;
+        let mut targets = Targets::new(&machine);
+        let moves = raw
+            .into_iter()
+            .map(|entry| targets.next(&source, &machine, entry))
+            .collect::<Result<_, _>>()?;
         Ok(Self { machine, moves, source, machine_source: None })
     }
 
     /// Makes an error about a move, with the place of the move in the file.
     pub fn move_error(&self, index: usize, message: impl Into<String>) -> InputError {
         match self.moves.get(index) {
-            Some(found) => InputError::at(&self.source, found.span.clone(), message),
+            Some(found) => found.place.error(&self.source.path, message),
             None => InputError::new(message),
         }
     }
 }
 
-fn check_moves(
-    source: &SourceText,
+impl MovePlace {
+    /// Makes an error about the move, which is in the file of this path.
+    pub fn error(&self, path: &Path, message: impl Into<String>) -> InputError {
+        let source = SourceText { path: path.to_owned(), text: self.text.clone() };
+        let error = InputError::at(&source, self.span.clone(), message);
+        InputError { lines_before: self.lines_before, ..error }
+    }
+}
+
+/// The error for a file without moves.
+fn no_moves(source: &SourceText) -> InputError {
+    InputError::at(source, 0..0, "no moves").help("add a [[move]] table")
+}
+
+/// The error for a machine with more axes than moves are planned for, at this place of the file.
+fn too_many_axes(
     machine: &Machine,
-    raw: Vec<Spanned<RawMove>>,
-) -> Result<Vec<Move>, InputError> {
-    let mut targets = vec![BigDecimal::zero(); machine.axes.len()];
-    let mut positions = vec![0_i64; machine.axes.len()];
-    let mut moves = Vec::with_capacity(raw.len());
-    for entry in raw {
+    source: &SourceText,
+    place: Range<usize>,
+) -> Option<InputError> {
+    let axes = machine.axes.len();
+    let message = format!("{axes} axes: moves are planned for at most {AXES}");
+    (axes > AXES).then(|| InputError::at(source, place, message))
+}
+
+impl RawMoveFile {
+    /// The machine, and the text of its file if it has one.
+    pub(crate) fn machine(
+        self,
+        source: &SourceText,
+    ) -> Result<(Machine, Option<SourceText>), InputError> {
+        let machine_file = self.machine_file.as_ref().map(Spanned::span);
+        let too_many = self.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
+        let mut machine_source = None;
+        let machine = match (self.machine_file, self.machine) {
+            (Some(file), None) => {
+                let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
+                if !path.exists() {
+                    let message = format!("there is no machine file {}", path.display());
+                    return Err(InputError::at(source, file.span(), message)
+                        .help("the path is relative to the move file"));
+                }
+                // If the machine file cannot be read, the error points at its name in the move
+                // file.
+                let named = |error: InputError| InputError::at(source, file.span(), error.message);
+                let text = machine_source.insert(SourceText::read(&path).map_err(named)?);
+                Machine::from_source(text)?
+            }
+            (None, Some(machine)) => machine.check(source)?,
+            (Some(file), Some(_)) => {
+                let message = "both machine_file and [machine] are given";
+                return Err(InputError::at(source, file.span(), message).help("keep one of them"));
+            }
+            (None, None) => {
+                return Err(InputError::at(source, 0..0, "no machine")
+                    .help("name a machine_file, or describe the [machine] here"));
+            }
+        };
+        match too_many_axes(&machine, source, too_many.unwrap_or(0..0)) {
+            Some(error) => Err(error),
+            None => Ok((machine, machine_source)),
+        }
+    }
+}
+
+/// Where the axes stand after the moves that have been checked.
+#[derive(Debug)]
+pub(crate) struct Targets {
+    /// Exactly, in units of the axis.
+    exact: Vec<BigDecimal>,
+    /// Rounded to steps.
+    steps: Vec<i64>,
+}
+
+impl Targets {
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let axes = machine.axes.len();
+        Self { exact: vec![BigDecimal::zero(); axes], steps: vec![0; axes] }
+    }
+
+    /// Checks the next move.
+    pub(crate) fn next(
+        &mut self,
+        source: &SourceText,
+        machine: &Machine,
+        entry: Spanned<RawMove>,
+    ) -> Result<Move, InputError> {
         let span = entry.span();
         let RawMove { profile, path, time, fit_ns, to } = entry.into_inner();
         let time = time.map(|value| check_time(source, &value)).transpose()?;
         let fit_ns =
             fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
-        let before = positions.clone();
+        let before = self.steps.clone();
         for (name, distance) in &to {
             let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
                 let meant =
@@ -207,9 +267,9 @@ fn check_moves(
                 return Err(InputError::at(source, profile.span(), message)
                     .help("give the axis a jerk_limit in units/s^3, or take another profile"));
             }
-            targets[axis] += exact(source, distance, name.as_ref())?;
-            let target = &targets[axis] * &machine.axes[axis].steps_per_unit;
-            positions[axis] = register(&target).ok_or_else(|| {
+            self.exact[axis] += exact(source, distance, name.as_ref())?;
+            let target = &self.exact[axis] * &machine.axes[axis].steps_per_unit;
+            self.steps[axis] = register(&target).ok_or_else(|| {
                 let unit = &machine.axes[axis].unit;
                 let at = unit.both(decimal::to_f64(&target), 0);
                 let message =
@@ -219,24 +279,23 @@ fn check_moves(
                     .help(format!("the sum of all moves must stay within +-{most} of the start"))
             })?;
         }
-        let rounding = targets.iter().zip(&machine.axes).zip(&positions);
+        let rounding = self.exact.iter().zip(&machine.axes).zip(&self.steps);
         let rounding = rounding.map(|((target, axis), &steps)| {
             let left = decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)));
             // A remainder below 2^-64 step comes from the 60th decimal of `steps_per_unit` and is
             // not a rounding of the target.
             if left.abs() < 2_f64.powi(-64) { 0.0 } else { left }
         });
-        moves.push(Move {
+        Ok(Move {
             profile: profile.into_inner(),
             path,
             time,
             fit_ns,
-            steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
+            steps: self.steps.iter().zip(&before).map(|(now, old)| now - old).collect(),
             rounding: rounding.collect(),
-            span,
-        });
+            place: MovePlace { text: source.text.clone(), lines_before: 0, span },
+        })
     }
-    Ok(moves)
 }
 
 /// Checks a duration: greater than zero, and short enough to be counted in clocks.

@@ -37,6 +37,7 @@ pub struct Starved {
 
 /// The transmission of one segment, ns: when its queue place becomes free, when it must have
 /// arrived, and how long the line needs.
+#[derive(Debug)]
 struct Job {
     place: u64,
     due: u64,
@@ -49,52 +50,93 @@ struct Job {
 /// # Errors
 /// [`Starved`] gives the first axis whose queue would run empty.
 pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<(), Starved> {
-    let mut waiting: Vec<VecDeque<Job>> =
-        (0..axes).map(|axis| jobs(commands, axis, tick_ns, baud)).collect();
-    let mut now = 0_u64;
-    loop {
-        let heads = || (0..).zip(&waiting).filter_map(|(axis, jobs)| Some((axis, jobs.front()?)));
-        let Some(soonest) = heads().map(|(_, job)| job.place).min() else { return Ok(()) };
-        now = now.max(soonest);
-        let placed = heads().filter(|(_, job)| job.place <= now);
-        let Some((axis, _)) = placed.min_by_key(|(_, job)| job.due) else { return Ok(()) };
-        let Some(job) = waiting.get_mut(usize::from(axis)).and_then(VecDeque::pop_front) else {
-            return Ok(());
-        };
-        now = now.saturating_add(job.takes);
-        if now > job.due {
-            let late_us = (now - job.due).div_ceil(1000);
-            return Err(Starved { axis, at_ms: job.due / 1_000_000, late_us, baud });
-        }
-    }
+    let mut supply = Supply::new(axes, tick_ns, baud);
+    commands.iter().try_for_each(|command| supply.add(command))?;
+    supply.finish()
 }
 
-/// The transmissions of an axis' segments, without those that are in the queue before the start.
-fn jobs(commands: &[Command], axis: u8, tick_ns: u64, baud: u32) -> VecDeque<Job> {
-    let mut begins = Vec::new();
-    let mut tick = 0_u64;
-    let mut jobs = VecDeque::new();
-    for command in commands {
-        let Command::Segment { axis: own, segment } = *command else { continue };
-        if own != axis {
-            continue;
-        }
-        let due = tick.saturating_mul(tick_ns);
-        begins.push(due);
-        if let Some(&place) =
-            begins.len().checked_sub(1 + usize::from(QUEUE_SEGMENTS)).and_then(|k| begins.get(k))
-        {
-            let request = Request { sequence: 0, body: Body::Segment { axis, segment } };
-            let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
-            jobs.push_back(Job {
-                place,
-                due,
-                takes: (bits * 1_000_000_000).div_ceil(u64::from(baud.max(1))),
-            });
-        }
-        tick = tick.saturating_add(segment.ticks.into());
+/// The same check for a program of any length, command by command.
+#[derive(Debug)]
+pub struct Supply {
+    tick_ns: u64,
+    baud: u32,
+    axes: Vec<Axis>,
+    /// The time until which the line is busy, ns.
+    now: u64,
+}
+
+/// The segments of an axis that have not been transmitted.
+#[derive(Debug, Default)]
+struct Axis {
+    /// The tick at which the next segment begins.
+    tick: u64,
+    /// When the last segments begin, ns: as many as the queue has places.
+    begins: VecDeque<u64>,
+    jobs: VecDeque<Job>,
+}
+
+impl Supply {
+    /// A check of a build with so many axes, with ticks of `tick_ns` ns, on a line of `baud` bits
+    /// per second.
+    pub fn new(axes: u8, tick_ns: u64, baud: u32) -> Self {
+        let axes = (0..axes).map(|_| Axis::default()).collect();
+        Self { tick_ns, baud, axes, now: 0 }
     }
-    jobs
+
+    /// Adds the next command of the program.
+    ///
+    /// # Errors
+    /// [`Starved`] as soon as it is known that the queue of an axis would run empty.
+    pub fn add(&mut self, command: &Command) -> Result<(), Starved> {
+        let Command::Segment { axis: number, segment } = *command else { return Ok(()) };
+        let Some(axis) = self.axes.get_mut(usize::from(number)) else { return Ok(()) };
+        let due = axis.tick.saturating_mul(self.tick_ns);
+        axis.tick = axis.tick.saturating_add(segment.ticks.into());
+        axis.begins.push_back(due);
+        // The first segments are in the queue before the start.
+        if axis.begins.len() > usize::from(QUEUE_SEGMENTS)
+            && let Some(place) = axis.begins.pop_front()
+        {
+            let request = Request { sequence: 0, body: Body::Segment { axis: number, segment } };
+            let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
+            let takes = (bits * 1_000_000_000).div_ceil(u64::from(self.baud.max(1)));
+            axis.jobs.push_back(Job { place, due, takes });
+        }
+        // Which axis is next is known when the next job of each axis is.
+        while self.axes.iter().all(|axis| !axis.jobs.is_empty()) {
+            self.transmit()?;
+        }
+        Ok(())
+    }
+
+    /// Ends the program.
+    ///
+    /// # Errors
+    /// [`Starved`] gives the first axis whose queue would run empty.
+    pub fn finish(mut self) -> Result<(), Starved> {
+        while self.axes.iter().any(|axis| !axis.jobs.is_empty()) {
+            self.transmit()?;
+        }
+        Ok(())
+    }
+
+    /// Transmits the most urgent of the next segments.
+    fn transmit(&mut self) -> Result<(), Starved> {
+        let axes = &self.axes;
+        let heads = || (0..).zip(axes).filter_map(|(at, axis)| Some((at, axis.jobs.front()?)));
+        let Some(soonest) = heads().map(|(_, job)| job.place).min() else { return Ok(()) };
+        let now = self.now.max(soonest);
+        let placed = heads().filter(|(_, job)| job.place <= now);
+        let Some((axis, _)) = placed.min_by_key(|(_, job)| job.due) else { return Ok(()) };
+        let next = self.axes.get_mut(usize::from(axis)).and_then(|axis| axis.jobs.pop_front());
+        let Some(job) = next else { return Ok(()) };
+        self.now = now.saturating_add(job.takes);
+        if self.now > job.due {
+            let late_us = (self.now - job.due).div_ceil(1000);
+            return Err(Starved { axis, at_ms: job.due / 1_000_000, late_us, baud: self.baud });
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -4,10 +4,11 @@
 
 use crate::error::PlanError;
 use crate::line;
+use crate::planner::Asked;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
-use carrystep_files::{MoveFile, PathKind};
+use carrystep_files::{Machine, PathKind};
 use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
 use std::sync::Arc;
 
@@ -47,13 +48,12 @@ pub(crate) fn float<F: Real>(n: u64) -> F {
 /// # Errors
 /// [`PlanError::Refused`], [`PlanError::NotWholeTicks`] or [`PlanError::TooLong`].
 pub(crate) fn demand<F: Real>(
-    file: &MoveFile,
+    machine: &Machine,
     limits: &[Limits<F>],
-    index: usize,
+    Asked { index, moved }: Asked<'_>,
     time: Option<&BigDecimal>,
 ) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
-    let timebase = file.machine.timebase;
-    let moved = &file.moves[index];
+    let timebase = machine.timebase;
     let own: Vec<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
         .map(|(&limits, steps)| (float(steps.unsigned_abs()), limits))
         .collect();
@@ -68,7 +68,7 @@ pub(crate) fn demand<F: Real>(
         } else {
             (axis, refusal)
         };
-        let carrystep_files::Axis { name, unit, .. } = &file.machine.axes[axis];
+        let carrystep_files::Axis { name, unit, .. } = &machine.axes[axis];
         PlanError::Refused { index, axis: name.clone(), refusal, unit: unit.clone(), least_time }
     };
 
@@ -81,7 +81,7 @@ pub(crate) fn demand<F: Real>(
         least = least.max(time);
     }
     let clock = match time {
-        Some(time) => given(time, &timebase, file.machine.phase, index)?,
+        Some(time) => given(time, &timebase, machine.phase, index)?,
         None => whole(least, &timebase, index)?,
     };
     let rests = axes.iter().all(|(steps, _)| steps.is_zero());

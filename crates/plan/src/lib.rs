@@ -4,8 +4,8 @@
 //! distances add up exactly to the commanded steps. Floats only decide how the distance of a move
 //! is spread over its ticks, never how long the distance is.
 //!
-//! The public items are the entrances [`plan`] and [`planned_moves`], their results and their
-//! errors; the modules are private and may change.
+//! The public items are the entrances [`plan`], for a file that is held in memory, and [`Survey`],
+//! for one of any length, with their results and errors; the modules are private and may change.
 
 mod bend;
 mod bounds;
@@ -28,9 +28,13 @@ mod planner;
 mod run;
 mod share;
 mod slow;
+mod stream;
+mod totals;
 mod units;
 
 pub use error::{Broken, PlanError};
 pub use peaks::Peaks;
 pub use plan::{Plan, PlannedAxis, PlannedMove};
-pub use planner::{plan, planned_moves};
+pub use planner::plan;
+pub use stream::{Pass, Survey};
+pub use totals::{AxisTotals, Totals};

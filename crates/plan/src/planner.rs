@@ -24,7 +24,7 @@ use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
-use carrystep_files::{Axis, Move, MoveFile};
+use carrystep_files::{Axis, Machine, Move, MoveFile};
 use carrystep_profile::{Limits, Profile, Real, SharedProfile};
 
 /// Plans all moves of a file, with profiles computed in floats of type `F`.
@@ -37,31 +37,9 @@ use carrystep_profile::{Limits, Profile, Real, SharedProfile};
 /// A [`PlanError`] names the move and the axis, the limit that refuses the move, and, where one is
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
-    let mut planner = Planner::<F>::new(file)?;
-    let moves = planner.by_ref().collect::<Result<_, _>>()?;
+    let mut planner = Planner::<F>::new(&file.machine)?;
+    let moves = file.moves.iter().map(|moved| planner.plan(moved)).collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
-}
-
-/// Plans the moves of a file one after the other, and keeps none of them. After an error it goes on
-/// as if the refused move did not exist, so a caller stops there.
-///
-/// # Errors
-/// A [`PlanError`] if no gateware can be built for the machine.
-pub fn planned_moves<F: Real>(
-    file: &MoveFile,
-) -> Result<impl Iterator<Item = Result<PlannedMove, PlanError>> + '_, PlanError> {
-    Planner::<F>::new(file)
-}
-
-impl<F: Real> Iterator for Planner<'_, F> {
-    type Item = Result<PlannedMove, PlanError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let index = self.next;
-        self.file.moves.get(index)?;
-        self.next += 1;
-        Some(self.plan_move(index))
-    }
 }
 
 /// Limits the tolerance of a fit in a short piece, in ticks, to the length of the piece in ticks
@@ -71,23 +49,31 @@ const LEAST_RATIO: f64 = 64.0;
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
 const ROUNDED: f64 = 0.01;
 
-/// Identifies one axis in one move; both indices count from 0.
+/// A move that is asked for, and its number, counted from 0.
 #[derive(Debug, Clone, Copy)]
-struct Place {
-    index: usize,
+pub(crate) struct Asked<'a> {
+    pub index: usize,
+    pub moved: &'a Move,
+}
+
+/// Identifies one axis in one move, counted from 0.
+#[derive(Debug, Clone, Copy)]
+struct Place<'a> {
+    asked: Asked<'a>,
     axis: usize,
 }
 
-struct Planner<'a, F> {
-    file: &'a MoveFile,
-    build: Build,
+/// Plans the moves of a machine one after the other.
+pub(crate) struct Planner<F> {
+    machine: Machine,
+    pub(crate) build: Build,
     limits: Vec<ExactLimits>,
     float_limits: Vec<Limits<F>>,
     pins: Vec<Pins>,
     /// The next move, counted from 0.
     next: usize,
     /// Ticks planned so far, from the origin.
-    ticks: u64,
+    pub(crate) ticks: u64,
 }
 
 /// One axis of a move before the common rest of all axes is known. `segments` holds the motion
@@ -100,38 +86,46 @@ struct Draft<F: Real> {
     rest: u64,
 }
 
-impl<'a, F: Real> Planner<'a, F> {
-    fn new(file: &'a MoveFile) -> Result<Self, PlanError> {
-        let timebase = file.machine.timebase;
+impl<F: Real> Planner<F> {
+    /// # Errors
+    /// A [`PlanError`] if no gateware can be built for the machine.
+    pub(crate) fn new(machine: &Machine) -> Result<Self, PlanError> {
+        let timebase = machine.timebase;
         let exact = |axis: &Axis| {
             ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
         };
         Ok(Self {
-            file,
-            build: file.machine.build()?,
-            limits: file.machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
-            float_limits: file.machine.axes.iter().map(float_limits).collect(),
-            pins: vec![Pins::new(&timebase); file.machine.axes.len()],
+            build: machine.build()?,
+            limits: machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
+            float_limits: machine.axes.iter().map(float_limits).collect(),
+            pins: vec![Pins::new(&timebase); machine.axes.len()],
+            machine: machine.clone(),
             next: 0,
             ticks: 0,
         })
     }
 
-    fn plan_move(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
-        let time = self.file.moves[index].time.as_ref();
-        let (clock, drafts) =
-            self.drafts(index, time).map_err(|error| self.explained(index, error))?;
-        let axes = &self.file.machine.axes;
+    /// Plans the next move. After an error the planner is not used again.
+    ///
+    /// # Errors
+    /// As [`plan`].
+    pub(crate) fn plan(&mut self, moved: &Move) -> Result<PlannedMove, PlanError> {
+        let index = self.next;
+        self.next += 1;
+        let asked = Asked { index, moved };
+        let (clock, drafts) = self
+            .drafts(asked, moved.time.as_ref())
+            .map_err(|error| self.explained(asked, error))?;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
-            self.finish(Place { index, axis }, draft, rest, &clock)
-                .map_err(|b| broken(index, &axes[axis], b))
+            self.finish(Place { asked, axis }, draft, rest, &clock)
+                .map_err(|b| broken(index, &self.machine.axes[axis], b))
         });
         let planned = planned.collect::<Result<Vec<_>, _>>()?;
         let start_tick = self.ticks + rest;
         self.ticks = start_tick + clock.ticks;
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
-        let Move { profile, path, fit_ns, .. } = self.file.moves[index];
+        let Move { profile, path, fit_ns, .. } = *moved;
         let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
         Ok(PlannedMove {
             start_tick,
@@ -139,6 +133,7 @@ impl<'a, F: Real> Planner<'a, F> {
             ticks: clock.ticks,
             seconds,
             fit_seconds,
+            kind: profile,
             path,
             axes: planned,
         })
@@ -148,14 +143,13 @@ impl<'a, F: Real> Planner<'a, F> {
     /// allow.
     fn drafts(
         &self,
-        index: usize,
+        asked: Asked<'_>,
         time: Option<&BigDecimal>,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
-        let (clock, profiles) = demand(self.file, &self.float_limits, index, time)?;
-        let axes = &self.file.machine.axes;
+        let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
         let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { index, axis }, profile, &clock)
-                .map_err(|b| broken(index, &axes[axis], b))
+            self.draft(Place { asked, axis }, profile, &clock)
+                .map_err(|b| broken(asked.index, &self.machine.axes[axis], b))
         });
         Ok((clock, drafts.collect::<Result<_, _>>()?))
     }
@@ -163,34 +157,34 @@ impl<'a, F: Real> Planner<'a, F> {
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
     /// longest time that works. It is found by bisection between the shortest and the given time;
     /// each candidate is planned as a trial. Every other error is returned unchanged.
-    fn explained(&self, index: usize, error: PlanError) -> PlanError {
+    fn explained(&self, asked: Asked<'_>, error: PlanError) -> PlanError {
         let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } =
             error
         else {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest = self.drafts(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
-        let given = self.file.moves[index].time.as_ref().and_then(BigDecimal::to_f64);
-        let works = |time: &BigDecimal| self.drafts(index, Some(time)).is_ok();
+        let shortest = self.drafts(asked, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let given = asked.moved.time.as_ref().and_then(BigDecimal::to_f64);
+        let works = |time: &BigDecimal| self.drafts(asked, Some(time)).is_ok();
         let longest = shortest
             .zip(given)
             .and_then(|(least, given)| longest_time(least, given, timebase, works));
-        let named = self.file.machine.axes.iter().find(|one| one.name == axis);
+        let named = self.machine.axes.iter().find(|one| one.name == axis);
         let least = slow::least_speed(timebase);
         let least_speed =
             named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
-        PlanError::TooSlow { index, axis, broken, least_speed, longest }
+        PlanError::TooSlow { index: asked.index, axis, broken, least_speed, longest }
     }
 
     fn draft(
         &self,
-        place: Place,
+        place: Place<'_>,
         profile: SharedProfile<F>,
         clock: &Clock<F>,
     ) -> Result<Draft<F>, Broken> {
-        let Place { index, axis } = place;
-        let steps = self.file.moves[index].steps[axis];
+        let Place { asked, axis } = place;
+        let steps = asked.moved.steps[axis];
         if steps == 0 {
             return Ok(Draft {
                 steps,
@@ -223,14 +217,14 @@ impl<'a, F: Real> Planner<'a, F> {
     /// `borrowed` units (0 or 1) of the distance.
     fn motion(
         &self,
-        place: Place,
+        place: Place<'_>,
         steps: i64,
         profile: &dyn Profile<F>,
         clock: &Clock<F>,
         borrowed: i128,
     ) -> Result<Vec<Segment>, Broken> {
         let total = i128::from(steps.unsigned_abs()) * ONE_STEP - borrowed;
-        let Move { profile: kind, fit_ns, .. } = self.file.moves[place.index];
+        let Move { profile: kind, fit_ns, .. } = *place.asked.moved;
         let limits = self.limits(place, profile);
         let (phase, backward) = (self.build.phase, steps < 0);
         let mut writer = Writer {
@@ -310,9 +304,9 @@ impl<'a, F: Real> Planner<'a, F> {
     }
 
     /// The limits that the integers of one axis must keep in one move.
-    fn limits(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
+    fn limits(&self, Place { asked, axis }: Place<'_>, profile: &dyn Profile<F>) -> ExactLimits {
         let limits = self.limits[axis];
-        if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
+        if asked.moved.profile != ProfileKind::Logistic || limits.start_speed > 0 {
             return limits;
         }
         // A logistic profile is never at rest. Without a start speed in the file, the speed of the
@@ -328,7 +322,7 @@ impl<'a, F: Real> Planner<'a, F> {
     /// before the motion, and marks the last segment.
     fn finish(
         &mut self,
-        place: Place,
+        place: Place<'_>,
         draft: Draft<F>,
         rest: u64,
         clock: &Clock<F>,
@@ -377,7 +371,8 @@ impl<'a, F: Real> Planner<'a, F> {
             last.last = true;
         }
         let profile = F::widened(profile);
-        Ok(PlannedAxis { steps, segments, shape: profile.shape(), profile, peaks })
+        let rounding_steps = place.asked.moved.rounding[axis];
+        Ok(PlannedAxis { steps, rounding_steps, segments, shape: profile.shape(), profile, peaks })
     }
 
     /// Gateware clocks planned so far, from the origin.

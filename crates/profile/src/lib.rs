@@ -13,6 +13,7 @@ mod alone;
 mod bad_ramp;
 mod constant;
 mod curve;
+mod growing;
 pub mod kinds;
 mod line;
 mod logistic;
@@ -34,7 +35,8 @@ mod widened;
 pub use bad_ramp::BadRamp;
 pub use constant::Constant;
 pub use curve::{Curve, CurveFigures};
-pub use line::StraightLine;
+pub use growing::{ListEnd, Reader, Source};
+pub use line::Course;
 pub use logistic::{LogisticRamp, SHORTFALL};
 pub use profile::{Profile, Real, SharedProfile};
 pub use ramp::Ramp;
@@ -42,7 +44,7 @@ pub use ramped::RampedMove;
 pub use refusal::{Limit, LimitRefusal, Limits};
 pub use scurve::ScurveRamp;
 pub use sine::SineRamp;
-pub use timeline::{Crossing, Leg, Timeline, Walk};
+pub use timeline::{Crossing, Leg, Timeline, Travel, Walk};
 
 /// Functions that return the profile for a distance, a time and limits, or a refusal, and functions
 /// that return the least time. The functions whose names end in `_ramp` return a single ramp up to

@@ -1,13 +1,12 @@
-//! The description of a move in which all axes keep to one straight line.
+//! The description of a move that the check of straight lines needs.
 
-/// The line against which the checker measures the pulses of such a move. It compares the positions
-/// of the axes with each other, not with the time.
+/// The steps of all axes in one move, and the straight line along which they travel. The checker
+/// compares the positions of the axes with each other, not with the time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StraightLine {
-    /// Pulses that each axis has made before the move.
-    pub before: Vec<u64>,
+pub struct Course {
     /// Steps of each axis in the move; negative is backward.
     pub steps: Vec<i64>,
-    /// Greatest speed along the line, as the fraction of the line that is travelled in a second.
-    pub speed: f64,
+    /// The greatest speed along the line, as the fraction of the line that is travelled in a
+    /// second; `None` if the axes of this move are independent.
+    pub line_speed: Option<f64>,
 }

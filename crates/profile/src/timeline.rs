@@ -1,15 +1,17 @@
 //! All moves of one axis in sequence, and the time at which each pulse is due.
+//!
+//! The moves may still be planned while a timeline is read: its readers ask for as many of them as
+//! they need.
 
+use crate::growing::Reader;
 use crate::profile::SharedProfile;
 use carrystep_core::StartPhase;
 
-/// The float reference of one axis over all moves.
+/// The float reference of one axis over all moves in which it travels.
 #[derive(Debug, Clone)]
 pub struct Timeline {
     tick_seconds: f64,
-    legs: Vec<Leg>,
-    /// The position at which each leg begins, steps.
-    begins: Vec<i64>,
+    legs: Reader<Leg>,
 }
 
 /// One move of one axis.
@@ -26,6 +28,39 @@ pub struct Leg {
     /// Tolerance of a fitted profile: how far an edge may be from the profile, seconds. It is 0 if
     /// the profile is followed exactly.
     pub fit_seconds: f64,
+}
+
+/// What an axis does in all its moves together.
+#[derive(Debug, Clone, Default)]
+pub struct Travel {
+    /// Number of pulses.
+    pub pulses: u64,
+    /// Steps forward minus steps backward.
+    pub position: i64,
+    /// The greatest tolerance of a fitted profile, seconds.
+    pub fit_seconds: f64,
+    /// The first move in which the axis travels.
+    pub first: Option<Leg>,
+}
+
+impl Travel {
+    /// Adds the next move in which the axis travels.
+    pub fn add(&mut self, leg: &Leg) {
+        self.pulses += leg.steps;
+        self.position += leg.forward();
+        self.fit_seconds = self.fit_seconds.max(leg.fit_seconds);
+        if self.first.is_none() {
+            self.first = Some(leg.clone());
+        }
+    }
+}
+
+impl FromIterator<Leg> for Travel {
+    fn from_iter<I: IntoIterator<Item = Leg>>(legs: I) -> Self {
+        let mut travel = Self::default();
+        legs.into_iter().for_each(|leg| travel.add(&leg));
+        travel
+    }
 }
 
 /// The moment at which a pulse is due.
@@ -57,6 +92,17 @@ impl Leg {
         }
     }
 
+    /// The steps forward; negative if the axis travels backward.
+    pub fn forward(&self) -> i64 {
+        let steps = self.steps.cast_signed();
+        if self.backward { -steps } else { steps }
+    }
+
+    /// Signed speed in steps/s, `seconds` after the start of the leg.
+    pub fn speed(&self, seconds: f64) -> f64 {
+        self.sign() * self.profile.speed(seconds)
+    }
+
     fn sign(&self) -> f64 {
         if self.backward { -1.0 } else { 1.0 }
     }
@@ -65,77 +111,61 @@ impl Leg {
 impl Timeline {
     /// Puts legs in sequence. `tick_seconds` is the length of a tick in seconds. The legs are the
     /// moves in which the axis travels, in order; they must not overlap.
-    pub fn new(tick_seconds: f64, legs: Vec<Leg>) -> Self {
-        let mut position = 0_i64;
-        let begin = |leg: &Leg| {
-            let here = position;
-            let steps = leg.steps.cast_signed();
-            position = here.wrapping_add(if leg.backward { -steps } else { steps });
-            here
-        };
-        let begins = legs.iter().map(begin).collect();
-        Self { tick_seconds, legs, begins }
+    pub fn new(tick_seconds: f64, legs: impl Into<Reader<Leg>>) -> Self {
+        Self { tick_seconds, legs: legs.into() }
     }
 
     /// The moves in which the axis travels, in order.
-    pub fn legs(&self) -> &[Leg] {
-        &self.legs
+    pub fn legs(&self) -> Reader<Leg> {
+        self.legs.clone()
     }
 
     /// All pulses in order.
-    pub fn crossings(&self, phase: StartPhase) -> impl Iterator<Item = Crossing> + '_ {
-        self.legs.iter().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
+    pub fn crossings(&self, phase: StartPhase) -> impl Iterator<Item = Crossing> + use<> {
+        self.legs().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
     }
 
     /// Goes through the moves in order of time.
-    pub fn walk(&self) -> Walk<'_> {
-        Walk { timeline: self, begun: 0 }
-    }
-
-    /// Signed speed in steps/s, `tick` ticks after the origin; 0 between moves.
-    pub fn speed_at(&self, tick: f64) -> f64 {
-        self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.speed(t))
-    }
-
-    /// Signed acceleration in steps/s^2, `tick` ticks after the origin; 0 between moves.
-    pub fn acceleration_at(&self, tick: f64) -> f64 {
-        self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.acceleration(t))
-    }
-
-    fn moving(&self, tick: f64) -> Option<(&Leg, f64)> {
-        let after = self.legs.partition_point(|leg| leg.start_tick as f64 <= tick);
-        let leg = self.legs.get(after.checked_sub(1)?)?;
-        let t = self.local(leg, tick);
-        (t < leg.profile.duration()).then_some((leg, t))
-    }
-
-    fn local(&self, leg: &Leg, tick: f64) -> f64 {
-        ((tick - leg.start_tick as f64) * self.tick_seconds).min(leg.profile.duration())
+    pub fn walk(&self) -> Walk {
+        Walk { tick_seconds: self.tick_seconds, legs: self.legs(), next: None, now: None, end: 0 }
     }
 }
 
 /// Goes through the moves of one axis in order of time.
 #[derive(Debug, Clone)]
-pub struct Walk<'a> {
-    timeline: &'a Timeline,
-    /// The number of legs that have begun.
-    begun: usize,
+pub struct Walk {
+    tick_seconds: f64,
+    legs: Reader<Leg>,
+    /// The first leg that has not begun, if it is known.
+    next: Option<Leg>,
+    /// The last leg that has begun, and the position at which it begins, steps.
+    now: Option<(Leg, i64)>,
+    /// The position at the end of that leg, steps.
+    end: i64,
 }
 
-impl Walk<'_> {
+impl Walk {
     /// Signed position in steps and signed speed in steps/s, `tick` ticks (not necessarily whole)
     /// after the origin. Between moves the speed is 0. Ticks must not decrease from call to call.
     pub fn at(&mut self, tick: f64) -> (f64, f64) {
-        let Timeline { legs, begins, .. } = self.timeline;
-        while legs.get(self.begun).is_some_and(|leg| leg.start_tick as f64 <= tick) {
-            self.begun += 1;
+        self.go_to(tick);
+        let Some((leg, begin)) = &self.now else { return (0.0, 0.0) };
+        let duration = leg.profile.duration();
+        let t = ((tick - leg.start_tick as f64) * self.tick_seconds).min(duration);
+        let position = *begin as f64 + leg.sign() * leg.profile.position(t);
+        (position, if t < duration { leg.speed(t) } else { 0.0 })
+    }
+
+    /// Goes on to the move of `tick`. Ticks must not decrease from call to call.
+    pub fn go_to(&mut self, tick: f64) {
+        loop {
+            // The cast saturates: before the origin no leg has begun.
+            self.next = self.next.take().or_else(|| self.legs.next_by(tick as u64));
+            let Some(leg) = self.next.take_if(|leg| leg.start_tick as f64 <= tick) else { break };
+            let begin = self.end;
+            self.end = begin.wrapping_add(leg.forward());
+            self.now = Some((leg, begin));
         }
-        let Some(last) = self.begun.checked_sub(1) else { return (0.0, 0.0) };
-        let (leg, begin) = (&legs[last], begins[last]);
-        let t = self.timeline.local(leg, tick);
-        let position = begin as f64 + leg.sign() * leg.profile.position(t);
-        let moves = t < leg.profile.duration();
-        (position, if moves { leg.sign() * leg.profile.speed(t) } else { 0.0 })
     }
 }
 
@@ -167,8 +197,13 @@ mod tests {
                 leg.sign() * leg.profile.position(seconds)
             };
             let sum: f64 = legs().iter().map(travelled).sum();
+            let speeds = legs().into_iter().map(|leg| {
+                let local = (tick - leg.start_tick as f64) * 1e-5;
+                let travels = (0.0..leg.profile.duration()).contains(&local);
+                if travels { leg.speed(local) } else { 0.0 }
+            });
             let (found, speed) = walk.at(tick);
-            assert_eq!(speed, timeline.speed_at(tick), "tick {tick}");
+            assert_eq!(speed, speeds.sum::<f64>(), "tick {tick}");
             assert!((found - sum).abs() < 1e-9, "tick {tick}: {found} is not {sum}");
         }
         assert_eq!(Timeline::new(1e-5, Vec::new()).walk().at(7.0), (0.0, 0.0));

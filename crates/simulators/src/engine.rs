@@ -6,8 +6,10 @@ mod feed;
 pub mod replay;
 pub mod run;
 
+use crate::Commands;
 use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
 use carrystep_core::{Command, Program, Segment};
+use std::fmt;
 
 /// An engine that is simulated in Rust, clock by clock.
 pub trait EngineCore {
@@ -57,6 +59,18 @@ pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
 
+/// The actions of a host that executes one command after the other.
+fn acts_of(command: &Command) -> Vec<Act> {
+    match *command {
+        Command::Segment { axis, segment } => {
+            puts(axis, &segment).into_iter().map(Act::Put).collect()
+        }
+        Command::Start { mask } => vec![Act::Start(mask)],
+        Command::Wait { clocks } => vec![Act::Wait(clocks)],
+        Command::Clear => vec![Act::Clear],
+    }
+}
+
 /// An event around the host at a given cycle. `true` means active, regardless of the polarity of
 /// the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,9 +103,8 @@ pub type Events = Vec<(u64, Event)>;
 
 /// The host: offers the commands of a program one after the other, each until it is accepted, while
 /// events happen around it.
-#[derive(Debug, Clone)]
-pub struct EngineHost {
-    acts: std::vec::IntoIter<Act>,
+pub struct EngineHost<'a> {
+    acts: Box<dyn Iterator<Item = Act> + 'a>,
     current: Option<Act>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
@@ -105,32 +118,38 @@ pub struct EngineHost {
     word_error: u8,
 }
 
-impl EngineHost {
+impl fmt::Debug for EngineHost<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EngineHost")
+            .field("current", &self.current)
+            .field("cycle", &self.cycle)
+            .finish_non_exhaustive()
+    }
+}
+
+impl EngineHost<'static> {
     /// A host that executes a program command by command. The drivers have power until an event
     /// removes it.
     pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
-        let mut acts = Vec::new();
-        for command in program {
-            match *command {
-                Command::Segment { axis, segment } => {
-                    acts.extend(puts(axis, &segment).into_iter().map(Act::Put));
-                }
-                Command::Start { mask } => acts.push(Act::Start(mask)),
-                Command::Wait { clocks } => acts.push(Act::Wait(clocks)),
-                Command::Clear => acts.push(Act::Clear),
-            }
-        }
-        Self::doing(guard, acts, events.clone(), false)
+        let acts: Vec<Act> = program.iter().flat_map(acts_of).collect();
+        Self::doing(guard, Box::new(acts.into_iter()), events.clone(), false)
     }
+}
 
+impl<'a> EngineHost<'a> {
     /// A host that keeps the queues of planned moves full, and restarts the watchdog in every
     /// cycle.
-    pub fn feeding(guard: &Guard, program: &Program) -> Self {
-        Self::doing(guard, feed::acts(program), Events::new(), true)
+    pub fn feeding(guard: &Guard, program: &'a dyn Commands) -> Self {
+        let acts = Box::new(feed::Acts::new(program.commands()));
+        Self::doing(guard, acts, Events::new(), true)
     }
 
-    fn doing(guard: &Guard, acts: Vec<Act>, events: Events, awake: bool) -> Self {
-        let mut acts = acts.into_iter();
+    fn doing(
+        guard: &Guard,
+        mut acts: Box<dyn Iterator<Item = Act> + 'a>,
+        events: Events,
+        awake: bool,
+    ) -> Self {
         let current = acts.next();
         let events = events.into_iter().peekable();
         let around = EngineInputs { enable: true, ..EngineInputs::default() };

@@ -18,8 +18,8 @@ use std::process::Stdio;
 /// The program in the format of the benches.
 pub(crate) fn program_text(job: &Job<'_>) -> String {
     let mut text = String::new();
-    for command in job.program {
-        let (kind, who, ticks, [v, a, j], last) = match *command {
+    for command in job.program.commands() {
+        let (kind, who, ticks, [v, a, j], last) = match command {
             Command::Segment { axis, segment: s } => (0, axis, s.ticks, [s.v, s.a, s.j], s.last),
             Command::Start { mask } => (1, mask, 0, [0; 3], false),
             Command::Wait { clocks } => (2, 0, clocks, [0; 3], false),

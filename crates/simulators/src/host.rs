@@ -1,8 +1,8 @@
 //! The host that feeds a core clock by clock, as defined in docs/clock-by-clock.md, "host".
 
-use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
+use crate::{Commands, Job, LevelError, Observer, Outcome, halted, how_far};
+use carrystep_core::Command;
 use carrystep_core::ports::{Inputs, Outputs};
-use carrystep_core::{Command, Program};
 
 /// A parallel core that is simulated in Rust, clock by clock.
 pub trait SimulatedCore {
@@ -32,13 +32,13 @@ impl SimulatedCore for carrystep_hdl::ParallelSim {
 
 /// The host, with the commands that are left.
 pub(crate) struct Host<'a> {
-    commands: std::iter::Copied<std::slice::Iter<'a, Command>>,
+    commands: Box<dyn Iterator<Item = Command> + 'a>,
     current: Option<Command>,
 }
 
 impl<'a> Host<'a> {
-    pub(crate) fn new(program: &'a Program) -> Self {
-        let mut commands = program.iter().copied();
+    pub(crate) fn new(program: &'a dyn Commands) -> Self {
+        let mut commands = program.commands();
         let current = commands.next();
         Self { commands, current }
     }

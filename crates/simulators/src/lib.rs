@@ -8,6 +8,7 @@
 mod bench;
 pub mod board;
 mod cache;
+mod commands;
 pub mod engine;
 mod external;
 pub mod fast;
@@ -23,13 +24,14 @@ mod verilator;
 
 use carrystep_core::build::{ParallelAxesError, check_parallel_axes};
 use carrystep_core::ports::Outputs;
-use carrystep_core::{AXES, Build, Program};
+use carrystep_core::{AXES, Build};
 use carrystep_tools::programs::Tool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
+pub use commands::Commands;
 pub use how_far::{HowFar, RunStage};
 
 /// A level: the implementation on which a program is run. The fastest is the first.
@@ -65,7 +67,7 @@ pub struct Job<'a> {
     /// Number of axes of the core, 1 to 6.
     pub axes: usize,
     /// Commands that the host sends.
-    pub program: &'a Program,
+    pub program: &'a dyn Commands,
     /// Number of consecutive cycles with nothing left to do after which the run is over; at least
     /// 1.
     pub tail: u64,
@@ -89,7 +91,7 @@ pub(crate) fn halted(halt: Halt<'_>) -> bool {
 impl<'a> Job<'a> {
     /// A job of `ticks` ticks of motion on a core of six axes. Its limit of cycles includes time
     /// for the pipeline and the last pulse.
-    pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
+    pub fn new(build: &'a Build, program: &'a dyn Commands, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let slack = 4 * clocks
             + build.pins.iter().map(|p| u64::from(p.step_high + p.step_low)).max().unwrap_or(0);

@@ -24,9 +24,6 @@ const SPEED: RGBColor = RGBColor(46, 134, 222);
 const ERROR: RGBColor = RGBColor(22, 150, 110);
 const BOUND: RGBColor = RGBColor(214, 69, 65);
 
-/// Number of points of the profile's line, without those at its breakpoints.
-const LINE: u32 = 600;
-
 fn failed(error: impl Display) -> TraceError {
     TraceError::Plot(error.to_string())
 }
@@ -113,7 +110,7 @@ fn panel(
     let passed = report.is_none_or(|axis| axis.passed);
     caption
         .draw(&Text::new(
-            curves.axis.name.to_owned(),
+            curves.name.to_owned(),
             (8, 2),
             label(20, if passed { INK } else { BOUND }),
         ))
@@ -177,7 +174,7 @@ fn speed(
     curves: &Curves<'_>,
     clock: &Clock,
 ) -> Result<(), TraceError> {
-    let line = profile_line(plot, curves);
+    let line = curves.line.points();
     let points: Vec<_> = curves.speed.points().collect();
     let (low, high) = roomy(line.iter().chain(&points).map(|p| p.1), 1.0);
     let span = plot.span_s * clock.per_second;
@@ -252,26 +249,6 @@ fn error(
             .map_err(failed)?;
     }
     Ok(())
-}
-
-/// The speed of the profile: at even times, and on both sides of each point at which it bends or
-/// jumps.
-fn profile_line(plot: &Plot<'_>, curves: &Curves<'_>) -> Vec<(f64, f64)> {
-    let end = plot.span_s / plot.tick_seconds;
-    let even = (0..=LINE).map(|k| end * f64::from(k) / f64::from(LINE));
-    let bends = curves.axis.timeline.legs().iter().flat_map(|leg| {
-        let start = leg.start_tick as f64;
-        let inside = leg.profile.breakpoints().iter().copied();
-        let all = std::iter::once(0.0).chain(inside).chain(std::iter::once(leg.profile.duration()));
-        let ticks = all.map(move |t| start + t / plot.tick_seconds);
-        ticks.flat_map(move |tick| [tick - end * 1e-6, tick + end * 1e-6]).collect::<Vec<_>>()
-    });
-    let mut ticks: Vec<f64> = even.chain(bends).filter(|tick| (0.0..=end).contains(tick)).collect();
-    ticks.sort_by(f64::total_cmp);
-    ticks
-        .into_iter()
-        .map(|tick| (tick * plot.tick_seconds, curves.axis.timeline.speed_at(tick)))
-        .collect()
 }
 
 /// Formats a number: 12000 as 12 000, and small numbers with as many digits as they need.

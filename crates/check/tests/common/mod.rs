@@ -3,9 +3,9 @@
 
 use carrystep_check::*;
 use carrystep_core::{PinTimes, Segment, StartPhase, Timebase};
-use carrystep_profile::{Constant, Leg, Ramp, Timeline};
+use carrystep_profile::{Constant, Leg, ListEnd, Ramp, Source, Timeline};
 use std::io::Cursor;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 pub const ORIGIN_PS: i64 = 123_456_789;
 pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
@@ -65,17 +65,12 @@ impl Machine {
         let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| AxisSetup {
             name,
             unit: None,
-            timeline,
+            timeline: timeline.clone(),
             pins_ns: PINS_NS,
-            expected_pulses: timeline.legs().iter().map(|leg| leg.steps).sum(),
-            expected_position: timeline
-                .legs()
-                .iter()
-                .map(|leg| if leg.backward { -(leg.steps as i64) } else { leg.steps as i64 })
-                .sum(),
+            travel: timeline.legs().collect(),
         });
-        let (timebase, phase, lines) = (self.timebase, StartPhase::Half, Vec::new());
-        Setup { timebase, phase, axes: axes.collect(), lines, origin, slack_ps: 0 }
+        let (timebase, phase, courses) = (self.timebase, StartPhase::Half, Vec::new().into());
+        Setup { timebase, phase, axes: axes.collect(), courses, origin, slack_ps: 0 }
     }
 
     /// The train of an ideal generator, which rounds down to its phase grid: all axes, in order of
@@ -109,15 +104,45 @@ impl Machine {
         self.check_setup(train, self.setup(origin))
     }
 
-    /// Checks a train in this thread, and twice in threads beside it, which must find the same.
+    /// The same timelines, whose legs are made one by one when they are asked for.
+    pub fn growing(&self) -> Vec<Timeline> {
+        let ends: Vec<ListEnd<Leg>> = self.timelines.iter().map(|_| ListEnd::default()).collect();
+        let mut legs: Vec<(usize, Leg)> = self
+            .timelines
+            .iter()
+            .enumerate()
+            .flat_map(|(axis, timeline)| timeline.legs().map(move |leg| (axis, leg)))
+            .collect();
+        legs.sort_by_key(|(_, leg)| leg.start_tick);
+        legs.reverse();
+        let readers = |source: Arc<dyn Source>| {
+            let of = |end: &ListEnd<Leg>| {
+                Timeline::new(self.timebase.tick_seconds(), end.reader(source.clone()))
+            };
+            ends.iter().map(of).collect()
+        };
+        let source = Arc::new(OneByOne(Mutex::new((legs, Vec::new()))));
+        let timelines = readers(source.clone());
+        source.0.lock().unwrap().1 = ends;
+        timelines
+    }
+
+    /// Checks a train in this thread, and twice in threads beside it, which must find the same;
+    /// also if the legs of the timelines are made while it is checked.
     pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> CheckReport {
         let ((), one_by_one) = check_beside(setup.clone(), |sink| play(train, sink));
         let (sent, together) = check_beside(setup.clone(), |sink| sink.changes(train));
         sent.unwrap();
+        let mut growing = setup.clone();
         let mut checker = Checker::new(setup);
         play(train, &mut checker);
         let report = checker.finish();
         assert_eq!(report, one_by_one);
+        for (axis, timeline) in growing.axes.iter_mut().zip(self.growing()) {
+            axis.timeline = timeline;
+        }
+        let ((), grown) = check_beside(growing, |sink| play(train, sink));
+        assert_eq!(report, grown);
         assert_eq!(report, together);
         report
     }
@@ -138,7 +163,7 @@ impl Machine {
     pub fn waves(&self) -> Waves<'_> {
         let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| AxisWaves {
             name,
-            timeline,
+            timeline: timeline.clone(),
             segments: Box::new(self.segments().into_iter()),
         });
         Waves {
@@ -164,8 +189,8 @@ impl Machine {
     }
 
     pub fn plot_setup(&self) -> PlotSetup<'_> {
-        let axes =
-            self.timelines.iter().zip(NAMES).map(|(timeline, name)| PlotAxis { name, timeline });
+        let timelines = self.timelines.iter().cloned().zip(NAMES);
+        let axes = timelines.map(|(timeline, name)| PlotAxis { name, timeline });
         PlotSetup {
             title: "There and back",
             timebase: self.timebase,
@@ -174,6 +199,24 @@ impl Machine {
             total_ticks: self.total_ticks,
             axes: axes.collect(),
         }
+    }
+}
+
+/// Makes one leg at a time: those that are left, the next one last, and the ends of the lists.
+struct OneByOne(Mutex<(Vec<(usize, Leg)>, Vec<ListEnd<Leg>>)>);
+
+impl Source for OneByOne {
+    fn grow(&self) {
+        let (legs, ends) = &mut *self.0.lock().unwrap();
+        match legs.pop() {
+            Some((axis, leg)) => ends[axis].push(leg),
+            None => ends.iter().for_each(ListEnd::close),
+        }
+    }
+
+    fn known_to(&self) -> u64 {
+        let (legs, _) = &*self.0.lock().unwrap();
+        legs.last().map_or(u64::MAX, |(_, leg)| leg.start_tick)
     }
 }
 

@@ -1,13 +1,12 @@
 //! `carrystep check`: checks any VCD against a move file.
 
 use crate::arguments::CheckArguments;
-use crate::failure::{Failure, refused};
+use crate::failure::Failure;
 use crate::junit::JunitFile;
 use crate::{job, output};
 use carrystep_check::{CheckReport, Origin, SignalMap, TraceError, VcdReader, check_beside};
 use carrystep_core::Timebase;
-use carrystep_files::MoveFile;
-use carrystep_plan::plan;
+use carrystep_plan::{AxisTotals, Pass, Survey};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -21,12 +20,10 @@ pub struct Checked<'a> {
 
 /// Checks a capture and prints the report.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    let file = job::load(&arguments.file, arguments.fit_ns)?;
-    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
-    let timelines = plan.timelines();
+    let survey = job::survey(job::load(&arguments.file, arguments.fit_ns)?, |_| Ok(()))?;
     let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
     let mut junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
-    let report = read(arguments, &file, &plan, &timelines)?;
+    let report = read(arguments, &survey)?;
     if let Some(mut junit) = junit.take() {
         for axis in &report.axes {
             junit.case(format!("axis {}", axis.axis), &axis.failures);
@@ -48,28 +45,24 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     if report.passed() { Ok(()) } else { Err(Failure::Check) }
 }
 
-fn read(
-    arguments: &CheckArguments,
-    file: &MoveFile,
-    plan: &carrystep_plan::Plan,
-    timelines: &[carrystep_profile::Timeline],
-) -> Result<CheckReport, Failure> {
-    job::fits_a_capture(plan)?;
+fn read(arguments: &CheckArguments, survey: &Survey) -> Result<CheckReport, Failure> {
+    job::fits_a_capture(survey)?;
+    let timebase = survey.build().timebase;
     let unusable =
         |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
     let capture = carrystep_files::open(&arguments.capture)
         .map_err(|error| Failure::input(error.to_string()))?;
     let map =
         SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
-    let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let names: Vec<&str> = survey.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
     let reader =
         VcdReader::new(capture, &names, &map).map_err(|error| unusable(error.to_string()))?;
-    if let Some(own) = reader.own().filter(|own| own.timebase != plan.build.timebase) {
+    if let Some(own) = reader.own().filter(|own| own.timebase != timebase) {
         return Err(unusable(format!(
             "recorded from gateware with {}, but the machine of {} has {}",
             figures(&own.timebase),
             arguments.file.display(),
-            figures(&plan.build.timebase)
+            figures(&timebase)
         )));
     }
     let origin = match (arguments.origin_ps, reader.own()) {
@@ -77,28 +70,29 @@ fn read(
         (None, Some(own)) => Origin::Known { ps: own.origin_ps },
         (None, None) => Origin::Midpoint,
     };
-    uncertain_by_less_than_a_period(arguments.slack_ns, plan)?;
-    let mut setup = job::check_setup(file, plan, timelines, origin);
+    uncertain_by_less_than_a_period(arguments.slack_ns, survey)?;
+    let Pass { timelines, courses, .. } = survey.begin();
+    let mut setup = job::check_setup(survey, &timelines, courses, origin);
+    // Only the checker keeps a place in the plan.
+    drop(timelines);
     setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
     let (played, report) = check_beside(setup, |mut checker| reader.play(&mut checker));
+    survey.whole()?;
     let played = played.map_err(|error| match error {
         TraceError::Read(error) => unusable(error.to_string()),
         other => other.into(),
     })?;
     if let Origin::Fixed { ps } = origin {
-        overlap(ps, played.end_ps, plan).map_err(unusable)?;
+        overlap(ps, played.end_ps, survey).map_err(unusable)?;
     }
     Ok(report)
 }
 
 /// Refuses a slack of more than half of the shortest period, because a pulse could then match the
 /// neighbouring step.
-fn uncertain_by_less_than_a_period(
-    slack_ns: u64,
-    plan: &carrystep_plan::Plan,
-) -> Result<(), Failure> {
-    let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
-    let fastest = axes.map(|axis| axis.peaks.steps_per_s(&plan.build.timebase)).fold(0.0, f64::max);
+fn uncertain_by_less_than_a_period(slack_ns: u64, survey: &Survey) -> Result<(), Failure> {
+    let speed = |axis: &AxisTotals| axis.peaks.steps_per_s(&survey.build().timebase);
+    let fastest = survey.totals().axes.iter().map(speed).fold(0.0, f64::max);
     let most_ns = (0.5e9 / fastest).floor();
     if fastest > 0.0 && slack_ns as f64 > most_ns {
         let text = format!(
@@ -111,9 +105,9 @@ fn uncertain_by_less_than_a_period(
 
 /// Checks that moves that start at `origin_ps` overlap a capture that ends at `end_ps`; the error
 /// is the reason.
-fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(), String> {
-    let length_ps =
-        i128::from(plan.total_ticks()) * i128::from(plan.build.timebase.tick_ns()) * 1000;
+fn overlap(origin_ps: i64, end_ps: u64, survey: &Survey) -> Result<(), String> {
+    let tick_ps = i128::from(survey.build().timebase.tick_ns()) * 1000;
+    let length_ps = i128::from(survey.totals().ticks) * tick_ps;
     let (from, to) = (i128::from(origin_ps), i128::from(origin_ps) + length_ps);
     if from <= i128::from(end_ps) && to >= 0 {
         return Ok(());

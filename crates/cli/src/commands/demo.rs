@@ -2,13 +2,11 @@
 
 use crate::arguments::Demo;
 use crate::commands::verilog;
-use crate::failure::{Failure, refused};
+use crate::failure::Failure;
 use crate::job::{self, RunResult};
 use crate::output::{self, write_file};
 use crate::shipped::{MACHINE, MACHINE_FILE};
 use crate::wanted::{Part, Wanted};
-use carrystep_files::MoveFile;
-use carrystep_plan::plan;
 use carrystep_verilog::Prefix;
 use std::path::Path;
 
@@ -20,12 +18,11 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     let out = |name: &str| arguments.out.join(name);
     write_file(&out(MACHINE_FILE), MACHINE)?;
     write_file(&out("demo.toml"), MOVES)?;
-    let file = MoveFile::load(&out("demo.toml"))?;
-    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
+    let survey = job::survey(job::load(&out("demo.toml"), None)?, |_| Ok(()))?;
     let verilog = verilog::write(
         arguments.core,
         &arguments.out,
-        &file.machine,
+        survey.machine(),
         &Prefix::default(),
         MACHINE_FILE,
     )?;
@@ -37,7 +34,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         plot: Some(out("demo.svg")),
         part: Part::default(),
     };
-    let mut done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
+    let mut done = job::run(&survey, arguments.core, arguments.level, &wanted)?;
     done.files.splice(0..0, verilog.files);
     print(&done, arguments.json, &arguments.out)?;
     done.verdict()

@@ -1,18 +1,16 @@
 //! `carrystep plan`: the integer segments of a move file, or the reason why it cannot be planned.
 
 use crate::arguments::PlanArguments as Arguments;
-use crate::failure::{Failure, refused};
-use crate::table::{self, LimitsJson, LimitsSum};
+use crate::failure::Failure;
+use crate::spool::Spool;
+use crate::table::{self, LimitsJson};
 use crate::{interrupt, job, output};
 use carrystep_core::Segment;
-use carrystep_files::{Axis, Move, MoveFile};
-use carrystep_plan::{Plan, PlannedMove, plan, planned_moves};
+use carrystep_files::{Axis, Machine, MoveSource};
+use carrystep_plan::{PlannedMove, Survey};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
-
-/// Number of bytes from which the table is printed.
-const BLOCK: usize = 1 << 16;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -27,7 +25,7 @@ pub struct Planned<'a> {
 #[derive(JsonSchema, Serialize)]
 pub struct PlannedLine<'a> {
     /// The number of the move, counted from 1.
-    number: usize,
+    number: u64,
     #[serde(flatten)]
     planned: MoveJson<'a>,
 }
@@ -38,7 +36,7 @@ pub struct PlanEnd {
     passed: bool,
     tick_ns: u64,
     /// Number of moves.
-    moves: usize,
+    moves: u64,
     limits: LimitsJson,
 }
 
@@ -87,92 +85,104 @@ fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok,
 
 /// Plans a move file and shows the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = job::load(&arguments.file, arguments.fit_ns)?;
+    let source = job::load(&arguments.file, arguments.fit_ns)?;
     if arguments.json_lines {
-        return lines(&file);
+        lines(source)
+    } else if arguments.json {
+        document(source)
+    } else {
+        table(source, arguments.segments)
     }
-    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
-    if arguments.json {
-        return output::print_json(&json(&file, &plan));
-    }
-    table(&file, &plan, arguments.segments)
 }
 
-fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
-    let moves = plan.moves.iter().zip(&file.moves);
-    Planned {
+/// Prints a document with all moves.
+fn document(source: MoveSource) -> Result<(), Failure> {
+    let machine = source.machine.clone();
+    let (mut moves, mut separator) = (Spool::new(), "");
+    let survey = job::survey(source, |planned| {
+        let text = serde_json::to_string_pretty(&move_json(&machine, planned))
+            .map_err(|error| Failure::Run(error.to_string()))?;
+        moves.add(|all| {
+            all.push_str(separator);
+            // The moves are within two others, which serde_json indents by two blanks each.
+            for line in text.lines() {
+                all.push_str("\n    ");
+                all.push_str(line);
+            }
+        })?;
+        separator = ",";
+        Ok(())
+    })?;
+    moves.add(|all| all.push_str("\n  "))?;
+    let around = Planned {
         passed: true,
-        tick_ns: plan.build.timebase.tick_ns(),
-        limits: table::limits(file, plan),
-        moves: moves.map(|(planned, asked)| move_json(file, planned, asked)).collect(),
-    }
+        tick_ns: machine.timebase.tick_ns(),
+        limits: table::limits(&machine, survey.totals()),
+        moves: Vec::new(),
+    };
+    output::print_json_around(&around, || moves.print())
 }
 
 /// Prints each move as soon as it is planned.
-fn lines(file: &MoveFile) -> Result<(), Failure> {
-    let mut sum = LimitsSum::new(&file.machine);
-    let moves = planned_moves::<f64>(file).map_err(|error| refused(file, &error))?;
-    for (index, (planned, asked)) in moves.zip(&file.moves).enumerate() {
+fn lines(source: MoveSource) -> Result<(), Failure> {
+    let machine = source.machine.clone();
+    let mut number = 0;
+    let survey = Survey::new(source, |planned| {
         interrupt::check()?;
-        let planned = planned.map_err(|error| refused(file, &error))?;
-        sum.add(&planned);
-        let line = PlannedLine { number: index + 1, planned: move_json(file, &planned, asked) };
-        output::print_json_line(&line)?;
-    }
+        number += 1;
+        output::print_json_line(&PlannedLine { number, planned: move_json(&machine, planned) })
+    })?;
     output::print_json(&PlanEnd {
         passed: true,
-        tick_ns: file.machine.timebase.tick_ns(),
-        moves: file.moves.len(),
-        limits: sum.limits(),
+        tick_ns: machine.timebase.tick_ns(),
+        moves: survey.totals().moves,
+        limits: table::limits(&machine, survey.totals()),
     })
 }
 
-fn move_json<'a>(file: &'a MoveFile, planned: &'a PlannedMove, asked: &Move) -> MoveJson<'a> {
+fn move_json<'a>(machine: &'a Machine, planned: &'a PlannedMove) -> MoveJson<'a> {
+    let axes = planned.axes.iter().zip(&machine.axes);
     MoveJson {
         start_tick: planned.start_tick,
         rest_ticks: planned.rest_ticks,
         ticks: planned.ticks,
         seconds: planned.seconds,
-        axes: (planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding))
-            .map(|((planned, axis), &rounding_steps)| AxisJson {
+        axes: axes
+            .map(|(planned, axis)| AxisJson {
                 axis: &axis.name,
                 shape: planned.shape,
                 steps: planned.steps,
-                rounding_steps,
+                rounding_steps: planned.rounding_steps,
                 segments: &planned.segments,
             })
             .collect(),
     }
 }
 
-/// Prints the table in blocks, because that of many moves has tens of megabytes.
-fn table(file: &MoveFile, plan: &Plan, segments: bool) -> Result<(), Failure> {
-    let mut text = String::new();
-    for (index, planned) in plan.moves.iter().enumerate() {
-        add_move(&mut text, file, (index, planned), segments);
-        if text.len() >= BLOCK {
-            output::print(&text)?;
-            text.clear();
-        }
-    }
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{}", table::limits(file, plan));
-    output::print(&text)
+/// Prints a table for each move, and one of the limits.
+fn table(source: MoveSource, segments: bool) -> Result<(), Failure> {
+    let machine = source.machine.clone();
+    let (mut moves, mut number) = (Spool::new(), 0);
+    let survey = job::survey(source, |planned| {
+        number += 1;
+        moves.add(|text| add_move(text, &machine, (number, planned), segments))
+    })?;
+    moves.print()?;
+    output::print(&format!("{}\n", table::limits(&machine, survey.totals())))
 }
 
-/// Adds the table of a move, which has this index in the file.
+/// Adds the table of a move, which has this number in the file.
 fn add_move(
     text: &mut String,
-    file: &MoveFile,
-    (index, planned): (usize, &PlannedMove),
+    machine: &Machine,
+    (number, planned): (u64, &PlannedMove),
     segments: bool,
 ) {
-    let asked = &file.moves[index];
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{}", heading(index + 1, planned, &asked.profile.to_string()));
-    let rows = planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding);
-    let timebase = &file.machine.timebase;
-    let cells = rows.clone().map(|((planned, Axis { name, unit, .. }), _)| {
+    let _ = writeln!(text, "{}", heading(number, planned));
+    let rows = planned.axes.iter().zip(&machine.axes);
+    let timebase = &machine.timebase;
+    let cells = rows.clone().map(|(planned, Axis { name, unit, .. })| {
         [
             name.clone(),
             planned.steps.to_string(),
@@ -185,8 +195,8 @@ fn add_move(
     });
     let head = ["axis", "steps", "distance", "shape", "seg.", "speed", "acceleration"];
     let _ = table::columns(text, head, cells, |column| column == 0 || column == 3);
-    for ((planned, axis), rounding) in rows {
-        text.push_str(&rounded(axis, *rounding));
+    for (planned, axis) in rows {
+        text.push_str(&rounded(axis, planned.rounding_steps));
         for (index, Segment { ticks, v, a, j, last }) in
             planned.segments.iter().filter(|_| segments).enumerate()
         {
@@ -209,10 +219,11 @@ fn rounded(axis: &Axis, rounding: f64) -> String {
     format!("{name} is rounded by {:+.4} steps{own}\n", -rounding)
 }
 
-fn heading(number: usize, planned: &PlannedMove, profile: &str) -> String {
+fn heading(number: u64, planned: &PlannedMove) -> String {
     let rest = match planned.rest_ticks {
         0 => String::new(),
         ticks => format!(" after {ticks} ticks of rest for set-up and hold"),
     };
-    format!("move {number}: {profile}, {} s, {} ticks{rest}", planned.seconds, planned.ticks)
+    let PlannedMove { kind, seconds, ticks, .. } = planned;
+    format!("move {number}: {kind}, {seconds} s, {ticks} ticks{rest}")
 }

@@ -4,17 +4,16 @@
 use crate::arguments::{Jog, PortArguments, RunArguments};
 use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
-use crate::failure::{Failure, refused};
+use crate::failure::Failure;
 use crate::{job, output};
-use carrystep_files::{Machine, MoveFile, SourceText, decimal};
-use carrystep_plan::plan;
+use carrystep_files::{Machine, MoveFile, MoveSource, SourceText, decimal};
 use std::path::Path;
 
 /// Executes the moves of a file.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
-    let file = job::load(&arguments.file, arguments.fit_ns)?;
+    let source = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
-    told(&moved(&file, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
+    told(&moved(source, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
 }
 
 /// Moves one axis.
@@ -31,7 +30,7 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
         return Err(failure);
     }
     told(
-        &moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?,
+        &moved(file.into(), &arguments.machine, &arguments.port, "jog", arguments.into_limit)?,
         arguments.json,
     )
 }
@@ -39,15 +38,15 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
 /// Plans and executes the moves. Everything is planned before the port is opened, and nothing moves
 /// before the board is identified.
 fn moved(
-    file: &MoveFile,
+    source: MoveSource,
     name: &Path,
     port: &PortArguments,
     command: &'static str,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
-    let plan = plan::<f64>(file).map_err(|error| refused(file, &error))?;
-    let streamed = Streamed::new(file, &plan, file.machine.baud)?;
-    let connection = connection::to_machine(port, &file.machine, name, command)?;
+    let machine = source.machine.clone();
+    let streamed = Streamed::new(source)?;
+    let connection = connection::to_machine(port, &machine, name, command)?;
     drive(connection, &streamed, into_limit)
 }
 

@@ -2,15 +2,13 @@
 //! plot.
 
 use crate::arguments::Simulate;
-use crate::failure::{Failure, refused};
+use crate::failure::Failure;
 use crate::wanted::{Part, Wanted};
 use crate::{job, output};
-use carrystep_plan::plan;
 
 /// Plans and simulates a move file.
 pub fn run(arguments: &Simulate) -> Result<(), Failure> {
-    let file = job::load(&arguments.file, arguments.fit_ns)?;
-    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
+    let survey = job::survey(job::load(&arguments.file, arguments.fit_ns)?, |_| Ok(()))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),
         fst: arguments.fst.clone(),
@@ -19,7 +17,7 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         plot: arguments.plot.clone(),
         part: Part { from: arguments.from, to: arguments.to, axes: arguments.axes.clone() },
     };
-    let done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
+    let done = job::run(&survey, arguments.core, arguments.level, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

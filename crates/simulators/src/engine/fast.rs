@@ -9,12 +9,12 @@ use carrystep_core::engine::EngineOutputs;
 use carrystep_model::FastEngine;
 
 /// A host and its engine, advanced by one cycle or by many.
-struct Fed {
+struct Fed<'a> {
     core: FastEngine,
-    host: EngineHost,
+    host: EngineHost<'a>,
 }
 
-impl Fed {
+impl Fed<'_> {
     /// Advances by at least one cycle, and by at most `most`, or `most_at_rest` if nothing is left
     /// to do. Returns the number of cycles and the outputs in the first of them.
     fn advance(
@@ -44,7 +44,7 @@ impl Fed {
 }
 
 impl EngineJob<'_> {
-    fn fed(&self) -> Fed {
+    fn fed(&self) -> Fed<'_> {
         Fed { core: FastEngine::new(self.build), host: self.host() }
     }
 

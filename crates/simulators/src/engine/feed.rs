@@ -1,6 +1,6 @@
 //! Orders the commands of planned moves by the time at which an engine has room for them. The
 //! queues are filled before the first start; each later segment is sent when its axis takes one out
-//! of its queue.
+//! of its queue. The commands are read as far ahead as this order needs.
 //!
 //! ```text
 //! x  1 2 3 4 5 6 7    8    9        10       there is room for segment k when segment k - 7 begins
@@ -8,102 +8,144 @@
 //!                  ^ start
 //! ```
 
-use super::{Act, puts};
+use super::{Act, acts_of, puts};
 use carrystep_core::engine::{Put, QUEUE, SEGMENT_WORDS};
-use carrystep_core::{Command, Program, Segment};
+use carrystep_core::{Command, Segment};
+use std::collections::{BTreeMap, VecDeque};
 
-/// A command, and the time at which the engine can accept it.
+/// When a command is sent. Of two commands, the one with the lesser value is sent first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Due {
-    /// 0: before the first move; n: once tick n has begun.
+    /// When the engine can accept the command. 0: before the first move; n: once tick n has begun.
     room: u64,
     /// The first start after all segments that are due with it, a later one after its own; these in
     /// the order of their queues.
-    place: usize,
-    command: Command,
+    place: u64,
+    /// Number of the command: those of the same time and place remain in the plan's order.
+    number: u64,
 }
 
 /// The segments of an axis so far.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct AxisFeed {
-    begins: Vec<u64>,
+    /// Number of segments.
+    count: u64,
+    /// The ticks at which the last of them begin, at most [`QUEUE`].
+    begins: VecDeque<u64>,
     end: u64,
     /// Time at which there was room for the last of them.
     room: u64,
 }
 
 /// The actions of a host that never waits for one axis while it could serve another.
-pub(super) fn acts(program: &Program) -> Vec<Act> {
-    let mut due = due(program);
-    // The sort is stable: commands of the same time remain in the plan's order.
-    due.sort_by_key(|due| (due.room, due.place));
-    let mut acts = Vec::new();
-    let mut row: Vec<(u64, u8, Segment)> = Vec::new();
-    for Due { room, command, .. } in due {
-        match command {
-            Command::Segment { axis, segment } => {
-                if row.iter().any(|&(first, other, _)| first != room || other == axis) {
-                    acts.extend(side_by_side(&std::mem::take(&mut row)));
+///
+/// In a planned move the segments of all axes have the same total of ticks, and every axis that
+/// moves at all has segments in every move.
+pub(super) struct Acts<'a> {
+    commands: Box<dyn Iterator<Item = Command> + 'a>,
+    axis_feeds: [AxisFeed; 8],
+    /// The tick at which the last move that was read begins, plus one.
+    started: u64,
+    started_before: bool,
+    /// Number of commands that were read.
+    read: u64,
+    /// Commands that were read and are not sent yet.
+    waiting: BTreeMap<Due, Command>,
+    /// Segments of different axes for which there is room at the same time.
+    row: Vec<(u64, u8, Segment)>,
+    ready: VecDeque<Act>,
+}
+
+impl<'a> Acts<'a> {
+    pub(super) fn new(commands: Box<dyn Iterator<Item = Command> + 'a>) -> Self {
+        Self {
+            commands,
+            axis_feeds: Default::default(),
+            started: 0,
+            started_before: false,
+            read: 0,
+            waiting: BTreeMap::new(),
+            row: Vec::new(),
+            ready: VecDeque::new(),
+        }
+    }
+
+    /// The next command, once no command that has not been read can come before it.
+    fn next_due(&mut self) -> Option<(Due, Command)> {
+        loop {
+            // There is room for a later segment of an axis at the same time as for its last one or
+            // later, and for a later start not before there is room for its segments.
+            let axes = self.axis_feeds.iter().filter(|axis_feed| axis_feed.count > 0);
+            let known = axes.map(|axis_feed| axis_feed.room).min().unwrap_or(0);
+            let first = self.waiting.first_entry();
+            if let Some(first) =
+                first.filter(|first| self.started_before && first.key().room < known)
+            {
+                return Some(first.remove_entry());
+            }
+            let Some(command) = self.commands.next() else { return self.waiting.pop_first() };
+            let due = self.due(&command);
+            self.waiting.insert(due, command);
+        }
+    }
+
+    /// When a command that was read now is sent.
+    fn due(&mut self, command: &Command) -> Due {
+        let number = self.read;
+        self.read += 1;
+        if let Command::Segment { axis, segment } = command {
+            let axis_feed = &mut self.axis_feeds[usize::from(*axis) % 8];
+            let place = axis_feed.count;
+            if axis_feed.begins.len() == QUEUE {
+                axis_feed.room = axis_feed.begins.pop_front().map_or(0, |begin| begin + 1);
+            }
+            axis_feed.count += 1;
+            axis_feed.begins.push_back(axis_feed.end);
+            axis_feed.end += u64::from(segment.ticks);
+            return Due { room: axis_feed.room, place, number };
+        }
+        // A start can be armed as soon as the move before has begun and each axis has its first
+        // segment.
+        let axis_feeds = &self.axis_feeds;
+        let room = axis_feeds.iter().map(|axis_feed| axis_feed.room).fold(self.started, u64::max);
+        let begins = axis_feeds.iter().filter_map(|axis_feed| axis_feed.begins.back());
+        self.started = begins.map(|begin| begin + 1).fold(self.started, u64::max);
+        // The first waits for full queues. A later one for its own segments only: the move before
+        // may be short.
+        let own = axis_feeds.iter().map(|axis_feed| axis_feed.count).max().unwrap_or(0);
+        let place = if self.started_before { own.saturating_sub(1) } else { u64::MAX };
+        self.started_before = true;
+        Due { room, place, number }
+    }
+
+    /// Makes the segments that were collected ready to be sent.
+    fn end_row(&mut self) {
+        self.ready.extend(side_by_side(&std::mem::take(&mut self.row)));
+    }
+}
+
+impl Iterator for Acts<'_> {
+    type Item = Act;
+
+    fn next(&mut self) -> Option<Act> {
+        while self.ready.is_empty() {
+            match self.next_due() {
+                Some((Due { room, .. }, Command::Segment { axis, segment })) => {
+                    if self.row.iter().any(|&(first, other, _)| first != room || other == axis) {
+                        self.end_row();
+                    }
+                    self.row.push((room, axis, segment));
                 }
-                row.push((room, axis, segment));
-            }
-            other => {
-                acts.extend(side_by_side(&std::mem::take(&mut row)));
-                acts.extend(alone(other));
-            }
-        }
-    }
-    acts.extend(side_by_side(&row));
-    acts
-}
-
-fn alone(command: Command) -> Option<Act> {
-    match command {
-        Command::Segment { .. } => None,
-        Command::Start { mask } => Some(Act::Start(mask)),
-        Command::Wait { clocks } => Some(Act::Wait(clocks)),
-        Command::Clear => Some(Act::Clear),
-    }
-}
-
-/// The time at which there is room for each command. In a planned move the segments of all axes
-/// have the same total of ticks.
-fn due(program: &Program) -> Vec<Due> {
-    let mut axis_feeds = vec![AxisFeed::default(); 8];
-    let (mut started, mut started_before) = (0, false);
-    let place = |command: &Command| {
-        let command = *command;
-        match command {
-            Command::Segment { axis, segment } => {
-                let axis_feed = &mut axis_feeds[usize::from(axis) % 8];
-                let place = axis_feed.begins.len();
-                axis_feed.room =
-                    place.checked_sub(QUEUE).map_or(0, |earlier| axis_feed.begins[earlier] + 1);
-                axis_feed.begins.push(axis_feed.end);
-                axis_feed.end += u64::from(segment.ticks);
-                Due { room: axis_feed.room, place, command }
-            }
-            // A start can be armed as soon as the move before has begun and each axis has its first
-            // segment.
-            _ => {
-                let room =
-                    axis_feeds.iter().map(|axis_feed| axis_feed.room).fold(started, u64::max);
-                let begins = axis_feeds.iter().filter_map(|axis_feed| axis_feed.begins.last());
-                started = begins.map(|begin| begin + 1).fold(started, u64::max);
-                // The first waits for full queues. A later one for its own segments only: the move
-                // before may be short.
-                let own = axis_feeds
-                    .iter()
-                    .map(|axis_feed| axis_feed.begins.len())
-                    .max()
-                    .unwrap_or(0)
-                    .saturating_sub(1);
-                let place = if started_before { own } else { usize::MAX };
-                started_before = true;
-                Due { room, place, command }
+                Some((_, other)) => {
+                    self.end_row();
+                    self.ready.extend(acts_of(&other));
+                }
+                None if self.row.is_empty() => return None,
+                None => self.end_row(),
             }
         }
-    };
-    program.iter().map(place).collect()
+        self.ready.pop_front()
+    }
 }
 
 /// Sends segments of different axes in parallel: one word for each in a tick.
@@ -122,7 +164,7 @@ mod tests {
     use crate::engine::replay::Recording;
     use crate::engine::run::EngineJob;
     use carrystep_core::engine::Cause;
-    use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+    use carrystep_core::{AXES, Build, EngineBuild, PinTiming, Program, StartPhase, Timebase};
 
     fn build() -> EngineBuild {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
@@ -167,7 +209,8 @@ mod tests {
 
     #[test]
     fn queues_are_filled_before_the_start_in_order() {
-        let acts = acts(&program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]));
+        let program = program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]);
+        let acts: Vec<Act> = Acts::new(Box::new(program.into_iter())).collect();
         let start = acts.iter().position(|act| matches!(act, Act::Start(_))).unwrap();
         let commits = |acts: &[Act], of: u8| {
             acts.iter()
@@ -177,6 +220,21 @@ mod tests {
         assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (QUEUE, 2));
         assert_eq!((commits(&acts, 0), commits(&acts, 1)), (10, 2));
         assert_eq!(acts.iter().filter(|act| matches!(act, Act::Start(0b11))).count(), 2);
+    }
+
+    #[test]
+    fn commands_are_read_no_further_ahead_than_their_order_needs() {
+        // One axis has a segment a move, the other one 40.
+        let moves = vec![vec![vec![25; 40], vec![1000]]; 500];
+        let program = program(&moves);
+        let read = std::cell::Cell::new(0);
+        let commands = program.iter().copied().inspect(|_| read.set(read.get() + 1));
+        let mut sent = 0;
+        for act in Acts::new(Box::new(commands)) {
+            sent += usize::from(!matches!(act, Act::Put(put) if put.word != 7));
+            assert!(read.get() <= sent + 10 * 42, "{} read, {sent} sent", read.get());
+        }
+        assert_eq!(sent, program.len());
     }
 
     #[test]

@@ -44,7 +44,7 @@ impl Recording {
     /// As [`Self::new`], for any host; ends early if `halt` is set.
     pub(super) fn of(
         build: &EngineBuild,
-        mut host: EngineHost,
+        mut host: EngineHost<'_>,
         max_clocks: u64,
         halt: Halt<'_>,
         how_far: Option<&HowFar>,

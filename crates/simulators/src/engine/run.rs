@@ -2,9 +2,9 @@
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
-use crate::{Halt, HowFar, Level, LevelError, RunStage, halted, how_far};
+use crate::{Commands, Halt, HowFar, Level, LevelError, RunStage, halted, how_far};
+use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineOutputs};
-use carrystep_core::{Command, EngineBuild, Program};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 
@@ -17,7 +17,7 @@ pub struct EngineJob<'a> {
     /// Build parameters of the engine.
     pub build: &'a EngineBuild,
     /// Commands of the moves.
-    pub program: &'a Program,
+    pub program: &'a dyn Commands,
     /// The run fails after this number of cycles.
     pub max_clocks: u64,
     /// Flags that end the run early.
@@ -44,10 +44,7 @@ pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
 impl<'a> EngineJob<'a> {
     /// A job of `ticks` ticks of motion. Its limit of cycles includes time for the drivers' power
     /// and for the words of all segments.
-    pub fn new(build: &'a EngineBuild, program: &'a Program, ticks: u64) -> Self {
-        let segments =
-            program.iter().filter(|command| matches!(command, Command::Segment { .. })).count()
-                as u64;
+    pub fn new(build: &'a EngineBuild, program: &'a dyn Commands, ticks: u64) -> Self {
         let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
         let pins = build
             .pins
@@ -56,11 +53,11 @@ impl<'a> EngineJob<'a> {
             .max()
             .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
+        let max_clocks = (ticks + warm + 10 * program.segments() + 100) * clocks + 4 * pins;
         Self { build, program, max_clocks, halt: &[], how_far: None }
     }
 
-    pub(super) fn host(&self) -> EngineHost {
+    pub(super) fn host(&self) -> EngineHost<'_> {
         EngineHost::feeding(&self.build.guard, self.program)
     }
 

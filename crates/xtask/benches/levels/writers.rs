@@ -71,7 +71,7 @@ pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
         let axes = timelines.iter().zip(["x", "y", "z", "a", "b", "c"]).enumerate();
         let axes = axes.map(|(axis, (timeline, name))| {
             let segments = Box::new(moves.plan.axis_segments(axis));
-            AxisWaves { name, timeline, segments }
+            AxisWaves { name, timeline: timeline.clone(), segments }
         });
         let waves = Waves {
             timebase: moves.plan.build.timebase,

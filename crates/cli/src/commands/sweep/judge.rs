@@ -4,7 +4,7 @@ use crate::arguments::Core;
 use crate::job;
 use crate::wanted::Wanted;
 use carrystep_check::AxisReport;
-use carrystep_plan::{PlanError, plan};
+use carrystep_plan::{PlanError, Survey, plan};
 use carrystep_simulators::Level;
 use carrystep_sweep::{Case, CaseVerdict};
 use std::collections::BTreeMap;
@@ -17,7 +17,8 @@ pub fn judge(case: &Case, core: Core) -> CaseVerdict {
         Err(error @ PlanError::Broken { .. }) => return CaseVerdict::Failed(error.to_string()),
         Err(error) => return CaseVerdict::Refused(error.to_string()),
     };
-    match job::run(file, &plan, core, Level::Fast, &Wanted::default()) {
+    let survey = Survey::of(file.clone().into(), plan);
+    match job::run(&survey, core, Level::Fast, &Wanted::default()) {
         Ok(done) if done.passed => CaseVerdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();
