@@ -141,7 +141,6 @@ fn performance_page_gives_how_growth_is_measured() {
     let turns = array(growth, "TURNS");
     let runs = |size| word(turns.iter().filter(|turn| **turn == size).count() as u64);
     let more = word(whole(constant(growth, "MORE")));
-    let mebibytes = constant("crates/files/src/input.rs", "MAX_TEXT_BYTES") / 1024.0_f64.powi(2);
     let list = whole(constant("crates/profile/src/reference/row.rs", "MOST_ROWS"));
     assert_eq!(list, whole(constant("crates/table/src/request.rs", "MAX_RAMP")));
     let inputs = "crates/xtask/benches/levels/growth/inputs.rs";
@@ -161,8 +160,8 @@ fn performance_page_gives_how_growth_is_measured() {
             ),
             format!("up to {more} more rounds follow"),
             format!("S-curves of {shortest} to {longest} steps"),
-            format!("a move file has at most {mebibytes} MiB"),
-            format!("a table's ramp at most {} steps", grouped(list)),
+            format!("a table's ramp has at most {} steps", grouped(list)),
+            format!("The plan of more than {} moves is made twice", kept_moves()),
         ],
     );
     says(
@@ -171,6 +170,62 @@ fn performance_page_gives_how_growth_is_measured() {
             format!("at {one}, {ten} and {hundred} times the work. It fails"),
             format!("at {ten} or {hundred} takes {words}"),
         ],
+    );
+}
+
+/// The greatest number of moves whose plan is kept.
+fn kept_moves() -> u64 {
+    1 << whole(behind("crates/plan/src/stream.rs", "const KEPT: usize = 1 << "))
+}
+
+#[test]
+fn pages_give_the_limits_of_a_long_move_file() {
+    let mebibytes = constant("crates/files/src/input.rs", "MAX_TEXT_BYTES") / 1024.0_f64.powi(2);
+    let whole_file = constant("crates/files/src/moves.rs", "WHOLE_BYTES") / 1024.0;
+    says(
+        "docs/machine-files.md",
+        &[
+            format!("One of over {whole_file} KiB is read move by move"),
+            format!("have at most {mebibytes} MiB each"),
+        ],
+    );
+    says(
+        "docs/decisions/0065-plans-are-made-while-they-are-used.md",
+        &[
+            format!("a file of over {whole_file} KiB has its machine before its moves"),
+            format!("The plan of up to {} moves is kept", kept_moves()),
+            format!(
+                "longer than {} MiB",
+                1 << (whole(behind("crates/cli/src/spool.rs", "const KEPT: usize = 1 << ")) - 20)
+            ),
+        ],
+    );
+}
+
+#[test]
+fn performance_page_gives_the_rows_of_memory() {
+    let rows = "crates/xtask/benches/levels/growth/rows.rs";
+    let (source, page) = (pages::joined(rows), pages::file("docs/performance.md"));
+    let moves = whole(constant(rows, "MANY"));
+    let most = constant("crates/xtask/benches/levels/growth.rs", "MEGABYTES_AT_MOST");
+    let (_, table) = page.split_once("| command | moves |").expect("the table");
+    let table: Vec<&str> = table.lines().skip(2).take_while(|line| !line.is_empty()).collect();
+    let number = whole(behind(rows, "MEMORY_ROWS: [Row; "));
+    assert_eq!(table.len() as u64, number);
+    for row in table {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let command = format!("\"{}\"", cells[0].trim_matches('`'));
+        assert!(source.contains(&command), "{row}");
+        assert_eq!(cells[1], moves.to_string(), "{row}");
+        let megabytes: f64 = cells[2].parse().expect("a figure");
+        assert!(cells[3] == most.to_string() && megabytes < most, "{row}");
+    }
+    says(
+        "docs/performance.md",
+        &[format!(
+            "{} moves of a single step, and fails if it uses more than {most} MB",
+            grouped(moves)
+        )],
     );
 }
 

@@ -32,6 +32,8 @@ mod json_names;
 mod junit;
 #[cfg(target_os = "linux")]
 mod kept_shards;
+#[cfg(target_os = "linux")]
+mod long_moves;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;

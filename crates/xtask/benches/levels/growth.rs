@@ -1,15 +1,16 @@
-//! Measures how the time of each command of `carrystep` grows with its work.
+//! Measures how the time of each command of `carrystep` grows with its work, and its memory.
 //!
 //! The released command runs as a child process with 1, 10 and 100 times the work. The time per
-//! unit of work must stay about the same, otherwise the time of the command is not linear.
+//! unit of work must stay about the same, otherwise the time of the command is not linear. The
+//! memory is that with a million moves.
 
 mod child;
 mod inputs;
 mod rows;
 
-use crate::report::{Growth, GrowthRow};
+use crate::report::{Growth, GrowthRow, MemoryRow};
 use inputs::CommandLine;
-use rows::{ROWS, Row};
+use rows::{MEMORY_ROWS, ROWS, Row};
 use std::path::Path;
 
 /// How many times the work of its row a command is given.
@@ -34,6 +35,12 @@ const SMOKE_TURNS: [usize; 2] = [0, 1];
 
 /// A smoke run does this part of the work.
 const SMOKE_PART: u64 = 50;
+
+/// A smoke run measures the memory with this part of the moves.
+const SMOKE_MEMORY_PART: u64 = 200;
+
+/// The greatest memory of a command with a million moves, MB.
+const MEGABYTES_AT_MOST: f64 = 200.0;
 
 /// Number of runs of which the least is the time to start.
 const STARTS: usize = 9;
@@ -66,7 +73,31 @@ pub fn measure(
         }
         rows.push(measured);
     }
-    Ok(Growth { start_up_ms: start_up * 1e3, ratio_wanted: RATIO_AT_MOST, rows })
+    let memory = memory(carrystep, smoke, failures)?;
+    Ok(Growth { start_up_ms: start_up * 1e3, ratio_wanted: RATIO_AT_MOST, rows, memory })
+}
+
+/// Measures the memory of the commands that read any number of moves.
+fn memory(
+    carrystep: &Path,
+    smoke: bool,
+    failures: &mut Vec<String>,
+) -> Result<Vec<MemoryRow>, String> {
+    let mut rows = Vec::new();
+    for row in &MEMORY_ROWS {
+        let moves = if smoke { row.units / SMOKE_MEMORY_PART } else { row.units };
+        let bytes = CommandLine::prepare(row, moves, carrystep)?.memory(carrystep)?;
+        let megabytes = bytes as f64 / 1e6;
+        if megabytes > MEGABYTES_AT_MOST {
+            failures.push(format!(
+                "{}: {megabytes:.0} MB with {moves} moves, {MEGABYTES_AT_MOST} wanted",
+                row.command
+            ));
+        }
+        let wanted = MEGABYTES_AT_MOST;
+        rows.push(MemoryRow { command: row.command, moves, megabytes, megabytes_wanted: wanted });
+    }
+    Ok(rows)
 }
 
 /// The measurement of one row.

@@ -69,6 +69,17 @@ pub struct Growth {
     /// The greatest ratio with which a row passes.
     pub ratio_wanted: f64,
     pub rows: Vec<GrowthRow>,
+    pub memory: Vec<MemoryRow>,
+}
+
+/// The greatest memory of a command.
+#[derive(Debug, Serialize)]
+pub struct MemoryRow {
+    pub command: &'static str,
+    /// Number of moves of its input.
+    pub moves: u64,
+    pub megabytes: f64,
+    pub megabytes_wanted: f64,
 }
 
 /// Processor time of a command per unit of work, with 1, 10 and 100 times the work.
@@ -172,6 +183,12 @@ impl fmt::Display for Growth {
                 cell(row.ratio_100, 2)
             )?;
         }
-        writeln!(f, "\na ratio is at most {}", self.ratio_wanted)
+        writeln!(f, "\na ratio is at most {}\n", self.ratio_wanted)?;
+        writeln!(f, "| command | moves | memory, MB | wanted |")?;
+        writeln!(f, "|---|---|---|---|")?;
+        for MemoryRow { command, moves, megabytes, megabytes_wanted } in &self.memory {
+            writeln!(f, "| `{command}` | {moves} | {megabytes:.0} | {megabytes_wanted:.0} |")?;
+        }
+        writeln!(f)
     }
 }

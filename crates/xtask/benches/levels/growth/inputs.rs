@@ -56,6 +56,7 @@ impl CommandLine {
         };
         match row.input {
             Input::Moves | Input::Capture => write(&moves, &many_moves(units)),
+            Input::Steps | Input::StepsCapture => write(&moves, &many_steps(units)),
             Input::OneMove => write(&moves, &one_move(units)),
             Input::Sweep => write(&sweep, SWEEP),
             Input::Arguments => Ok(()),
@@ -68,8 +69,9 @@ impl CommandLine {
             "UNITS" => units.to_string(),
             other => other.to_owned(),
         };
-        if row.input == Input::Capture {
-            child::seconds(carrystep, &["simulate", "MOVE", "--vcd", "CAPTURE"].map(word))?;
+        if let Input::Capture | Input::StepsCapture = row.input {
+            let words = ["simulate", "MOVE", "--core", "parallel", "--vcd", "CAPTURE"];
+            child::seconds(carrystep, &words.map(word))?;
         }
         let arguments = row.command.split(' ').map(word).collect();
         Ok(Self { arguments, out, _folder: folder })
@@ -81,10 +83,25 @@ impl CommandLine {
     /// The command fails.
     pub fn run(&self, carrystep: &Path) -> Result<f64, String> {
         let seconds = child::seconds(carrystep, &self.arguments)?;
+        self.remove_output()?;
+        Ok(seconds)
+    }
+
+    /// Runs the command, returns the greatest memory that it used in bytes, and removes its output.
+    ///
+    /// # Errors
+    /// The command fails.
+    pub fn memory(&self, carrystep: &Path) -> Result<u64, String> {
+        let bytes = child::memory(carrystep, &self.arguments)?;
+        self.remove_output()?;
+        Ok(bytes)
+    }
+
+    fn remove_output(&self) -> Result<(), String> {
         if self.out.exists() {
             fs::remove_file(&self.out).map_err(|error| error.to_string())?;
         }
-        Ok(seconds)
+        Ok(())
     }
 }
 
@@ -103,6 +120,13 @@ fn many_moves(units: u64) -> String {
         let _ = writeln!(text, "[[move]]\nprofile=\"scurve\"\nto={{c={sign}{steps}}}");
     }
     text
+}
+
+/// Moves of a single step, alternately forward and backward.
+fn many_steps(units: u64) -> String {
+    let moved = |sign| format!("[[move]]\nprofile=\"ranade\"\nto={{c={sign}1}}\n");
+    let both = moved("") + &moved("-");
+    machine().to_owned() + &both.repeat(units.div_ceil(2) as usize)
 }
 
 /// One move of so many steps.

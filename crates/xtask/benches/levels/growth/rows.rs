@@ -10,6 +10,10 @@ pub enum Input {
     OneMove,
     /// The VCD of a move file with one move per unit, and that file.
     Capture,
+    /// A move file with one move of a single step per unit.
+    Steps,
+    /// The VCD of such a file, and the file.
+    StepsCapture,
     /// A sweep. The number of its cases is an argument.
     Sweep,
     /// Nothing but arguments.
@@ -36,7 +40,6 @@ const fn moves(command: &'static str, units: u64) -> Row {
 
 /// All commands whose work grows with their input, except `run`, which keeps the pace of its board.
 pub const ROWS: [Row; 15] = [
-    // At the greatest factor, the move file has nearly the 4 MiB that carrystep reads.
     moves("plan MOVE", 1_000),
     moves("plan MOVE --json", 1_000),
     moves("plan MOVE --json-lines", 1_000),
@@ -68,4 +71,23 @@ pub const ROWS: [Row; 15] = [
         unit: "step",
         units: 10_000,
     },
+];
+
+const fn steps(command: &'static str) -> Row {
+    Row { command, input: Input::Steps, unit: "move", units: MANY }
+}
+
+/// The number of moves of which the memory is measured.
+const MANY: u64 = 1_000_000;
+
+/// The commands whose memory is measured. Those with the engine need no more than those with the
+/// parallel core, which are sooner through.
+pub const MEMORY_ROWS: [Row; 7] = [
+    steps("plan MOVE"),
+    steps("plan MOVE --json"),
+    steps("plan MOVE --json-lines"),
+    steps("simulate MOVE --csv OUT"),
+    steps("simulate MOVE --core parallel --vcd OUT"),
+    steps("simulate MOVE --core parallel --fst OUT"),
+    Row { command: "check CAPTURE MOVE", input: Input::StepsCapture, unit: "move", units: MANY },
 ];
