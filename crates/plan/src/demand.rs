@@ -2,9 +2,9 @@
 //!
 //! The rules of each kind of profile are in `kinds.rs` of the crate `profile`.
 
+use crate::asked::Asked;
 use crate::error::PlanError;
 use crate::line;
-use crate::planner::Asked;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};

@@ -7,6 +7,7 @@
 //! The public items are the entrances [`plan`], for a file that is held in memory, and [`Survey`],
 //! for one of any length, with their results and errors; the modules are private and may change.
 
+mod asked;
 mod bend;
 mod bounds;
 mod check;

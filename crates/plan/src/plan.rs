@@ -4,7 +4,6 @@
 //! Only `planner.rs` builds them.
 
 use crate::peaks::Peaks;
-use crate::totals::Totals;
 use carrystep_core::{Build, Command, ProfileKind, Program, Segment, Timebase};
 use carrystep_files::PathKind;
 use carrystep_profile::{Course, Leg, SharedProfile, Timeline};
@@ -88,13 +87,6 @@ impl Plan {
             Timeline::new(self.build.timebase.tick_seconds(), legs.collect::<Vec<_>>())
         };
         (0..axes).map(timeline).collect()
-    }
-
-    /// The sums and greatest values of all moves.
-    pub fn totals(&self) -> Totals {
-        let mut totals = Totals::default();
-        self.moves.iter().for_each(|planned| totals.add(planned));
-        totals
     }
 }
 

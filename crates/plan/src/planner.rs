@@ -5,6 +5,7 @@
 //! below may be changed without harm, because the exact check (`check.rs`) decides whether a plan
 //! leaves this crate. A unit is 2^-64 step throughout the crate.
 
+use crate::asked::Asked;
 use crate::check::{Duty, check};
 use crate::corridor::{self, Corridor};
 use crate::demand::{Clock, demand};
@@ -48,13 +49,6 @@ const LEAST_RATIO: f64 = 64.0;
 
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
 const ROUNDED: f64 = 0.01;
-
-/// A move that is asked for, and its number, counted from 0.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked<'a> {
-    pub index: usize,
-    pub moved: &'a Move,
-}
 
 /// Identifies one axis in one move, counted from 0.
 #[derive(Debug, Clone, Copy)]

@@ -57,10 +57,10 @@ impl Survey {
         source: MoveSource,
         mut watch: impl FnMut(&PlannedMove) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let mut planning = Planning::new(&source)?;
+        let planning = Planning::new(&source)?;
         let (mut totals, mut kept) = (Totals::default(), Some(Vec::new()));
         let build = planning.planner.build.clone();
-        while let Some(planned) = planning.next() {
+        for planned in planning {
             let planned = planned?;
             watch(&planned)?;
             totals.add(&planned);
@@ -75,7 +75,7 @@ impl Survey {
 
     /// The survey of a source that has been planned.
     pub fn of(source: MoveSource, plan: Plan) -> Self {
-        let totals = plan.totals();
+        let totals = plan.moves.iter().collect();
         let kept = plan.moves.into_iter().map(Arc::new).collect();
         Self { source, build: plan.build, totals, kept: Some(kept), failed: Arc::default() }
     }

@@ -54,6 +54,14 @@ impl Totals {
     }
 }
 
+impl<'a> FromIterator<&'a PlannedMove> for Totals {
+    fn from_iter<I: IntoIterator<Item = &'a PlannedMove>>(moves: I) -> Self {
+        let mut totals = Self::default();
+        moves.into_iter().for_each(|planned| totals.add(planned));
+        totals
+    }
+}
+
 impl AxisTotals {
     fn add(&mut self, axis: &PlannedAxis) {
         self.segments += axis.segments.len() as u64;

@@ -115,15 +115,12 @@ impl Machine {
             .collect();
         legs.sort_by_key(|(_, leg)| leg.start_tick);
         legs.reverse();
-        let readers = |source: Arc<dyn Source>| {
-            let of = |end: &ListEnd<Leg>| {
-                Timeline::new(self.timebase.tick_seconds(), end.reader(source.clone()))
-            };
-            ends.iter().map(of).collect()
+        let source = Arc::new(OneByOne::default());
+        let of = |end: &ListEnd<Leg>| {
+            Timeline::new(self.timebase.tick_seconds(), end.reader(source.clone()))
         };
-        let source = Arc::new(OneByOne(Mutex::new((legs, Vec::new()))));
-        let timelines = readers(source.clone());
-        source.0.lock().unwrap().1 = ends;
+        let timelines = ends.iter().map(of).collect();
+        *source.0.lock().unwrap() = Lists { left: legs, ends };
         timelines
     }
 
@@ -202,21 +199,29 @@ impl Machine {
     }
 }
 
-/// Makes one leg at a time: those that are left, the next one last, and the ends of the lists.
-struct OneByOne(Mutex<(Vec<(usize, Leg)>, Vec<ListEnd<Leg>>)>);
+/// Makes one leg at a time.
+#[derive(Default)]
+struct OneByOne(Mutex<Lists>);
+
+#[derive(Default)]
+struct Lists {
+    /// The legs that are left, each with its axis; the next one is the last.
+    left: Vec<(usize, Leg)>,
+    ends: Vec<ListEnd<Leg>>,
+}
 
 impl Source for OneByOne {
     fn grow(&self) {
-        let (legs, ends) = &mut *self.0.lock().unwrap();
-        match legs.pop() {
+        let Lists { left, ends } = &mut *self.0.lock().unwrap();
+        match left.pop() {
             Some((axis, leg)) => ends[axis].push(leg),
             None => ends.iter().for_each(ListEnd::close),
         }
     }
 
     fn known_to(&self) -> u64 {
-        let (legs, _) = &*self.0.lock().unwrap();
-        legs.last().map_or(u64::MAX, |(_, leg)| leg.start_tick)
+        let lists = self.0.lock().unwrap();
+        lists.left.last().map_or(u64::MAX, |(_, leg)| leg.start_tick)
     }
 }
 
