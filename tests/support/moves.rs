@@ -107,7 +107,7 @@ pub fn check(
 ) -> CheckReport {
     let job = Job::new(build, program, plan.total_ticks());
     let setup = check_setup(file, plan, &job);
-    let mut checker = Checker::new(Setup { courses: courses.to_vec().into(), ..setup });
+    let mut checker = Checker::new(Setup { courses: Some(courses.to_vec().into()), ..setup });
     let mut feed = PinFeed::new(build.timebase, file.machine.axes.len(), &mut checker);
     let outcome = carrystep_simulators::run(Level::Fast, &job, &mut |cycle, outputs| {
         feed.observe(cycle, outputs);
@@ -132,7 +132,7 @@ fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, job: &Job<'_>) -> Setup<'a> 
         timebase: time,
         phase: plan.build.phase,
         axes: axes.collect(),
-        courses: plan.courses().into(),
+        courses: Some(plan.courses().into()),
         origin: Origin::Known { ps: time.clock_to_ps(load + time.latency_clocks()).cast_signed() },
         slack_ps: 0,
     }

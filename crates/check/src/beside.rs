@@ -41,7 +41,7 @@ pub fn check_beside<R>(
     for (number, axis) in axes.into_iter().enumerate() {
         shares[number % threads].axes.push((number, axis));
     }
-    shares[threads - 1].lines = Some(lines);
+    shares[threads - 1].lines = lines;
     let (made, shares) = thread::scope(|scope| {
         let mut senders = Vec::new();
         let mut workers = Vec::new();
@@ -70,7 +70,6 @@ pub fn check_beside<R>(
     }
     axes.sort_by_key(|(number, _)| *number);
     let axes = axes.into_iter().map(|(_, axis)| axis).collect();
-    let lines = lines.expect("one share has the lines");
     (made, Checker { axes, lines, origin, slack_ps, phase_ns }.finish())
 }
 

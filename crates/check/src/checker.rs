@@ -28,8 +28,8 @@ pub struct Setup<'a> {
     pub phase: StartPhase,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
-    /// The courses of all moves; an empty list if the axes do not keep to a line in any of them.
-    pub courses: Reader<Course>,
+    /// The courses of all moves; `None` if the axes do not keep to a line in any of them.
+    pub courses: Option<Reader<Course>>,
     /// The time from which times are counted.
     pub origin: Origin,
     /// Uncertainty of the capture's times, ps: the sample period of a logic analyser, or 0 for a
@@ -40,7 +40,7 @@ pub struct Setup<'a> {
 /// Checks a capture from a stream of pin changes.
 pub struct Checker<'a> {
     pub(crate) axes: Vec<AxisCheck<'a>>,
-    pub(crate) lines: LinesCheck,
+    pub(crate) lines: Option<LinesCheck>,
     pub(crate) origin: RunningOrigin,
     pub(crate) slack_ps: u64,
     pub(crate) phase_ns: f64,
@@ -56,7 +56,7 @@ impl<'a> Checker<'a> {
     /// A checker that has not seen any change.
     pub fn new(setup: Setup<'a>) -> Self {
         let Setup { timebase, phase, axes, courses, origin, slack_ps } = setup;
-        let lines = LinesCheck::new(courses, phase, axes.len());
+        let lines = courses.map(|courses| LinesCheck::new(courses, phase, axes.len()));
         let axes =
             axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
         Self {
@@ -76,7 +76,8 @@ impl<'a> Checker<'a> {
         // distance that it travels in this time; `finish` makes the result a part of the axis'
         // `passed`.
         let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / PS;
-        let offs: Vec<_> = (0..self.axes.len()).map(|i| self.lines.off(i, late)).collect();
+        let off = |axis| self.lines.as_ref()?.off(axis, late);
+        let offs: Vec<_> = (0..self.axes.len()).map(off).collect();
         // The moves behind the end of the capture are not read for the lines.
         drop(self.lines);
         let axes = self.axes.into_iter().zip(offs);
@@ -104,7 +105,9 @@ impl PinSink for Checker<'_> {
         if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
             axis.initial(level.pin, level.level);
         }
-        self.lines.initial(level);
+        if let Some(lines) = &mut self.lines {
+            lines.initial(level);
+        }
         Ok(())
     }
 
@@ -113,7 +116,9 @@ impl PinSink for Checker<'_> {
         if let Some(axis) = self.axes.get_mut(usize::from(change.axis)) {
             axis.change(change, self.origin.base());
         }
-        self.lines.change(change);
+        if let Some(lines) = &mut self.lines {
+            lines.change(change);
+        }
         Ok(())
     }
 }

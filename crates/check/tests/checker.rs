@@ -227,7 +227,7 @@ fn axes_are_compared_with_their_line() {
     let machine = Machine::there_and_back(3);
     let steps = vec![1000, -500, 333];
     let out = Course { steps, line_speed: Some(8.0) };
-    let setup = Setup { courses: vec![out].into(), ..machine.setup(KNOWN) };
+    let setup = Setup { courses: Some(vec![out].into()), ..machine.setup(KNOWN) };
     let train = machine.train();
     let correct = machine.check_setup(&train, setup.clone());
     assert!(correct.passed, "{correct}");

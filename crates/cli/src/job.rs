@@ -101,7 +101,7 @@ pub fn survey(
 pub fn check_setup<'a>(
     survey: &'a Survey,
     timelines: &[Timeline],
-    courses: Reader<Course>,
+    courses: Option<Reader<Course>>,
     origin: Origin,
 ) -> Setup<'a> {
     let axes = survey.machine().axes.iter().zip(&survey.totals().axes).zip(timelines);

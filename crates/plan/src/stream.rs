@@ -44,8 +44,8 @@ pub struct Pass {
     pub moves: Reader<Arc<PlannedMove>>,
     /// The float reference of each axis.
     pub timelines: Vec<Timeline>,
-    /// The courses of all moves; an empty list if no move is along a straight line.
-    pub courses: Reader<Course>,
+    /// The courses of all moves; `None` if no move is along a straight line.
+    pub courses: Option<Reader<Course>>,
 }
 
 impl Survey {
@@ -130,10 +130,7 @@ impl Survey {
         let pass = Pass {
             moves: moves.reader(source.clone()),
             timelines: legs.iter().map(timeline).collect(),
-            courses: match self.totals.straight {
-                true => courses.reader(source.clone()),
-                false => Vec::new().into(),
-            },
+            courses: self.totals.straight.then(|| courses.reader(source.clone())),
         };
         *locked(&source.lists) = Some(Lists { planned, moves, legs, courses });
         pass

@@ -71,7 +71,7 @@ fn plan_that_is_made_while_it_is_read_is_the_plan_of_the_file() {
                 let phase = StartPhase::Half;
                 assert!(found.crossings(phase).eq(wanted.crossings(phase)));
             }
-            assert!(courses.eq(plan.courses()));
+            assert!(courses.unwrap().eq(plan.courses()));
         }
         survey.whole().unwrap();
     }
@@ -83,7 +83,7 @@ fn moves_behind_all_readers_are_freed() {
     let survey = survey(&path);
     let Pass { moves, timelines, courses } = survey.begin();
     let mut walks: Vec<_> = timelines.iter().map(|timeline| timeline.walk()).collect();
-    let mut courses = courses;
+    let mut courses = courses.unwrap();
     drop(timelines);
     let mut seen: Vec<Weak<PlannedMove>> = Vec::new();
     for planned in moves {

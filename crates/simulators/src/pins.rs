@@ -11,7 +11,8 @@ const BATCH: usize = 1 << 14;
 /// Sends every change of STEP and DIR of the first `axes` axes to a sink, in batches.
 pub struct PinFeed<'a> {
     timebase: Timebase,
-    axes: u8,
+    /// A bit for each axis whose changes are sent.
+    shown: u8,
     sink: &'a mut dyn PinSink,
     step: u8,
     dir: u8,
@@ -22,9 +23,9 @@ pub struct PinFeed<'a> {
 impl<'a> PinFeed<'a> {
     /// A feed with all pins low, as after configuration.
     pub fn new(timebase: Timebase, axes: usize, sink: &'a mut dyn PinSink) -> Self {
-        let axes = axes.min(AXES) as u8;
+        let shown = (1 << axes.min(AXES)) - 1;
         let batch = Vec::with_capacity(BATCH + 2 * AXES);
-        Self { timebase, axes, sink, step: 0, dir: 0, batch, failed: None }
+        Self { timebase, shown, sink, step: 0, dir: 0, batch, failed: None }
     }
 
     /// Processes the outputs of a cycle. A new level of a pin begins with the cycle.
@@ -40,8 +41,11 @@ impl<'a> PinFeed<'a> {
         let ps = self.timebase.clock_to_ps(cycle);
         // DIR comes first: if both change in one cycle, the new direction applies to the step.
         for (pin, now, before) in [(Pin::Dir, dir, self.dir), (Pin::Step, step, self.step)] {
-            for axis in (0..self.axes).filter(|axis| (now ^ before) >> axis & 1 == 1) {
+            let mut changed = (now ^ before) & self.shown;
+            while changed != 0 {
+                let axis = changed.trailing_zeros() as u8;
                 self.batch.push(PinChange { ps, axis, pin, level: now >> axis & 1 == 1 });
+                changed &= changed - 1;
             }
         }
         (self.step, self.dir) = (step, dir);

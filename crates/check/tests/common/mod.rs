@@ -69,7 +69,7 @@ impl Machine {
             pins_ns: PINS_NS,
             travel: timeline.legs().collect(),
         });
-        let (timebase, phase, courses) = (self.timebase, StartPhase::Half, Vec::new().into());
+        let (timebase, phase, courses) = (self.timebase, StartPhase::Half, None);
         Setup { timebase, phase, axes: axes.collect(), courses, origin, slack_ps: 0 }
     }
 
