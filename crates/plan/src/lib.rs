@@ -8,24 +8,32 @@
 //! errors; the modules are private and may change.
 
 mod bend;
+mod beside;
 mod bounds;
 mod check;
 mod corridor;
+mod cubic;
 mod demand;
 mod direction;
 mod edges;
 mod error;
 mod exchange;
 mod fit;
+mod fitted;
+mod kept;
 mod landing;
 mod limits;
 mod line;
 mod longest;
+mod own;
 mod peaks;
 mod placed;
 mod plan;
 mod planner;
 mod run;
+mod sampled;
+mod scaled;
+mod search;
 mod share;
 mod slow;
 mod units;

@@ -6,7 +6,8 @@
 //! leaves this crate. A unit is 2^-64 step throughout the crate.
 
 use crate::check::{Duty, check};
-use crate::corridor::{self, Corridor};
+use crate::corridor::{Corridor, JOINT};
+use crate::cubic;
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
 use crate::edges;
@@ -17,6 +18,7 @@ use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
 use crate::run::Writer;
+use crate::search::QUICK;
 use crate::share::{Breakpoints, Piece, share};
 use crate::slow::{self, Pulses};
 use crate::units;
@@ -272,7 +274,7 @@ impl<'a, F: Real> Planner<'a, F> {
                 let [begin, end] = [piece.first, piece.first + piece.ticks]
                     .map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;
-                let bend = corridor::steps(limits.acceleration);
+                let bend = cubic::steps(limits.acceleration);
                 let corridor = Corridor {
                     profile,
                     clock: *clock,
@@ -283,9 +285,11 @@ impl<'a, F: Real> Planner<'a, F> {
                     rises,
                     tolerance,
                     bend,
+                    joint: JOINT,
+                    longer: 1.0,
                 };
-                let mut fitter =
-                    Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
+                let held = std::mem::take(&mut rows);
+                let mut fitter = Fitter { corridor, limits: &limits, rows: held, search: QUICK };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
                 writer.fitted(piece, &segments, last)?;

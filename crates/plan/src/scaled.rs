@@ -1,0 +1,140 @@
+//! Gives a kept fit (`kept.rs`) the units of one move: its ticks, its distance and its limits.
+//!
+//! Breakpoints are rounded to ticks and coefficients to integers as in any other fit. The integers
+//! are judged beside the curve of this move, with the tolerance of this move, before they are used
+//! (`beside.rs`). If one segment fails, there is no scaled fit, and the piece is fitted as a curve
+//! of its own.
+
+use crate::bend::Wanted;
+use crate::beside::{Laid, Size};
+use crate::cubic::steps;
+use crate::fit::Fitter;
+use crate::fitted::Fitted;
+use crate::kept::Key;
+use crate::own::{Kept, Samples};
+use carrystep_profile::Real;
+use std::sync::Arc;
+
+/// The fewest ticks of a segment. In a shorter one, rounding a breakpoint to a tick matters.
+const LEAST_TICKS: u64 = 32;
+
+/// The fraction of the tolerance that a segment may use whose samples stand for many edges. Where
+/// each edge is a sample, the segment may use all of it.
+const STANDING: f64 = 0.98;
+
+/// How far the end of a ramp may be from the end of its piece, ticks: a breakpoint is rounded to the
+/// nearest tick.
+const ROUNDED: f64 = 0.5 + 1e-6;
+
+/// Where the next segment begins, and which one it is.
+#[derive(Debug, Clone, Copy)]
+struct Next {
+    /// The index of the segment in the kept fit.
+    at: usize,
+    /// Whether it is the last one of the piece.
+    last: bool,
+    /// First tick, counted from the start of the piece.
+    first: u64,
+    /// Distance from the start of the move, 2^-64 step.
+    done: i128,
+}
+
+impl<F: Real> Fitter<'_, F> {
+    /// Returns the kept fit of a piece that is a whole ramp, in the integers of this move. `None` if
+    /// there is none, or if a segment of it fails.
+    pub fn scaled(&self, mut done: i128) -> Option<Vec<Fitted>> {
+        let (size, kept) = self.kept()?;
+        let whole = kept.segments.len();
+        let mut segments = Vec::with_capacity(whole);
+        let mut first = 0;
+        for index in 0..whole {
+            let at = if size.rises { index } else { whole - 1 - index };
+            let next = Next { at, last: index + 1 == whole, first, done };
+            let fitted = self.scaled_segment(&size, &kept, next)?;
+            first += fitted.ticks;
+            done += fitted.distance;
+            segments.push(fitted);
+        }
+        Some(segments)
+    }
+
+    /// The ramp that the piece is, and the fit that is kept for it. A piece that begins or ends
+    /// elsewhere than a ramp has none.
+    fn kept(&self) -> Option<(Size, Arc<Kept>)> {
+        let corridor = &self.corridor;
+        let [up, down] = corridor.profile.own_ramps()?;
+        let (piece, clock, rises) = (corridor.piece, &corridor.clock, corridor.rises);
+        let wide = |x: F| x.to_f64();
+        let ramp = if rises { up } else { down };
+        let ticks = ramp.duration / wide(clock.tick)?;
+        let (rest, far, whole) = if rises {
+            (0.0, piece.ticks as f64 - ticks, piece.first == 0)
+        } else {
+            let end = wide(clock.seconds)? / wide(clock.tick)? - piece.first as f64;
+            (end, end - ticks, piece.first + piece.ticks == clock.ticks)
+        };
+        if !whole || far.abs() > ROUNDED {
+            return None;
+        }
+        let far_end = if rises { piece.ticks as f64 } else { 0.0 };
+        let top = corridor.speed(far_end);
+        let key = Key::new(
+            &ramp,
+            ticks,
+            corridor.tolerance,
+            corridor.phase,
+            [top, steps(self.limits.fastest())],
+        );
+        let kept = key?.kept()?;
+        Some((Size { ticks, steps: ramp.distance, rest, rises }, kept))
+    }
+
+    fn scaled_segment(&self, size: &Size, kept: &Kept, next: Next) -> Option<Fitted> {
+        let Next { at, last, first, done } = next;
+        let one = &kept.segments[at];
+        let (slow, fast) = (&kept.joints[at], &kept.joints[at + 1]);
+        let joints = if size.rises { [slow, fast] } else { [fast, slow] };
+        let piece = self.corridor.piece;
+        let end = if last { piece.ticks } else { size.tick(joints[1].time).round() as u64 };
+        let ticks = end.checked_sub(first).filter(|&ticks| ticks >= LEAST_TICKS)?;
+        let [from, to] = [first, end].map(|tick| size.own(tick as f64) - slow.time);
+        let [c1, c2, c3] = one.cubic;
+        let units = |x: f64| (x * 2_f64.powi(64)) as i128;
+        let rest = piece.start + piece.units - done;
+        let place = units(size.steps * (one.place + to * (c1 + to * (c2 + to * c3))));
+        let distance = if last {
+            rest
+        } else if size.rises {
+            place - (done - piece.start)
+        } else {
+            rest - place
+        };
+        let opens = piece.first + first == 0;
+        let ends = last && piece.first + piece.ticks == self.corridor.clock.ticks;
+        let at_once = self.corridor.steps_at_once();
+        let scale = size.steps / (size.ticks * size.ticks);
+        let doubled = scale * (4.0 * c2 + 6.0 * c3 * (from + to));
+        // As in `cubic`, the second try forbids A to change its sign.
+        [false, true].into_iter().find_map(|one_way| {
+            let wanted = Wanted {
+                ticks: ticks.into(),
+                distance: distance.clamp(0, rest.max(0)),
+                doubled_middle: units(if size.rises { doubled } else { -doubled }),
+                jerk: units(scale / size.ticks * 6.0 * c3),
+                one_way,
+                least: i128::from(opens && at_once),
+                first: opens,
+            };
+            let bend = wanted.within(self.limits);
+            let fitted = Fitted { ticks, bend, distance: wanted.distance };
+            let fitted = fitted.whole(self.corridor.backward, rest, ends)?;
+            let found = fitted.found(self.limits, opens, at_once)?;
+            let from_rest = if size.rises { done - piece.start } else { rest };
+            let laid = Laid::new(first, ticks, steps(from_rest), found);
+            let most = if matches!(one.samples, Samples::Standing(_)) { STANDING } else { 1.0 };
+            let level = self.corridor.level(size, one, &laid);
+            let level = level.max(self.corridor.beside(size, joints, &laid));
+            (level <= most).then_some(fitted)
+        })
+    }
+}
