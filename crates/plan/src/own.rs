@@ -11,7 +11,7 @@ use crate::sampled::Sampled;
 use carrystep_profile::Curve;
 
 /// The fit of a ramp up in its own units.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Kept {
     pub segments: Vec<KeptSegment>,
     /// The curve where a segment begins, and at the end of the last one.
@@ -19,7 +19,7 @@ pub(crate) struct Kept {
 }
 
 /// A segment of a kept fit: a cubic, and the curve that it follows.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct KeptSegment {
     /// The distance at which the cubic begins.
     pub place: f64,
@@ -29,7 +29,7 @@ pub(crate) struct KeptSegment {
 }
 
 /// Where the curve of a segment is judged, in order of time.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Samples {
     /// Samples that stand for many edges; a peak between them counts.
     Standing(Vec<Sample>),
@@ -76,6 +76,12 @@ impl Span {
             6.0 * rise - 3.0 * (slope + other) - 0.5 * (bent - other_bent),
         ];
         Self { from: from.place, length, time, bend: [from.bend, to.bend - from.bend] }
+    }
+
+    /// The same curve, later by an own time.
+    #[cfg(test)]
+    pub fn delay(&mut self, time: f64) {
+        self.time[0] += time;
     }
 
     /// The curve where it has come to `place`.

@@ -42,15 +42,19 @@ struct Next {
 impl<F: Real> Fitter<'_, F> {
     /// Returns the kept fit of a piece that is a whole ramp, in the integers of this move. `None` if
     /// there is none, or if a segment of it fails.
-    pub fn scaled(&self, mut done: i128) -> Option<Vec<Fitted>> {
+    pub fn scaled(&self, done: i128) -> Option<Vec<Fitted>> {
         let (size, kept) = self.kept()?;
+        self.scaled_from(&size, &kept, done)
+    }
+
+    fn scaled_from(&self, size: &Size, kept: &Kept, mut done: i128) -> Option<Vec<Fitted>> {
         let whole = kept.segments.len();
         let mut segments = Vec::with_capacity(whole);
         let mut first = 0;
         for index in 0..whole {
             let at = if size.rises { index } else { whole - 1 - index };
             let next = Next { at, last: index + 1 == whole, first, done };
-            let fitted = self.scaled_segment(&size, &kept, next)?;
+            let fitted = self.scaled_segment(size, kept, next)?;
             first += fitted.ticks;
             done += fitted.distance;
             segments.push(fitted);
@@ -136,5 +140,120 @@ impl<F: Real> Fitter<'_, F> {
             let level = level.max(self.corridor.beside(size, joints, &laid));
             (level <= most).then_some(fitted)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::corridor::{Corridor, JOINT};
+    use crate::demand::Clock;
+    use crate::limits::ExactLimits;
+    use crate::search::QUICK;
+    use crate::share::Piece;
+    use crate::units;
+    use carrystep_core::StartPhase;
+    use carrystep_profile::{Limits, Profile, rule};
+
+    const LIMITS: Limits<f64> =
+        Limits { start_speed: 0.0, speed: 15e4, acceleration: 5e5, jerk: f64::INFINITY };
+
+    /// Runs a test with the fitter of both ramps of a move of 20 000 steps at ticks of 1 us.
+    fn ramps(profile: &dyn Profile<f64>, test: impl Fn(&Fitter<'_, f64>, i128)) {
+        let tick = 1e-6;
+        let seconds = profile.duration();
+        let ticks = (seconds / tick).round() as u64;
+        let per_tick = |x: f64, power| units::toward_zero(x * tick.powi(power)).unwrap();
+        let speed = per_tick(LIMITS.speed, 1);
+        let limits = ExactLimits {
+            start_speed: per_tick(profile.speed(0.0), 1),
+            speed,
+            acceleration: per_tick(LIMITS.acceleration, 2),
+            jerk: None,
+            tolerance: speed / 1_000_000_000,
+        };
+        let up = (profile.breakpoints()[0] / tick).round() as u64;
+        for rises in [true, false] {
+            let first = if rises { 0 } else { ticks - up };
+            let place = |tick_: u64| {
+                units::nearest(profile.position((tick_ as f64 * tick).min(seconds))).unwrap()
+            };
+            let start = place(first);
+            let units = place(first + up) - start;
+            let corridor = Corridor {
+                profile,
+                clock: Clock { ticks, last: 1.0, seconds, tick },
+                phase: StartPhase::Half,
+                backward: false,
+                pulses: 20_000,
+                piece: Piece { first, ticks: up, start, units, by_pulse: false },
+                rises,
+                tolerance: 1.0,
+                bend: steps(limits.acceleration),
+                joint: JOINT,
+                longer: 1.0,
+            };
+            let fitter = Fitter { corridor, limits: &limits, rows: Vec::new(), search: QUICK };
+            test(&fitter, start);
+        }
+    }
+
+    fn moves() -> [Box<dyn Profile<f64>>; 2] {
+        [
+            Box::new(rule::sine(20_000.0, 0.6, &LIMITS).unwrap()),
+            Box::new(rule::logistic(20_000.0, 0.7, &LIMITS).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn both_ramps_of_an_ordinary_move_have_a_scaled_fit() {
+        for profile in moves() {
+            ramps(&*profile, |fitter, start| {
+                let segments = fitter.scaled(start).unwrap();
+                let ticks: u64 = segments.iter().map(|one| one.ticks).sum();
+                assert_eq!(ticks, fitter.corridor.piece.ticks);
+                assert!(segments.len() < 20, "{}", segments.len());
+            });
+        }
+    }
+
+    #[test]
+    fn a_kept_fit_that_is_not_that_of_the_curve_is_refused_wherever_it_is_wrong() {
+        for profile in moves() {
+            ramps(&*profile, |fitter, start| {
+                let (size, kept) = fitter.kept().unwrap();
+                assert!(fitter.scaled_from(&size, &kept, start).is_some());
+                let mut refused = 0;
+                for at in 0..kept.segments.len() {
+                    // Bent, away from the limit of acceleration, so far that the cubic is four tolerances off in its middle.
+                    let (from, to) = (kept.joints[at], kept.joints[at + 1]);
+                    let mut bent = (*kept).clone();
+                    bent.segments[at].cubic[1] -=
+                        16.0 * to.speed / size.ticks / (to.time - from.time).powi(2);
+                    refused += usize::from(fitter.scaled_from(&size, &bent, start).is_none());
+                }
+                // A segment with few edges may have none in its middle, and the limits of the
+                // integers straighten others.
+                assert!(2 * refused > kept.segments.len(), "{refused}");
+                // The samples are those of the curve two tolerances later. A segment may have no
+                // edge of its own, so those of all such segments are wrong together.
+                let later = 2.0 / size.ticks;
+                let mut at_edges = (*kept).clone();
+                for at in 0..kept.segments.len() {
+                    let mut moved = (*kept).clone();
+                    match (&mut moved.segments[at].samples, &mut at_edges.segments[at].samples) {
+                        (Samples::Standing(samples), _) => {
+                            samples.iter_mut().for_each(|sample| sample.time += later);
+                            assert!(fitter.scaled_from(&size, &moved, start).is_none(), "{at}");
+                        }
+                        (_, Samples::Edges(pulses)) => {
+                            pulses.iter_mut().for_each(|(_, span)| span.delay(later));
+                        }
+                        _ => {}
+                    }
+                }
+                assert!(fitter.scaled_from(&size, &at_edges, start).is_none());
+            });
+        }
     }
 }
