@@ -35,6 +35,8 @@ pub(crate) struct Fitter<'a, F> {
     pub limits: &'a ExactLimits,
     pub rows: Vec<Row>,
     pub search: Search,
+    /// Whether a kept fit may be used.
+    pub keeps: bool,
 }
 
 impl<F: Real> Fitter<'_, F> {
@@ -42,9 +44,8 @@ impl<F: Real> Fitter<'_, F> {
     /// A ramp whose shape is known is fitted once for all its sizes (`kept.rs`). `risen` are the
     /// segments of the ramp up, which a ramp down may reuse.
     pub fn segments(&mut self, done: i128, risen: &[Fitted]) -> Vec<Fitted> {
-        self.scaled(done)
-            .or_else(|| self.mirrored(done, risen))
-            .unwrap_or_else(|| self.greedy(done))
+        let kept = if self.keeps { self.scaled(done) } else { None };
+        kept.or_else(|| self.mirrored(done, risen)).unwrap_or_else(|| self.greedy(done))
     }
 
     /// Fits one segment after the other, each as long as possible.

@@ -162,7 +162,8 @@ impl Key {
             joint: JOINT,
             longer,
         };
-        let mut fitter = Fitter { corridor, limits: &limits, rows: Vec::new(), search: THOROUGH };
+        let mut fitter =
+            Fitter { corridor, limits: &limits, rows: Vec::new(), search: THOROUGH, keeps: false };
         let mut fitted = fitter.greedy(0);
         for joint in OTHER_JOINTS {
             // The last segment was divided, because it could not quite reach the end.

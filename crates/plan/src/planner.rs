@@ -26,7 +26,7 @@ use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
-use carrystep_files::{Axis, Move, MoveFile};
+use carrystep_files::{Axis, Move, MoveFile, PathKind};
 use carrystep_profile::{Limits, Profile, Real, SharedProfile};
 
 /// Plans all moves of a file, with profiles computed in floats of type `F`.
@@ -261,6 +261,10 @@ impl<'a, F: Real> Planner<'a, F> {
         };
         let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
+        // Along a line, the distances of the ramps depend on its direction. Hardly any two lines
+        // share a kept fit, and making one takes longer than a fit of this move alone.
+        let Move { path, steps: all, .. } = &self.file.moves[place.index];
+        let keeps = *path == PathKind::Free || all.iter().filter(|&&steps| steps != 0).count() < 2;
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
             // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
@@ -289,7 +293,8 @@ impl<'a, F: Real> Planner<'a, F> {
                     longer: 1.0,
                 };
                 let held = std::mem::take(&mut rows);
-                let mut fitter = Fitter { corridor, limits: &limits, rows: held, search: QUICK };
+                let (limits, search) = (&limits, QUICK);
+                let mut fitter = Fitter { corridor, limits, rows: held, search, keeps };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
                 writer.fitted(piece, &segments, last)?;

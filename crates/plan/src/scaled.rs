@@ -193,7 +193,8 @@ mod tests {
                 joint: JOINT,
                 longer: 1.0,
             };
-            let fitter = Fitter { corridor, limits: &limits, rows: Vec::new(), search: QUICK };
+            let fitter =
+                Fitter { corridor, limits: &limits, rows: Vec::new(), search: QUICK, keeps: true };
             test(&fitter, start);
         }
     }
