@@ -113,7 +113,7 @@ impl<F: Real> Fitter<'_, F> {
 
     /// The longest segment that keeps the tolerance, within a few percent of its length.
     fn longest(&mut self, first: u64, done: i128, guess: f64) -> Fitted {
-        let Search { aim, enough: enough_level, .. } = self.search;
+        let Search { aim, enough: enough_level, to_end, .. } = self.search;
         let left = self.corridor.piece.ticks - first;
         let most = left.min(u32::MAX.into());
         let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
@@ -133,7 +133,8 @@ impl<F: Real> Fitter<'_, F> {
             let known = good.map_or(0, |fitted| fitted.ticks);
             let enough = known == most || (known == ticks && level >= enough_level);
             let close = bad - known <= known / self.search.close + 1;
-            if good.is_some() && (enough || attempt >= TRIES || (close && bad <= most)) {
+            if good.is_some() && (enough || attempt >= TRIES || (close && (bad <= most || !to_end)))
+            {
                 break;
             }
             let next = if long[1].1.is_finite() {
@@ -142,8 +143,7 @@ impl<F: Real> Fitter<'_, F> {
                 longer(ticks as f64, level, aim)
             };
             ticks = match next as u64 {
-                // Nothing is known against the rest of the piece. A stub of it would cost a segment.
-                _ if close => most,
+                _ if close && to_end => most,
                 next if next > known && next < bad => next,
                 next if next >= bad && bad > most => most,
                 _ => known.midpoint(bad),

@@ -62,7 +62,7 @@ const SLOW: f64 = 8.0;
 
 /// A kept fit is searched more thoroughly than one of a single move: it serves many, and has a part
 /// of the tolerance less.
-const THOROUGH: Search = Search { full: 0.984, aim: 0.98, enough: 0.972, close: 400 };
+const THOROUGH: Search = Search { full: 0.984, aim: 0.98, enough: 0.972, close: 400, to_end: true };
 
 /// What else the fit may leave at a joint, as a fraction of the tolerance, if that saves a segment.
 const OTHER_JOINTS: [f64; 2] = [0.9, 0.6];

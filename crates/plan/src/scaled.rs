@@ -22,6 +22,10 @@ const LEAST_TICKS: u64 = 32;
 /// each edge is a sample, the segment may use all of it.
 const STANDING: f64 = 0.98;
 
+/// The least tolerance, ticks. With a smaller one, most scaled fits fail at a breakpoint that was
+/// rounded to a tick, and would have been made in vain.
+const LEAST_TOLERANCE: f64 = 0.02;
+
 /// How far the end of a ramp may be from the end of its piece, ticks: a breakpoint is rounded to the
 /// nearest tick.
 const ROUNDED: f64 = 0.5 + 1e-6;
@@ -77,7 +81,7 @@ impl<F: Real> Fitter<'_, F> {
             let end = wide(clock.seconds)? / wide(clock.tick)? - piece.first as f64;
             (end, end - ticks, piece.first + piece.ticks == clock.ticks)
         };
-        if !whole || far.abs() > ROUNDED {
+        if !whole || far.abs() > ROUNDED || corridor.tolerance < LEAST_TOLERANCE {
             return None;
         }
         let far_end = if rises { piece.ticks as f64 } else { 0.0 };

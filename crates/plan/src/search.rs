@@ -17,10 +17,14 @@ pub(crate) struct Search {
     /// A segment also counts as long enough if one that is longer by its length divided by this
     /// number is too long.
     pub close: u64,
+    /// Whether the whole rest of a piece is tried before a length that is close to it. A stub that
+    /// is left costs a segment.
+    pub to_end: bool,
 }
 
 /// The search in a piece of a single move.
-pub(crate) const QUICK: Search = Search { full: 0.97, aim: 0.95, enough: 0.90, close: 40 };
+pub(crate) const QUICK: Search =
+    Search { full: 0.97, aim: 0.95, enough: 0.90, close: 40, to_end: false };
 
 /// Estimates the longest good length from the two shortest bad ones. The error is taken to grow
 /// with the power of the length that fits both, or with the fourth power if there is only one.
