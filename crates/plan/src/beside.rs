@@ -103,7 +103,7 @@ impl<F: Real> Corridor<'_, F> {
             ]
         };
         match &own.samples {
-            Samples::Standing(samples) => peaks(samples.iter().map(sides)),
+            Samples::Standing(samples) => peaks(&samples.iter().map(sides)),
             Samples::Edges(pulses) => {
                 let inside =
                     |sample: &Sample| (0.0..=laid.ticks).contains(&(origin + pace * sample.time));
@@ -152,7 +152,8 @@ impl Joint {
     }
 }
 
-fn peaks(sides: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
+/// The greater [`peak`] of two rows of values.
+fn peaks(sides: &(impl Iterator<Item = [f64; 2]> + Clone)) -> f64 {
     let side = |k: usize| peak(sides.clone().map(move |side| side[k]));
     side(0).max(side(1))
 }

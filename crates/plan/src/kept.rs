@@ -22,7 +22,7 @@ use carrystep_profile::{OwnRamp, Shape};
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// The greatest number of fits that a process keeps. A fit of an ordinary tolerance has 20 kB.
+/// The greatest number of fits that a process keeps. A fit of an ordinary tolerance has 10 kB.
 const MOST_KEPT: usize = 1024;
 
 /// Bits of the mantissa by which tolerances are told apart: 32 steps in each octave, so that a fit
