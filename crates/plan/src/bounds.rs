@@ -4,7 +4,7 @@
 //! `HELD` may be tuned: the exact check refuses a plan that exceeds a limit between these
 //! positions.
 
-use crate::corridor::steps;
+use crate::cubic::steps;
 use crate::exchange::Row;
 use crate::limits::ExactLimits;
 

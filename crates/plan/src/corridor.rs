@@ -7,23 +7,27 @@
 //! them; they are closer together near the ends, like the zeros of Chebyshev's polynomials. The
 //! constants below may be tuned; `judge` in `fit.rs` decides on the integers.
 
+use crate::cubic::{basis, chord, steps, wide};
 use crate::demand::{Clock, float};
 use crate::exchange::Row;
+use crate::sampled::spread;
 use crate::share::Piece;
 use carrystep_core::StartPhase;
-use carrystep_core::fixed::ONE_STEP;
 use carrystep_profile::{Profile, Real};
 
 /// The number of sample intervals of a stretch, and the number of edges up to which every edge is a
 /// sample of its own.
-const SAMPLES: u32 = 16;
+pub(crate) const SAMPLES: u32 = 16;
 
 /// How close to the profile, in steps, a curve is kept between edges that are far apart, so that it
 /// does not miss the edges that follow.
 const BETWEEN: f64 = 0.2;
 
 /// The fraction of the tolerance below which the deviation of a tick's chord is ignored.
-const UNSEEN: f64 = 0.05;
+pub(crate) const UNSEEN: f64 = 0.05;
+
+/// The part of the tolerance that a fit for ramps of many sizes uses at an edge of its own sample.
+const SPARED: f64 = 0.97;
 
 /// How close to the end of the move, in steps, a curve has to come before the integers land
 /// exactly.
@@ -49,6 +53,11 @@ pub(crate) struct Corridor<'a, F> {
     pub tolerance: f64,
     /// The acceleration limit, steps per tick^2.
     pub bend: f64,
+    /// The fraction of the tolerance that a stretch may leave at its end, usually [`JOINT`].
+    pub joint: f64,
+    /// The factor by which the ramp may be longer than this one, in steps: each of its edges then
+    /// lies between its place and the place divided by this factor. 1 for the ramp of a move.
+    pub longer: f64,
 }
 
 /// A run of ticks within a piece, and the position of the axis when the run begins.
@@ -69,31 +78,6 @@ pub(crate) struct Samples {
     /// Number of leading rows that stand for many edges, two rows for each sample; 0 if every edge
     /// has rows of its own.
     pub standing: usize,
-}
-
-/// Converts units of 2^-64 step to steps.
-pub(crate) fn steps(units: i128) -> f64 {
-    units as f64 * 2_f64.powi(-64)
-}
-
-/// The distances that V n, A n^2 and J n^3 contribute after `t` of `n` ticks, each per unit of its
-/// unknown.
-pub(crate) fn basis(t: f64, n: f64) -> [f64; 3] {
-    let s = t / n;
-    let pairs = s * (t - 1.0) / (2.0 * n);
-    [s, pairs, pairs * (t - 2.0) / (3.0 * n)]
-}
-
-/// The same on the chord of the tick that contains `t`. Edges lie on this chord, because the
-/// gateware interpolates linearly within a tick.
-fn chord(t: f64, n: f64) -> [f64; 3] {
-    let part = t - t.floor();
-    let [from, to] = [t.floor(), t.floor() + 1.0].map(|t| basis(t, n));
-    std::array::from_fn(|k| from[k] + part * (to[k] - from[k]))
-}
-
-fn wide<F: Real>(x: F) -> f64 {
-    x.to_f64().unwrap_or(f64::NAN)
 }
 
 impl<F: Real> Corridor<'_, F> {
@@ -135,18 +119,11 @@ impl<F: Real> Corridor<'_, F> {
         let here = |t: f64| steps(done) + self.ahead(done, begin + t);
         let before = self.pulses_until(here(0.0));
         let until = self.pulses_until(here(n));
-        let edges = until.saturating_sub(before);
-        if edges > u64::from(SAMPLES) {
-            // Where edges are far apart, there are none before the first and after the last one.
-            let sparse = |t: f64| self.speed(begin + t) * n < 64.0;
-            let low = if sparse(0.0) { self.edge(stretch, before + 1).0 } else { 0.0 };
-            let high = if sparse(n) { self.edge(stretch, until).0 } else { n };
-            let last = f64::from(SAMPLES);
+        if let Some([low, high]) = self.span(stretch, before, until) {
             let quarters = [1, 2, 3, 4].map(|k| 2 * (k * SAMPLES as usize / 4));
-            for k in 0..=SAMPLES {
-                let part = (1.0 - (std::f64::consts::PI * f64::from(k) / last).cos()) / 2.0;
-                let t = low + (high - low) * part;
-                self.both_sides(rows, stretch, t, self.ahead(done, begin + t), 0.0);
+            for k in 0..=SAMPLES as usize {
+                let t = low + (high - low) * spread(k);
+                self.both_sides(rows, stretch, (t, self.ahead(done, begin + t)), 0.0, true);
             }
             self.joint(rows, stretch, self.pulses);
             self.neighbours(rows, stretch, before, until);
@@ -154,27 +131,26 @@ impl<F: Real> Corridor<'_, F> {
         }
         for quarter in [0.25, 0.5, 0.75] {
             let t = n * quarter;
-            self.both_sides(rows, stretch, t, self.ahead(done, begin + t), BETWEEN);
+            self.both_sides(rows, stretch, (t, self.ahead(done, begin + t)), BETWEEN, false);
         }
         self.joint(rows, stretch, until);
         self.neighbours(rows, stretch, before, until);
-        for pulse in before + 1..=until {
-            let (t, ahead) = self.edge(stretch, pulse);
-            self.both_sides(rows, stretch, t, ahead, 0.0);
+        for (t, ahead) in self.edges(stretch, before, until) {
+            self.both_sides(rows, stretch, (t, ahead), 0.0, false);
         }
         Samples { start: alternating([0, 2, 4, 6]), standing: 0 }
     }
 
     /// Bounds the error at the end of a stretch, because the next stretch starts with it. The bound
-    /// is the distance that the axis travels in the fraction [`JOINT`] of the tolerance, at the
+    /// is the distance that the axis travels in the fraction `joint` of the tolerance, at the
     /// speed there or at the next edge, whichever is greater. At rest it is [`AT_REST`] steps.
     fn joint(&self, rows: &mut Vec<Row>, stretch: Stretch, until: u64) {
         let Stretch { first, ticks, done } = stretch;
         let n = ticks as f64;
         let end = first as f64 + n;
-        let next = if until < self.pulses { self.edge(stretch, until + 1).0 } else { n };
+        let next = if until < self.pulses { self.earlier(stretch, until + 1).0.max(n) } else { n };
         let speed = self.speed(end).max(self.speed(first as f64 + next));
-        let width = if speed > 0.0 { speed * self.tolerance * JOINT } else { AT_REST };
+        let width = if speed > 0.0 { speed * self.tolerance * self.joint } else { AT_REST };
         let ahead = self.ahead(done, end);
         for sign in [-1.0, 1.0] {
             rows.push(Row {
@@ -206,21 +182,6 @@ impl<F: Real> Corridor<'_, F> {
         }
     }
 
-    /// Number of pulses that are due up to a position.
-    fn pulses_until(&self, position: f64) -> u64 {
-        let offset = self.phase.pulse_half_steps(1, self.backward) as f64 / 2.0;
-        ((position - offset + 1.0).floor().max(0.0) as u64).min(self.pulses)
-    }
-
-    /// The time at which a pulse is due, in ticks of the stretch, and its distance from `done` in
-    /// steps.
-    fn edge(&self, Stretch { first, done, .. }: Stretch, pulse: u64) -> (f64, f64) {
-        let half_steps = self.phase.pulse_half_steps(pulse, self.backward);
-        let due = self.profile.crossing(F::from(half_steps as f64 / 2.0).unwrap_or_else(F::nan));
-        let t = wide((due - self.clock.at(self.piece.first + first)) / self.clock.tick);
-        (t, steps(i128::from(half_steps) * (ONE_STEP / 2) - done))
-    }
-
     /// How far the chord of the profile's tick lies above the profile at time `t`, steps.
     fn sag(&self, stretch: Stretch, t: f64) -> f64 {
         let part = t - t.floor();
@@ -230,11 +191,24 @@ impl<F: Real> Corridor<'_, F> {
     }
 
     /// Appends the two rows of one sample: the curve passes `ahead` within the tolerance of time
-    /// `t`, or, if the profile is slow, within `least` steps at `t`.
-    fn both_sides(&self, rows: &mut Vec<Row>, stretch: Stretch, t: f64, ahead: f64, least: f64) {
+    /// `t`, or, if the profile is slow, within `least` steps at `t`. Whether the sample is `standing`
+    /// for many edges.
+    fn both_sides(
+        &self,
+        rows: &mut Vec<Row>,
+        stretch: Stretch,
+        (t, ahead): (f64, f64),
+        least: f64,
+        standing: bool,
+    ) {
         let n = stretch.ticks as f64;
-        let width = self.speed(stretch.first as f64 + t) * self.tolerance;
-        let (width, late) = if width > least { (width, self.tolerance) } else { (least, 0.0) };
+        let speed = self.speed(stretch.first as f64 + t);
+        // Between edges that are far apart, two segments may meet at different speeds. A ramp whose
+        // joint is rounded to a tick then has other errors than this one.
+        let part = if self.longer > 1.0 && least == 0.0 && !standing { SPARED } else { 1.0 };
+        let tolerance = self.tolerance * part;
+        let width = speed * tolerance;
+        let (width, late) = if width > least { (width, tolerance) } else { (least, 0.0) };
         // An edge at rest is the first or the last of the move. Its time has no bound, so its rows
         // get the weight 0.
         let weight = if width > 0.0 { width.recip() } else { 0.0 };
@@ -257,22 +231,6 @@ impl<F: Real> Corridor<'_, F> {
             most: (ahead + below) * weight - slack,
         });
     }
-}
-
-/// The greatest of evenly spaced values, and of the maxima of the parabolas through three
-/// neighbouring values.
-pub(crate) fn peak(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut greatest, mut held) = (0.0_f64, [f64::NAN; 2]);
-    for next in values {
-        let [before, here] = held;
-        let bend = before - 2.0 * here + next;
-        if here >= before && here > next {
-            greatest = greatest.max(here - (next - before).powi(2) / (8.0 * bend));
-        }
-        greatest = greatest.max(next);
-        held = [here, next];
-    }
-    greatest
 }
 
 /// The indices of the rows below, above, below and above four samples, each given by its first row.

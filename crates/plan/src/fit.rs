@@ -8,29 +8,18 @@
 //! judged. The constants below may be tuned: they affect the number of segments and the planning
 //! time, not the tolerance.
 
-use crate::bend::{Bend, Wanted, jerk_distance};
+use crate::bend::{Bend, Wanted};
 use crate::bounds::bounds;
-use crate::check::{speeds, start_speed};
-use crate::corridor::{Corridor, JOINT, Samples, Stretch, basis, peak, steps};
+use crate::corridor::{Corridor, Samples, Stretch};
+use crate::cubic::{basis, peak, steps};
 use crate::exchange::{Row, solve};
+use crate::fitted::Fitted;
 use crate::limits::ExactLimits;
-use carrystep_core::Segment;
+use crate::search::{Search, longer, shorter};
 use carrystep_profile::Real;
-
-/// The greatest fraction of the tolerance that a segment may use.
-const FULL: f64 = 0.97;
-
-/// The fraction of the tolerance that the next try aims at.
-const AIM: f64 = 0.95;
-
-/// The fraction of the tolerance from which on a segment counts as long enough.
-const ENOUGH: f64 = 0.90;
 
 /// Tries for one segment after which the best one so far is taken.
 const TRIES: usize = 12;
-
-/// The least factor by which the next try is longer, after one that used little of the tolerance.
-const LEAP: f64 = 1.25;
 
 /// The least length of the first try for the segment after a short one, ticks.
 const LEAST_GUESS: f64 = 64.0;
@@ -39,33 +28,28 @@ const LEAST_GUESS: f64 = 64.0;
 /// rest are divided evenly instead.
 const STUB: u64 = 4;
 
-/// One segment of a fit, in the direction of travel.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fitted {
-    pub ticks: u64,
-    pub bend: Bend,
-    /// Distance of the segment, 2^-64 step. For every segment but the last of a move it is reached
-    /// exactly by one value of V.
-    pub distance: i128,
-}
-
 /// Fits one piece of a curve.
 #[derive(Debug)]
 pub(crate) struct Fitter<'a, F> {
     pub corridor: Corridor<'a, F>,
     pub limits: &'a ExactLimits,
     pub rows: Vec<Row>,
+    pub search: Search,
+    /// Whether a kept fit may be used.
+    pub keeps: bool,
 }
 
 impl<F: Real> Fitter<'_, F> {
     /// Returns the segments of the piece for an axis that is at `done` when the piece begins.
-    /// `risen` are the segments of the ramp up, which a ramp down may reuse.
+    /// A ramp whose shape is known is fitted once for all its sizes (`kept.rs`). `risen` are the
+    /// segments of the ramp up, which a ramp down may reuse.
     pub fn segments(&mut self, done: i128, risen: &[Fitted]) -> Vec<Fitted> {
-        self.mirrored(done, risen).unwrap_or_else(|| self.greedy(done))
+        let kept = if self.keeps { self.scaled(done) } else { None };
+        kept.or_else(|| self.mirrored(done, risen)).unwrap_or_else(|| self.greedy(done))
     }
 
     /// Fits one segment after the other, each as long as possible.
-    fn greedy(&mut self, mut done: i128) -> Vec<Fitted> {
+    pub fn greedy(&mut self, mut done: i128) -> Vec<Fitted> {
         let ticks = self.corridor.piece.ticks;
         let mut segments: Vec<Fitted> = Vec::new();
         let mut guess = ticks as f64;
@@ -110,7 +94,11 @@ impl<F: Real> Fitter<'_, F> {
             } else {
                 (reversed, distance)
             };
-            let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
+            let fitted = (Fitted { ticks, bend, distance }).whole(
+                self.corridor.backward,
+                end - done,
+                ends,
+            )?;
             self.rows.clear();
             let samples = self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);
             if self.judge(&fitted, (self.rows.len(), samples.standing), false)? > 1.0 {
@@ -125,6 +113,7 @@ impl<F: Real> Fitter<'_, F> {
 
     /// The longest segment that keeps the tolerance, within a few percent of its length.
     fn longest(&mut self, first: u64, done: i128, guess: f64) -> Fitted {
+        let Search { aim, enough: enough_level, to_end, .. } = self.search;
         let left = self.corridor.piece.ticks - first;
         let most = left.min(u32::MAX.into());
         let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
@@ -137,18 +126,24 @@ impl<F: Real> Fitter<'_, F> {
             }
             let trial = self.best(Stretch { first, ticks, done });
             let level = trial.map_or(f64::INFINITY, |(_, level)| level);
-            match trial.filter(|_| level <= FULL) {
+            match trial.filter(|_| level <= self.search.full) {
                 Some((fitted, _)) => good = Some(fitted),
                 None => (bad, long) = (ticks, [long[1], (ticks as f64, level)]),
             }
             let known = good.map_or(0, |fitted| fitted.ticks);
-            let enough = known == most || (known == ticks && level >= ENOUGH);
-            if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 40 + 1) {
+            let enough = known == most || (known == ticks && level >= enough_level);
+            let close = bad - known <= known / self.search.close + 1;
+            if good.is_some() && (enough || attempt >= TRIES || (close && (bad <= most || !to_end)))
+            {
                 break;
             }
-            let next =
-                if long[1].1.is_finite() { shorter(long) } else { longer(ticks as f64, level) };
+            let next = if long[1].1.is_finite() {
+                shorter(long, aim)
+            } else {
+                longer(ticks as f64, level, aim)
+            };
             ticks = match next as u64 {
+                _ if close && to_end => most,
                 next if next > known && next < bad => next,
                 next if next >= bad && bad > most => most,
                 _ => known.midpoint(bad),
@@ -166,7 +161,7 @@ impl<F: Real> Fitter<'_, F> {
             return longest;
         }
         let half = self.best(Stretch { first, ticks: left / 2, done });
-        half.filter(|&(_, level)| level <= FULL).map_or(longest, |(fitted, _)| fitted)
+        half.filter(|&(_, level)| level <= self.search.full).map_or(longest, |(fitted, _)| fitted)
     }
 
     /// Returns the best cubic of a stretch, and the fraction of the tolerance that its integers
@@ -180,7 +175,10 @@ impl<F: Real> Fitter<'_, F> {
             return self.cubic(stretch, false);
         }
         let closed = self.cubic(stretch, true);
-        if closed.is_some_and(|(_, level)| level <= FULL)
+        // A kept fit also serves ramps down, which begin exactly where it ends.
+        let kept = self.corridor.longer > 1.0;
+        if kept
+            || closed.is_some_and(|(_, level)| level <= self.search.full)
             || piece.first + piece.ticks == self.corridor.clock.ticks
         {
             return closed;
@@ -217,6 +215,14 @@ impl<F: Real> Fitter<'_, F> {
             });
         }
         bounds(&mut self.rows, n, self.limits, [opens, ends], scale);
+        if opens && self.corridor.longer > 1.0 && self.limits.start_speed == 0 {
+            // A fit for ticks of any length starts at rest, and not half a tick from it.
+            let mut hold = |at: [f64; 3]| {
+                self.rows.push(Row { at: at.map(|b| b * scale), error: 0.0, most: 0.0 });
+            };
+            hold([-1.0, 0.5 / n, -1.0 / (3.0 * n * n)]);
+            hold([0.0, -1.0, 1.0 / n]);
+        }
         let [v, a, j] = solve(&self.rows, start)?.coefficients;
         let [by_v, by_a, by_j] = basis(n, n);
         let units = |x: f64| (x * 2_f64.powi(64)) as i128;
@@ -233,27 +239,11 @@ impl<F: Real> Fitter<'_, F> {
                 least: i128::from(opens && self.corridor.steps_at_once()),
                 first: opens,
             };
-            let fitted = self.whole(
-                Fitted { ticks, bend: wanted.within(self.limits), distance },
-                rest,
-                ends,
-            )?;
+            let fitted = Fitted { ticks, bend: wanted.within(self.limits), distance };
+            let fitted = fitted.whole(self.corridor.backward, rest, ends)?;
             let level = self.judge(&fitted, (samples, standing), opens)?;
             Some((fitted, level))
         })
-    }
-
-    /// Rounds the distance to one that a whole V reaches. The last segment of a move keeps its
-    /// distance; `Writer::lay` divides it later.
-    fn whole(&self, fitted: Fitted, rest: i128, ends: bool) -> Option<Fitted> {
-        let Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
-        let n = i128::from(ticks);
-        let bent = n * (n - 1) / 2 * a + jerk_distance(n, j)?;
-        let level = distance - bent;
-        // P must never be behind its ideal, in either direction of travel.
-        let (down, up) = (level.div_euclid(n), -(-level).div_euclid(n));
-        let v = if self.corridor.backward || n * up + bent > rest { down } else { up };
-        Some(if ends { fitted } else { Fitted { distance: n * v + bent, ..fitted } })
     }
 
     /// Returns the level of the integers as a fraction of the tolerance, or `None` if they break a
@@ -264,27 +254,9 @@ impl<F: Real> Fitter<'_, F> {
         (samples, standing): (usize, usize),
         opens: bool,
     ) -> Option<f64> {
-        let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
-        let n = i128::from(ticks);
-        let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
-        let register = |x: i128| i64::try_from(x).ok();
-        let (v, a64, j64) = (register(level.div_euclid(n))?, register(a)?, register(j)?);
-        let segment = Segment { ticks: u32::try_from(ticks).ok()?, v, a: a64, j: j64, last: false };
-        let fastest = self.limits.fastest();
-        if !speeds(&segment).all(|v| (0..=fastest).contains(&v)) {
-            return None;
-        }
-        if opens && self.corridor.steps_at_once() && v == 0 {
-            return None;
-        }
-        if opens
-            && start_speed(&segment, false, self.limits)
-                > self.limits.start_speed + self.limits.tolerance
-        {
-            return None;
-        }
-        let length = ticks as f64;
-        let found = [steps(level), steps(a) * length * length, steps(j) * length * length * length];
+        let found = fitted.found(self.limits, opens, self.corridor.steps_at_once())?;
+        let length = fitted.ticks as f64;
+        let found = [found[0], found[1] * length * length, found[2] * length * length * length];
         let error = |row: &Row| {
             row.at[0] * found[0] + row.at[1] * found[1] + row.at[2] * found[2] - row.most
         };
@@ -303,20 +275,4 @@ impl<F: Real> Fitter<'_, F> {
         let distance = if ends { rest } else { ideal.min(rest).clamp(0, self.limits.speed) };
         Fitted { ticks: 1, bend: Bend::default(), distance }
     }
-}
-
-/// Estimates the longest good length from the two shortest bad ones. The error is taken to grow
-/// with the power of the length that fits both, or with the fourth power if there is only one.
-fn shorter([(longer, worse), (length, level)]: [(f64, f64); 2]) -> f64 {
-    let power = (worse / level).ln() / (longer / length).ln();
-    let power = if power.is_finite() { power.clamp(2.0, 16.0) } else { 4.0 };
-    length * (AIM / level).powf(power.recip()).max(0.25)
-}
-
-/// Estimates the longest good length from one good length, or from one that has no solution. A
-/// small error says little about the length, because it may be the error that the segment starts
-/// with.
-fn longer(length: f64, level: f64) -> f64 {
-    let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
-    length * if level < JOINT { factor.max(LEAP) } else { factor }
 }

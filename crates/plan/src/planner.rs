@@ -7,7 +7,8 @@
 
 use crate::asked::Asked;
 use crate::check::{Duty, check};
-use crate::corridor::{self, Corridor};
+use crate::corridor::{Corridor, JOINT};
+use crate::cubic;
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
 use crate::edges;
@@ -18,6 +19,7 @@ use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
 use crate::run::Writer;
+use crate::search::QUICK;
 use crate::share::{Breakpoints, Piece, share};
 use crate::slow::{self, Pulses};
 use crate::units;
@@ -25,7 +27,7 @@ use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
-use carrystep_files::{Axis, Machine, Move, MoveFile};
+use carrystep_files::{Axis, Machine, Move, MoveFile, PathKind};
 use carrystep_profile::{Limits, Profile, Real, SharedProfile};
 
 /// Plans all moves of a file, with profiles computed in floats of type `F`.
@@ -247,6 +249,10 @@ impl<F: Real> Planner<F> {
         };
         let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
+        // Along a line, the distances of the ramps depend on its direction. Hardly any two lines
+        // share a kept fit, and making one takes longer than a fit of this move alone.
+        let Move { path, steps: all, .. } = place.asked.moved;
+        let keeps = *path == PathKind::Free || all.iter().filter(|&&steps| steps != 0).count() < 2;
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
             // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
@@ -260,7 +266,7 @@ impl<F: Real> Planner<F> {
                 let [begin, end] = [piece.first, piece.first + piece.ticks]
                     .map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;
-                let bend = corridor::steps(limits.acceleration);
+                let bend = cubic::steps(limits.acceleration);
                 let corridor = Corridor {
                     profile,
                     clock: *clock,
@@ -271,9 +277,12 @@ impl<F: Real> Planner<F> {
                     rises,
                     tolerance,
                     bend,
+                    joint: JOINT,
+                    longer: 1.0,
                 };
-                let mut fitter =
-                    Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
+                let held = std::mem::take(&mut rows);
+                let (limits, search) = (&limits, QUICK);
+                let mut fitter = Fitter { corridor, limits, rows: held, search, keeps };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
                 writer.fitted(piece, &segments, last)?;

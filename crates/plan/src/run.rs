@@ -8,7 +8,7 @@ use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::check::speeds;
 use crate::demand::Clock;
 use crate::error::Broken;
-use crate::fit::Fitted;
+use crate::fitted::Fitted;
 use crate::landing;
 use crate::limits::{ExactLimits, MOST_SEGMENTS};
 use crate::share::{self, Piece};

@@ -1,5 +1,6 @@
 //! The figures of a curve that a user needs to judge it.
 
+use crate::own::OwnRamp;
 use crate::profile::{Profile, Real, real};
 
 /// A profile that can give its extremes.
@@ -13,6 +14,11 @@ pub trait Curve<F: Real>: Profile<F> {
     /// Greatest absolute jerk inside the pieces, steps/s^3. Where the acceleration jumps, the jerk
     /// has an impulse; it is not counted here but in [`CurveFigures::acceleration_jump`].
     fn peak_jerk(&self) -> F;
+
+    /// A ramp up by its shape, if only its units distinguish it from others of that shape.
+    fn own_ramp(&self) -> Option<OwnRamp> {
+        None
+    }
 
     /// Time from position `x` to `x + 1` (both in 0..=distance), seconds: the delay c_n of the
     /// literature.

@@ -9,6 +9,7 @@ use crate::alone;
 use crate::bad_ramp::{BadRamp, in_range, positive, wide};
 use crate::curve::Curve;
 use crate::numeric::{ln_exp_m1, softplus};
+use crate::own::{OwnRamp, Shape};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
 use crate::refusal::{LimitRefusal, Limits};
@@ -103,6 +104,16 @@ impl<F: Real> LogisticRamp<F> {
     /// A ramp from the fraction `start` of the asymptote to [`SHORTFALL`] below it.
     pub(crate) fn between(asymptote: F, steepness: F, start: F) -> Self {
         Self::cut(asymptote, steepness, -start.ln(), real(SHORTFALL))
+    }
+
+    /// The ramp that starts at e^(-ln_start) of its asymptote, ends [`SHORTFALL`] below it, and
+    /// travels `distance` steps in `duration` seconds.
+    pub(crate) fn shaped(ln_start: F, duration: F, distance: F) -> Self {
+        let one = F::one();
+        let unit = Self::cut(one, one, ln_start, real(SHORTFALL));
+        let steepness = unit.duration / duration;
+        let asymptote = distance * steepness / unit.distance;
+        Self::cut(asymptote, steepness, ln_start, real(SHORTFALL))
     }
 
     /// The asymptote w, which is approached but never reached, steps/s.
@@ -238,6 +249,13 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
 }
 
 impl<F: Real> Curve<F> for LogisticRamp<F> {
+    /// Of the ramps that end [`SHORTFALL`] below their asymptote.
+    fn own_ramp(&self) -> Option<OwnRamp> {
+        let usual = self.end == self.asymptote * (F::one() - real::<F>(SHORTFALL));
+        let shape = Shape::Logistic { start: self.ln_start.to_f64()?.to_bits() };
+        OwnRamp::of(shape, self.duration, self.distance).filter(|_| usual)
+    }
+
     fn top_speed(&self) -> F {
         self.end
     }

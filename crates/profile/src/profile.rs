@@ -2,6 +2,7 @@
 //!
 //! A new profile implements [`Profile`], and [`crate::Curve`] for its figures.
 
+use crate::own::OwnRamp;
 use num_traits::Float;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -57,6 +58,12 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     fn passing(&self, x: F) -> [F; 3] {
         let t = self.crossing(x);
         [t, self.speed(t), self.acceleration(t)]
+    }
+
+    /// The ramp up and the ramp down (as if it went up) of a whole move, if they are known by their
+    /// shape; they begin and end where the move does.
+    fn own_ramps(&self) -> Option<[OwnRamp; 2]> {
+        None
     }
 
     /// Times inside the move at which the formula changes, seconds, ascending.

@@ -1,6 +1,7 @@
 //! A whole move made of two ramps: a ramp up, a cruise and a ramp down.
 
 use crate::curve::{Curve, is_time};
+use crate::own::OwnRamp;
 use crate::profile::{Profile, Real, real};
 
 /// A move that ramps up, cruises at the speed that the ramp has reached, and ramps down along a
@@ -162,6 +163,10 @@ impl<F: Real, R: Curve<F>> Profile<F> for RampedMove<F, R> {
         } else {
             self.duration - (self.down.duration() + before / self.top)
         }
+    }
+
+    fn own_ramps(&self) -> Option<[OwnRamp; 2]> {
+        Some([self.up.own_ramp()?, self.down.own_ramp()?])
     }
 
     fn breakpoints(&self) -> &[F] {

@@ -8,6 +8,7 @@ use crate::alone;
 use crate::bad_ramp::{BadRamp, positive};
 use crate::curve::Curve;
 use crate::numeric::x_minus_sin;
+use crate::own::{OwnRamp, Shape};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
 use crate::refusal::{LimitRefusal, Limits};
@@ -157,6 +158,10 @@ impl<F: Real> Profile<F> for SineRamp<F> {
 }
 
 impl<F: Real> Curve<F> for SineRamp<F> {
+    fn own_ramp(&self) -> Option<OwnRamp> {
+        OwnRamp::of(Shape::Sine, self.duration, self.distance())
+    }
+
     fn top_speed(&self) -> F {
         self.top
     }
