@@ -10,7 +10,6 @@
 use crate::cubic::{basis, chord, steps, wide};
 use crate::demand::{Clock, float};
 use crate::exchange::Row;
-use crate::sampled::spread;
 use crate::share::Piece;
 use carrystep_core::StartPhase;
 use carrystep_profile::{Profile, Real};
@@ -236,4 +235,9 @@ impl<F: Real> Corridor<'_, F> {
 /// The indices of the rows below, above, below and above four samples, each given by its first row.
 fn alternating(samples: [usize; 4]) -> [usize; 4] {
     std::array::from_fn(|k| samples[k] + k % 2)
+}
+
+/// Where sample `k` of [`SAMPLES`] lies between the first and the last, from 0 to 1.
+pub(crate) fn spread(k: usize) -> f64 {
+    (1.0 - (std::f64::consts::PI * k as f64 / f64::from(SAMPLES)).cos()) / 2.0
 }

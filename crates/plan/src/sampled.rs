@@ -3,7 +3,7 @@
 //! A ramp that is fitted for others of many sizes does not know where their edges are. Each then has
 //! a least and a greatest place, and is sampled between the two.
 
-use crate::corridor::{Corridor, SAMPLES, Stretch};
+use crate::corridor::{Corridor, SAMPLES, Stretch, spread};
 use crate::cubic::{steps, wide};
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_profile::Real;
@@ -94,9 +94,4 @@ impl<F: Real> Corridor<'_, F> {
         let t = wide((due - self.clock.at(self.piece.first + first)) / self.clock.tick);
         (t, steps(i128::from(half_steps) * (ONE_STEP / 2) - done))
     }
-}
-
-/// Where sample `k` of [`SAMPLES`] lies between the first and the last, from 0 to 1.
-pub(crate) fn spread(k: usize) -> f64 {
-    (1.0 - (std::f64::consts::PI * k as f64 / f64::from(SAMPLES)).cos()) / 2.0
 }

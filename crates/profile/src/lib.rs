@@ -26,6 +26,7 @@ mod ranade;
 pub mod reference;
 mod refusal;
 mod scurve;
+mod shaped;
 mod sine;
 mod solve;
 mod timed;
