@@ -38,7 +38,8 @@ impl Came {
 /// Runs a program and its events until everything is at rest, at most for `most` cycles. `leaps`
 /// are the greatest lengths of the leaps, used in turn, so that a leap can end in any clock.
 ///
-/// # Errors The first difference.
+/// # Errors
+/// The first difference.
 pub fn run(
     build: &EngineBuild,
     program: &Program,

@@ -16,8 +16,8 @@ const HEAD: [&str; 6] = ["axis", "pulse", "time_s", "speed_steps_per_s", "direct
 ///
 /// Times count from the origin. The speed is that of the period which the pulse ends, without a
 /// sign; it is empty for the first pulse of a direction. The error is empty beyond the profile's
-/// last pulse. `axes` are the names and profiles; `origin_ps` is the load of the first move plus the
-/// latency L, ps of the capture.
+/// last pulse. `axes` are the names and profiles; `origin_ps` is the load of the first move plus
+/// the latency L, ps of the capture.
 pub fn csv_writer<'a>(
     out: impl Write + 'a,
     timebase: &Timebase,

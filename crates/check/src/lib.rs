@@ -1,8 +1,8 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], and the
-//! [`Plot`]. [`check_beside`] is a checker that uses other cores. The modules are private; the
+//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], and
+//! the [`Plot`]. [`check_beside`] is a checker that uses other cores. The modules are private; the
 //! public items are listed below.
 
 mod ahead;

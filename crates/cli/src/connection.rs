@@ -57,7 +57,8 @@ impl From<Refused> for Failure {
 /// The UART of a machine and the id of its engine on that line. `name` is the path of the machine
 /// file, for messages.
 ///
-/// # Errors The engine or the line of the machine is invalid, or the line is an SPI.
+/// # Errors
+/// The engine or the line of the machine is invalid, or the line is an SPI.
 pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure> {
     let refused = |error: String| Failure::input(format!("{}: {error}", name.display()));
     let engine = machine.engine();

@@ -80,7 +80,8 @@ pub struct Control {
 impl Control {
     /// The control of a claimed port. If `drives`, it listens on the socket from now on.
     ///
-    /// # Errors The system refuses to create the socket.
+    /// # Errors
+    /// The system refuses to create the socket.
     pub fn new(claim: PortClaim, drives: bool) -> std::io::Result<Self> {
         let control_socket = if drives { claim.listen()? } else { None };
         Ok(Self { control_socket, claim, known: None, stopped_by: None })

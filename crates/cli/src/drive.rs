@@ -3,143 +3,23 @@
 //! first segment is sent.
 
 use crate::connection::{self, Connection};
-use crate::control::StoppedBy;
 use crate::failure::Failure;
 use crate::found;
 use crate::job;
 use crate::memory::{self, BoardMemory, MetLimit};
-use carrystep_core::Segment;
 use carrystep_core::engine::Cause;
-use carrystep_files::{Axis, MoveSource, Unit};
+use carrystep_files::{Axis, MoveSource};
 use carrystep_link::supply::Supply;
-use carrystep_link::{Command, Ended, HostError, SegmentSource, Status};
-use carrystep_plan::{AxisTotals, PlannedMove, Survey};
-use carrystep_profile::Reader;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use schemars::JsonSchema;
-use serde::Serialize;
-use std::collections::VecDeque;
-use std::fmt;
-use std::sync::Arc;
+use carrystep_link::{Command, Ended, HostError, Status};
+use carrystep_plan::{AxisTotals, Survey};
+use line::Line;
+pub use outcome::{AxisDriven, Culprit, Driven, How};
+use program::PlannedProgram;
 use std::time::Instant;
 
-/// How a run on a board ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum How {
-    /// All moves were made.
-    Done,
-    /// Stopped on request, by Ctrl-C or `carrystep stop`.
-    Stopped,
-    /// The machine stopped by itself.
-    Fault,
-}
-
-/// The outcome of a run on a board; `--json` prints it as it is.
-#[derive(Debug, JsonSchema, Serialize)]
-pub struct Driven {
-    /// All moves were made, and the machine is where they end.
-    pub passed: bool,
-    /// The port.
-    pub port: String,
-    /// The gateware's build id.
-    pub build: String,
-    /// How it ended.
-    pub ended: How,
-    /// The source of the stop, if it was requested.
-    pub stopped_by: Option<StoppedBy>,
-    /// Why the machine stopped by itself, if it did.
-    pub cause: Option<&'static str>,
-    /// The axes that caused this stop.
-    pub culprits: Vec<Culprit>,
-    /// The cause in a sentence.
-    pub meaning: Option<&'static str>,
-    /// What the user must do about it.
-    pub remedy: Option<&'static str>,
-    /// Seconds that the plan takes.
-    pub planned_s: f64,
-    /// Seconds that the run took, including power-up and status requests.
-    pub run_s: f64,
-    /// Each axis.
-    pub axes: Vec<AxisDriven>,
-}
-
-/// An axis that caused a stop.
-#[derive(Debug, JsonSchema, Serialize)]
-pub struct Culprit {
-    /// Its name.
-    pub axis: String,
-    /// Direction in which it was last seen moving: 1 or -1; 0 if it was not seen moving.
-    pub direction: i8,
-}
-
-/// One axis.
-#[derive(Debug, JsonSchema, Serialize)]
-pub struct AxisDriven {
-    /// Its name.
-    pub axis: String,
-    /// Position register before, steps.
-    pub before: i32,
-    /// Position register after, steps.
-    pub position: i32,
-    /// Steps of the plan.
-    pub steps_planned: i64,
-    /// The unit of the axis.
-    pub unit: String,
-    /// Steps per unit, as the nearest float.
-    pub steps_per_unit: f64,
-}
-
-impl fmt::Display for Driven {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: build {}", self.port, self.build)?;
-        let head = ["before", "planned", "position", "distance", "at"]
-            .map(|head| format!("  {head:>11}"))
-            .concat();
-        writeln!(f, "{:<6}{head}", "axis")?;
-        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit } in &self.axes
-        {
-            let unit = Unit { name: unit.clone(), steps: *steps_per_unit };
-            let [planned, at] =
-                [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
-            writeln!(
-                f,
-                "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}"
-            )?;
-        }
-        match (self.ended, self.passed) {
-            (How::Done, true) => f.write_str("DONE\n"),
-            (How::Done, false) => {
-                f.write_str("FAILED: the positions are not where the moves end\n")
-            }
-            (How::Stopped, _) => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) {
-                    "`carrystep stop`"
-                } else {
-                    "Ctrl-C"
-                };
-                writeln!(f, "STOPPED by {by}; the positions are valid")
-            }
-            (How::Fault, _) => {
-                let cause = self.cause.unwrap_or("?");
-                write!(f, "STOPPED by the machine: {cause}")?;
-                for (number, Culprit { axis, direction }) in self.culprits.iter().enumerate() {
-                    let way = match direction {
-                        0 => "",
-                        1.. => " moving forward",
-                        _ => " moving back",
-                    };
-                    write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
-                }
-                f.write_str("; the positions are valid\n")?;
-                let words = self.meaning.zip(self.remedy);
-                words.map_or(Ok(()), |(meaning, remedy)| {
-                    writeln!(f, "why:   {meaning}\nto do: {remedy}")
-                })
-            }
-        }
-    }
-}
+mod line;
+mod outcome;
+mod program;
 
 /// A plan that the link can send.
 pub struct Streamed {
@@ -159,7 +39,8 @@ struct Near {
 impl Streamed {
     /// Plans all moves.
     ///
-    /// # Errors A move cannot be made, or the machine's line is too slow to keep the queues full.
+    /// # Errors
+    /// A move cannot be made, or the machine's line is too slow to keep the queues full.
     pub fn new(source: MoveSource) -> Result<Self, Failure> {
         let (machine, path) = (&source.machine, source.path.display().to_string());
         let axes = machine.axes.len() as u8;
@@ -237,7 +118,8 @@ impl Ways {
 /// Executes the moves and returns the report. An axis moves further toward a limit that it has met
 /// only if `into_limit` is set.
 ///
-/// # Errors The board has stopped already, a limit forbids the motion, or the line to the board is
+/// # Errors
+/// The board has stopped already, a limit forbids the motion, or the line to the board is
 /// lost.
 pub fn drive(
     connection: Connection,
@@ -342,86 +224,4 @@ pub fn drive(
         run_s: begun.elapsed().as_secs_f64(),
         axes,
     })
-}
-
-/// The segments of a plan, which is made while they are sent.
-struct PlannedProgram {
-    moves: Reader<Arc<PlannedMove>>,
-    /// For each axis, the segments of the moves that were read and that have not been sent.
-    segments: Vec<VecDeque<Segment>>,
-    /// The starts of these moves.
-    starts: VecDeque<u8>,
-}
-
-impl PlannedProgram {
-    fn new(survey: &Survey) -> Self {
-        let segments = survey.machine().axes.iter().map(|_| VecDeque::new()).collect();
-        Self { moves: survey.begin().moves, segments, starts: VecDeque::new() }
-    }
-
-    /// Reads the next move; `None` if there is none.
-    fn read(&mut self) -> Option<()> {
-        for command in self.moves.next()?.commands().iter().filter_map(Command::of) {
-            match command {
-                Command::Segment { axis, segment } => {
-                    self.segments.get_mut(usize::from(axis))?.push_back(segment);
-                }
-                Command::Start { mask } => self.starts.push_back(mask),
-            }
-        }
-        Some(())
-    }
-}
-
-impl SegmentSource for PlannedProgram {
-    fn segment(&mut self, axis: u8) -> Option<Segment> {
-        while self.segments.get(usize::from(axis))?.is_empty() {
-            self.read()?;
-        }
-        self.segments[usize::from(axis)].pop_front()
-    }
-
-    fn start(&mut self) -> Option<u8> {
-        while self.starts.is_empty() {
-            self.read()?;
-        }
-        self.starts.pop_front()
-    }
-}
-
-/// The progress line on a terminal: elapsed part of the planned time, and the positions of the axes
-/// in steps.
-struct Line<'a> {
-    bar: ProgressBar,
-    axes: &'a [String],
-    begun: Instant,
-}
-
-impl<'a> Line<'a> {
-    fn new(axes: &'a [String], seconds: f64) -> Self {
-        // The bar hides itself if standard error is not a terminal.
-        let total = (seconds * 1000.0) as u64;
-        let bar =
-            ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
-        let style = ProgressStyle::with_template("{bar:20} {percent:>3} % {msg}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, axes, begun: Instant::now() }
-    }
-
-    fn show(&self, status: &Status) {
-        if self.bar.is_hidden() {
-            return;
-        }
-        let elapsed = self.begun.elapsed().as_millis() as u64;
-        let places =
-            self.axes.iter().zip(status.positions).map(|(axis, steps)| format!("{axis} {steps}"));
-        self.bar.set_message(places.collect::<Vec<_>>().join("  "));
-        self.bar.set_position(elapsed.min(self.bar.length().unwrap_or(0)));
-    }
-}
-
-impl Drop for Line<'_> {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
 }

@@ -11,7 +11,8 @@ use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
 /// The groups of axes to home, in the machine's order, one bit per axis. No names means all axes
 /// that can home.
 ///
-/// # Errors An axis does not exist or has no home table, or no axis has one.
+/// # Errors
+/// An axis does not exist or has no home table, or no axis has one.
 pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     let mut wanted = 0_u8;
     for name in names {

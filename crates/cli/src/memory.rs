@@ -153,7 +153,8 @@ impl BoardMemory {
     /// Writes the memory together with the board's present state. The file appears only when it is
     /// complete.
     ///
-    /// # Errors The board does not answer, or the system refuses the file. The old file then no
+    /// # Errors
+    /// The board does not answer, or the system refuses the file. The old file then no
     /// longer matches the board and is ignored.
     pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
         let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;

@@ -46,8 +46,8 @@ static JSON_LINES: AtomicBool = AtomicBool::new(false);
 /// True if a document was printed. Each run prints one document, also if it fails.
 static JSON_PRINTED: AtomicBool = AtomicBool::new(false);
 
-/// Looks for `--json` and `--json-lines` before the arguments are parsed, so that they also apply to
-/// arguments that the parser refuses.
+/// Looks for `--json` and `--json-lines` before the arguments are parsed, so that they also apply
+/// to arguments that the parser refuses.
 pub fn json_is_wanted(arguments: impl Iterator<Item = OsString>) {
     for argument in arguments.take_while(|argument| argument != "--") {
         let lines = argument == "--json-lines";

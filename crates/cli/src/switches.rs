@@ -55,7 +55,8 @@ pub struct Look {
 impl SwitchPanel {
     /// The panel of a machine with the given limit switches, each `AXIS=STEPS`.
     ///
-    /// # Errors An option is malformed, names no axis, or the machine has no inputs for limits.
+    /// # Errors
+    /// An option is malformed, names no axis, or the machine has no inputs for limits.
     pub fn new(machine: &Machine, min: &[String], max: &[String]) -> Result<Self, Failure> {
         if machine.guard.limits == LimitWiring::None && !(min.is_empty() && max.is_empty()) {
             return Err(Failure::input(

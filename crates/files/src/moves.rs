@@ -1,4 +1,5 @@
-//! The moves of a file, held in memory if the file is short, and read again each time if it is long.
+//! The moves of a file, held in memory if the file is short, and read again each time if it is
+//! long.
 
 use crate::error::InputError;
 use crate::long_file::LongFile;

@@ -33,8 +33,8 @@ impl Folder {
     }
 }
 
-/// The moves of a file, or its first mistake: the name of the file without its folder, line, column,
-/// message and remedy.
+/// The moves of a file, or its first mistake: the name of the file without its folder, line,
+/// column, message and remedy.
 fn read(text: impl AsRef<[u8]>) -> Result<Vec<Move>, String> {
     let (_folder, path) = Folder::with(text);
     let told = |error: InputError| {

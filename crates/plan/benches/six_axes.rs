@@ -1,6 +1,6 @@
 //! Benchmark: the time to plan one move of six axes, and a file of a hundred, fits included. Beside
-//! it Ruckig (L. Berscheid and T. Kroeger, 2021) plans the same targets within the same limits, from
-//! rest to rest in a common time. It returns float profiles; nothing of ours is left out.
+//! it Ruckig (L. Berscheid and T. Kroeger, 2021) plans the same targets within the same limits,
+//! from rest to rest in a common time. It returns float profiles; nothing of ours is left out.
 //!
 //!     cargo bench -p carrystep-plan
 

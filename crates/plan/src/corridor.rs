@@ -190,8 +190,8 @@ impl<F: Real> Corridor<'_, F> {
     }
 
     /// Appends the two rows of one sample: the curve passes `ahead` within the tolerance of time
-    /// `t`, or, if the profile is slow, within `least` steps at `t`. Whether the sample is `standing`
-    /// for many edges.
+    /// `t`, or, if the profile is slow, within `least` steps at `t`. Whether the sample is
+    /// `standing` for many edges.
     fn both_sides(
         &self,
         rows: &mut Vec<Row>,

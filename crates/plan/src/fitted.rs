@@ -31,9 +31,9 @@ impl Fitted {
         Some(if ends { self } else { Self { distance: n * v + bent, ..self } })
     }
 
-    /// Returns V times the number of ticks in steps, and A and J in steps per tick^2 and per tick^3,
-    /// or `None` if they break a limit. The start speed counts only for a segment that `opens` a move; if it also steps `at
-    /// once`, its V must not start at 0.
+    /// Returns V times the number of ticks in steps, and A and J in steps per tick^2 and per
+    /// tick^3, or `None` if they break a limit. The start speed counts only for a segment that
+    /// `opens` a move; if it also steps `at once`, its V must not start at 0.
     pub fn found(&self, limits: &ExactLimits, opens: bool, at_once: bool) -> Option<[f64; 3]> {
         let &Self { ticks, bend: Bend { a, j }, distance } = self;
         let n = i128::from(ticks);

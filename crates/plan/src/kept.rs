@@ -29,8 +29,8 @@ const MOST_KEPT: usize = 1024;
 /// wastes at most 3 % of the tolerance, which is 0.8 % of the length of a segment.
 const TOLERANCE_BITS: u32 = 5;
 
-/// Bits of the mantissa by which the distances of ramps are told apart. The edges of a ramp are where
-/// its steps are; near rest they are so far apart that a fit has to know their places.
+/// Bits of the mantissa by which the distances of ramps are told apart. The edges of a ramp are
+/// where its steps are; near rest they are so far apart that a fit has to know their places.
 const DISTANCE_BITS: u32 = 5;
 
 /// The tolerances that are kept, as parts of the duration of a ramp. A ramp with a greater one has

@@ -1,5 +1,5 @@
-//! The fit of a ramp in the ramp's own units, from 0 to 1 in time and in distance, and the curve that
-//! it is judged beside.
+//! The fit of a ramp in the ramp's own units, from 0 to 1 in time and in distance, and the curve
+//! that it is judged beside.
 //!
 //! `kept.rs` says when such a fit is made, and `scaled.rs` what becomes of it.
 

@@ -1,7 +1,7 @@
 //! Where a stretch of a fit is sampled: at each of its edges, or at places that stand for many.
 //!
-//! A ramp that is fitted for others of many sizes does not know where their edges are. Each then has
-//! a least and a greatest place, and is sampled between the two.
+//! A ramp that is fitted for others of many sizes does not know where their edges are. Each then
+//! has a least and a greatest place, and is sampled between the two.
 
 use crate::corridor::{Corridor, SAMPLES, Stretch, spread};
 use crate::cubic::{steps, wide};

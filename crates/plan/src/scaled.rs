@@ -26,8 +26,8 @@ const STANDING: f64 = 0.98;
 /// rounded to a tick, and would have been made in vain.
 const LEAST_TOLERANCE: f64 = 0.02;
 
-/// How far the end of a ramp may be from the end of its piece, ticks: a breakpoint is rounded to the
-/// nearest tick.
+/// How far the end of a ramp may be from the end of its piece, ticks: a breakpoint is rounded to
+/// the nearest tick.
 const ROUNDED: f64 = 0.5 + 1e-6;
 
 /// Where the next segment begins, and which one it is.
@@ -44,8 +44,8 @@ struct Next {
 }
 
 impl<F: Real> Fitter<'_, F> {
-    /// Returns the kept fit of a piece that is a whole ramp, in the integers of this move. `None` if
-    /// there is none, or if a segment of it fails.
+    /// Returns the kept fit of a piece that is a whole ramp, in the integers of this move. `None`
+    /// if there is none, or if a segment of it fails.
     pub fn scaled(&self, done: i128) -> Option<Vec<Fitted>> {
         let (size, kept) = self.kept()?;
         self.scaled_from(&size, &kept, done)
@@ -230,7 +230,8 @@ mod tests {
                 assert!(fitter.scaled_from(&size, &kept, start).is_some());
                 let mut refused = 0;
                 for at in 0..kept.segments.len() {
-                    // Bent, away from the limit of acceleration, so far that the cubic is four tolerances off in its middle.
+                    // Bent, away from the limit of acceleration, so far that the cubic is four
+                    // tolerances off in its middle.
                     let (from, to) = (kept.joints[at], kept.joints[at + 1]);
                     let mut bent = (*kept).clone();
                     bent.segments[at].cubic[1] -=

@@ -1,5 +1,5 @@
-//! A plan that is made while it is read is the plan that is made at once, and it holds no more moves
-//! than its readers are apart.
+//! A plan that is made while it is read is the plan that is made at once, and it holds no more
+//! moves than its readers are apart.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 

@@ -1,7 +1,7 @@
 //! Files with which other programs start the shards of a sweep on many machines, and merge them.
 //!
-//! Each scheduler starts the same two scripts, `shard.sh` and `merge.sh`. The files are templates in
-//! `templates/`.
+//! Each scheduler starts the same two scripts, `shard.sh` and `merge.sh`. The files are templates
+//! in `templates/`.
 
 use crate::error::SweepError;
 use crate::file::SweepFile;

@@ -48,9 +48,10 @@ pub struct KeptShard {
 }
 
 impl KeptShard {
-    /// Claims the file and reads the progress that it keeps. `fresh` is the progress of a shard that
-    /// begins; the result is that, or the progress from the file. Unless the file keeps a complete
-    /// shard, it is written, so that a folder that cannot be written is detected before the work.
+    /// Claims the file and reads the progress that it keeps. `fresh` is the progress of a shard
+    /// that begins; the result is that, or the progress from the file. Unless the file keeps a
+    /// complete shard, it is written, so that a folder that cannot be written is detected before
+    /// the work.
     ///
     /// # Errors
     /// The file cannot be read or written, keeps no progress, is damaged, or is of another run.

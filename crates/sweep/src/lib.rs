@@ -2,8 +2,8 @@
 //! result.
 //!
 //! A case is identified by its number: case i of a sweep is the same on every machine and in every
-//! shard. Shards can therefore run anywhere, and their reports can be merged. A shard that keeps its
-//! progress in a file can be killed and started again. [`Cluster`] writes the files with which
+//! shard. Shards can therefore run anywhere, and their reports can be merged. A shard that keeps
+//! its progress in a file can be killed and started again. [`Cluster`] writes the files with which
 //! other programs start the shards of a sweep on many machines.
 
 mod cluster;

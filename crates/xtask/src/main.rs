@@ -62,8 +62,8 @@ enum Chore {
     Lint,
     /// Check that the link's core needs no `std`, on a bare microcontroller.
     Bare,
-    /// Time the fast model beside every other level, the writers beside Verilator's, and each command
-    /// with growing work.
+    /// Time the fast model beside every other level, the writers beside Verilator's, and each
+    /// command with growing work.
     Bench {
         /// One JSON document instead of the table.
         #[arg(long)]

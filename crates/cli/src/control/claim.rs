@@ -20,7 +20,8 @@ pub struct PortClaim {
 /// Claims the port for a command of this process. Returns `None` if another command of this user
 /// holds it.
 ///
-/// # Errors The system refuses the folder or the lock file.
+/// # Errors
+/// The system refuses the folder or the lock file.
 pub fn claim(
     port: &str,
     baud: u32,

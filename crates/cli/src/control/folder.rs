@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 /// The first usable folder of the user. It must be the same in every terminal of the user, so the
 /// environment variable comes last.
 ///
-/// # Errors No folder can be created or used; the error is that of the last one.
+/// # Errors
+/// No folder can be created or used; the error is that of the last one.
 pub fn folder() -> Result<PathBuf> {
     let mut refused = Error::from(ErrorKind::NotFound);
     for path in all() {

@@ -13,7 +13,8 @@ pub struct PortClaim {
 
 /// Always succeeds: opening the port shows whether it is free.
 ///
-/// # Errors None.
+/// # Errors
+/// None.
 pub fn claim(_: &str, baud: u32, command: &'static str, _: bool) -> io::Result<Option<PortClaim>> {
     let holder = Holder {
         pid: std::process::id(),

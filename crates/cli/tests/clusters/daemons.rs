@@ -108,8 +108,8 @@ PartitionName=all Nodes=worker Default=YES MaxTime=INFINITE State=UP
 "
         );
         std::fs::write(self.path("slurm.conf"), text).unwrap();
-        // Nothing here needs control groups, but slurmd loads a plug-in for them. The first releases
-        // cannot disable it, and this one then finds no groups.
+        // Nothing here needs control groups, but slurmd loads a plug-in for them. The first
+        // releases cannot disable it, and this one then finds no groups.
         let version = said(Command::new(program("slurmctld")).arg("-V"));
         let number = version.split_whitespace().nth(1).unwrap_or_default();
         let cgroup = if number < "23.02" {

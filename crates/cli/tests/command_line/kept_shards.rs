@@ -1,5 +1,5 @@
-//! `carrystep sweep --keep`: a shard that is killed, interrupted or stopped by a full disk continues
-//! where it stopped, and its report has the same bytes.
+//! `carrystep sweep --keep`: a shard that is killed, interrupted or stopped by a full disk
+//! continues where it stopped, and its report has the same bytes.
 
 use crate::command::{Folder, GOOD, Ran};
 use std::path::Path;

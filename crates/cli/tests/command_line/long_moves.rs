@@ -1,8 +1,8 @@
 //! Move files of any length are planned, simulated and checked in the same memory.
 
 use crate::command::{Folder, GOOD};
+use crate::peak;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 /// The greatest memory of a command, bytes. With 30 000 moves of one axis, the parsed file and the
 /// plan would have taken 170 MB.
@@ -12,21 +12,9 @@ const MOST: u64 = 64 << 20;
 fn memory(folder: &Folder, arguments: &str) -> u64 {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::null());
-    let mut child = command.stderr(Stdio::null()).spawn().unwrap();
-    let status = format!("/proc/{}/status", child.id());
-    let mut most = 0;
-    loop {
-        // The kernel's own record of the peak, in KiB. It is gone when the process is.
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let peak = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let peak = peak.and_then(|peak| peak.trim().strip_suffix(" kB")?.parse::<u64>().ok());
-        most = most.max(peak.unwrap_or(0) << 10);
-        if let Some(status) = child.try_wait().unwrap() {
-            assert_eq!(status.code(), Some(0), "{arguments}");
-            return most;
-        }
-        std::thread::sleep(Duration::from_millis(3));
-    }
+    let (status, most) = peak::memory(command.stderr(Stdio::null())).unwrap();
+    assert_eq!(status.code(), Some(0), "{arguments}");
+    most
 }
 
 /// So many moves of one step, there and back.

@@ -37,6 +37,9 @@ mod long_moves;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
+#[cfg(target_os = "linux")]
+#[path = "../support/peak.rs"]
+mod peak;
 mod plots;
 mod profile;
 mod schemas;

@@ -5,10 +5,9 @@ use nix::sys::time::TimeVal;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
-/// The time between two looks at the memory of a child.
-const BETWEEN: Duration = Duration::from_millis(5);
+#[path = "../../../../cli/tests/support/peak.rs"]
+mod peak;
 
 /// Runs a program, discards its standard output, and returns its processor time, user and system,
 /// of all its threads, in seconds.
@@ -30,28 +29,17 @@ pub fn seconds<A: AsRef<OsStr>>(program: &Path, arguments: &[A]) -> Result<f64, 
     }
 }
 
-/// Runs a program, discards its output, and returns the greatest memory that it used, in bytes: the
-/// kernel's own record of the peak, which is read until the program ends. 0 where the kernel has none.
+/// Runs a program, discards its output, and returns the greatest memory that it used, in bytes; 0
+/// where the kernel keeps no record of it.
 ///
 /// # Errors
 /// The program cannot be started, or ends with a status other than 0.
 pub fn memory<A: AsRef<OsStr>>(program: &Path, arguments: &[A]) -> Result<u64, String> {
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    let failed = |error| format!("{}: {error}", program.display());
-    let mut child = command.spawn().map_err(failed)?;
-    let status = format!("/proc/{}/status", child.id());
-    let mut most = 0;
-    loop {
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let peak = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kib = peak.and_then(|peak| peak.trim().strip_suffix(" kB")?.parse::<u64>().ok());
-        most = most.max(kib.unwrap_or(0) << 10);
-        if let Some(status) = child.try_wait().map_err(failed)? {
-            return if status.success() { Ok(most) } else { Err(format!("{command:?}: {status}")) };
-        }
-        std::thread::sleep(BETWEEN);
-    }
+    let ran = peak::memory(&mut command);
+    let (status, most) = ran.map_err(|error| format!("{}: {error}", program.display()))?;
+    if status.success() { Ok(most) } else { Err(format!("{command:?}: {status}")) }
 }
 
 /// Processor time of all child processes that have ended, seconds. No other child ends during a

@@ -1,0 +1,127 @@
+//! The outcome of a run on a board, as it is printed.
+//!
+//! The fields are names in the JSON of `carrystep run`; its schema is generated from them.
+
+use crate::control::StoppedBy;
+use carrystep_files::Unit;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt;
+
+/// How a run on a board ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum How {
+    /// All moves were made.
+    Done,
+    /// Stopped on request, by Ctrl-C or `carrystep stop`.
+    Stopped,
+    /// The machine stopped by itself.
+    Fault,
+}
+
+/// The outcome of a run on a board; `--json` prints it as it is.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct Driven {
+    /// All moves were made, and the machine is where they end.
+    pub passed: bool,
+    /// The port.
+    pub port: String,
+    /// The gateware's build id.
+    pub build: String,
+    /// How it ended.
+    pub ended: How,
+    /// The source of the stop, if it was requested.
+    pub stopped_by: Option<StoppedBy>,
+    /// Why the machine stopped by itself, if it did.
+    pub cause: Option<&'static str>,
+    /// The axes that caused this stop.
+    pub culprits: Vec<Culprit>,
+    /// The cause in a sentence.
+    pub meaning: Option<&'static str>,
+    /// What the user must do about it.
+    pub remedy: Option<&'static str>,
+    /// Seconds that the plan takes.
+    pub planned_s: f64,
+    /// Seconds that the run took, including power-up and status requests.
+    pub run_s: f64,
+    /// Each axis.
+    pub axes: Vec<AxisDriven>,
+}
+
+/// An axis that caused a stop.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct Culprit {
+    /// Its name.
+    pub axis: String,
+    /// Direction in which it was last seen moving: 1 or -1; 0 if it was not seen moving.
+    pub direction: i8,
+}
+
+/// One axis.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct AxisDriven {
+    /// Its name.
+    pub axis: String,
+    /// Position register before, steps.
+    pub before: i32,
+    /// Position register after, steps.
+    pub position: i32,
+    /// Steps of the plan.
+    pub steps_planned: i64,
+    /// The unit of the axis.
+    pub unit: String,
+    /// Steps per unit, as the nearest float.
+    pub steps_per_unit: f64,
+}
+
+impl fmt::Display for Driven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: build {}", self.port, self.build)?;
+        let head = ["before", "planned", "position", "distance", "at"]
+            .map(|head| format!("  {head:>11}"))
+            .concat();
+        writeln!(f, "{:<6}{head}", "axis")?;
+        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit } in &self.axes
+        {
+            let unit = Unit { name: unit.clone(), steps: *steps_per_unit };
+            let [planned, at] =
+                [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
+            writeln!(
+                f,
+                "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}"
+            )?;
+        }
+        match (self.ended, self.passed) {
+            (How::Done, true) => f.write_str("DONE\n"),
+            (How::Done, false) => {
+                f.write_str("FAILED: the positions are not where the moves end\n")
+            }
+            (How::Stopped, _) => {
+                let by = if self.stopped_by == Some(StoppedBy::Stop) {
+                    "`carrystep stop`"
+                } else {
+                    "Ctrl-C"
+                };
+                writeln!(f, "STOPPED by {by}; the positions are valid")
+            }
+            (How::Fault, _) => {
+                let cause = self.cause.unwrap_or("?");
+                write!(f, "STOPPED by the machine: {cause}")?;
+                for (number, Culprit { axis, direction }) in self.culprits.iter().enumerate() {
+                    let way = match direction {
+                        0 => "",
+                        1.. => " moving forward",
+                        _ => " moving back",
+                    };
+                    write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
+                }
+                f.write_str("; the positions are valid\n")?;
+                let words = self.meaning.zip(self.remedy);
+                words.map_or(Ok(()), |(meaning, remedy)| {
+                    writeln!(f, "why:   {meaning}\nto do: {remedy}")
+                })
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Writes the segments of the motion of one axis in one move: it shares the distance out, and each
+//! piece is written pulse by pulse, fitted, or exactly.
+//!
+//! The two constants below may be changed without harm, because the exact check (`check.rs`)
+//! decides whether a plan leaves this crate.
+
+use super::{Place, Planner};
+use crate::corridor::{Corridor, JOINT};
+use crate::cubic;
+use crate::demand::Clock;
+use crate::error::Broken;
+use crate::fit::Fitter;
+use crate::run::Writer;
+use crate::search::QUICK;
+use crate::share::{Breakpoints, Piece, share};
+use crate::slow::Pulses;
+use carrystep_core::Segment;
+use carrystep_core::fixed::ONE_STEP;
+use carrystep_files::{Move, PathKind};
+use carrystep_profile::{Profile, Real};
+
+/// Limits the tolerance of a fit in a short piece, in ticks, to the length of the piece in ticks
+/// divided by this number. A piece of 16 ticks has a tolerance of at most 0.25 ticks.
+const LEAST_RATIO: f64 = 64.0;
+
+/// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
+const ROUNDED: f64 = 0.01;
+
+impl<F: Real> Planner<F> {
+    /// Returns the segments of the motion alone. The rest before it has already travelled
+    /// `borrowed` units (0 or 1) of the distance.
+    pub(super) fn motion(
+        &self,
+        place: Place<'_>,
+        steps: i64,
+        profile: &dyn Profile<F>,
+        clock: &Clock<F>,
+        borrowed: i128,
+    ) -> Result<Vec<Segment>, Broken> {
+        let total = i128::from(steps.unsigned_abs()) * ONE_STEP - borrowed;
+        let Move { profile: kind, fit_ns, .. } = *place.asked.moved;
+        let limits = self.limits(place, profile);
+        let (phase, backward) = (self.build.phase, steps < 0);
+        let mut writer = Writer {
+            profile,
+            clock: *clock,
+            limits: &limits,
+            phase,
+            backward,
+            segments: Vec::new(),
+            ahead: 0,
+        };
+        let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
+        let breakpoints = if kind.is_fitted() {
+            Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
+        } else {
+            Breakpoints::Kept
+        };
+        let pulses = Pulses {
+            profile,
+            clock: *clock,
+            phase,
+            backward,
+            count: steps.unsigned_abs(),
+            phases: self.build.timebase.phases(),
+            borrowed,
+        };
+        let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
+        let (mut rows, mut risen) = (Vec::new(), Vec::new());
+        // Along a line, the distances of the ramps depend on its direction. Hardly any two lines
+        // share a kept fit, and making one takes longer than a fit of this move alone.
+        let Move { path, steps: all, .. } = place.asked.moved;
+        let keeps = *path == PathKind::Free || all.iter().filter(|&&steps| steps != 0).count() < 2;
+        for (index, &piece) in pieces.iter().enumerate() {
+            let last = index + 1 == pieces.len();
+            // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
+            // that are curved and belong to a fitted kind of profile are fitted. The rest are
+            // exact.
+            if piece.by_pulse {
+                writer.placed(piece, &pulses)?;
+            } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
+                let pulses = pulses.count;
+                let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
+                let [begin, end] = [piece.first, piece.first + piece.ticks]
+                    .map(|tick| profile.speed(clock.at(tick)));
+                let rises = begin <= end;
+                let bend = cubic::steps(limits.acceleration);
+                let corridor = Corridor {
+                    profile,
+                    clock: *clock,
+                    phase,
+                    backward,
+                    pulses,
+                    piece,
+                    rises,
+                    tolerance,
+                    bend,
+                    joint: JOINT,
+                    longer: 1.0,
+                };
+                let held = std::mem::take(&mut rows);
+                let (limits, search) = (&limits, QUICK);
+                let mut fitter = Fitter { corridor, limits, rows: held, search, keeps };
+                let segments = fitter.segments(writer.position(piece), &risen);
+                rows = fitter.rows;
+                writer.fitted(piece, &segments, last)?;
+                if rises {
+                    risen = segments;
+                }
+            } else {
+                writer.piece(piece, !kind.is_fitted() || must_land(&pieces, index))?;
+            }
+        }
+        Ok(writer.segments)
+    }
+}
+
+/// Whether a piece of a fitted move lands exactly. Only the last piece must, because each exact
+/// landing costs a segment; the remainder of another piece goes to the next one. There are two
+/// exceptions.
+fn must_land(pieces: &[Piece], index: usize) -> bool {
+    // A piece lands exactly if the next one is too small to take over its remainder.
+    let length = pieces[index].ticks;
+    let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(length);
+    // And a piece longer than one segment's 32-bit tick counter lands exactly, because an
+    // uncorrected rounding of half a unit in V would shift edges visibly after some hours.
+    length > u64::from(u32::MAX) || pieces.get(index + 1).is_none_or(small)
+}
+
+/// The edge tolerance of a fit in ticks: that of the move file, but not less than the time that the
+/// floats of the profile can resolve. In a short piece, `LEAST_RATIO` reduces it further.
+fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
+    let noise = F::epsilon().to_f64().unwrap_or(0.0) * 16.0 * clock.ticks as f64;
+    (fit_ns as f64 / tick_ns as f64).max(noise)
+}
+
+/// Whether a piece needs no fit, because it is one tick long or has constant speed.
+fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
+    let middle =
+        (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
+    piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
+}
