@@ -4,15 +4,15 @@
 
 use crate::ahead::Ahead;
 use crate::edge::{Pin, PinChange};
-use crate::ideal::{Due, NS, PS, curvature_ps, moment, nearest, phase_ps, tick_ps};
-use crate::line_check::Off;
+use crate::ideal::{Due, PS, curvature_ps, moment, nearest, phase_ps, tick_ps};
 use crate::origin::Base;
-use crate::pins::{PinWatch, Shortest, Stretch};
-use crate::report::AxisReport;
+use crate::pins::PinWatch;
 use crate::spread::Spread;
 use carrystep_core::{PinTimes, StartPhase, Timebase};
 use carrystep_files::Unit;
 use carrystep_profile::{Crossing, Timeline, Travel};
+
+mod judge;
 
 /// The values against which one axis is checked.
 #[derive(Debug, Clone)]
