@@ -4,15 +4,22 @@
 
 use crate::ahead::Ahead;
 use crate::edge::{Pin, PinChange};
-use crate::ideal::{Due, PS, curvature_ps, moment, nearest, phase_ps, tick_ps};
+use crate::exact;
+use crate::ideal::{
+    ALMOST, Due, PS, curvature_ps, is_less_curved, moment, nearest, phase_ps, tick_ps,
+};
 use crate::origin::Base;
 use crate::pins::PinWatch;
 use crate::spread::Spread;
 use carrystep_core::{PinTimes, StartPhase, Timebase};
 use carrystep_files::Unit;
 use carrystep_profile::{Crossing, Timeline, Travel};
+use serde::{Deserialize, Serialize};
 
 mod judge;
+mod part;
+
+pub(crate) use part::AxisPart;
 
 /// The values against which one axis is checked.
 #[derive(Debug, Clone)]
@@ -33,20 +40,88 @@ pub struct AxisSetup<'a> {
 /// it.
 const ROUNDING_PS: f64 = 2000.0;
 
-/// A factor by which rounding cannot make a product too great.
-const ALMOST: f64 = 1.0 - 1e-12;
-
 /// The number of failures of single pulses that get a message for each axis. The others are only
 /// counted.
 const SPELLED_OUT: usize = 8;
 
 /// A pulse that has been paired with its crossing.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Paired {
     ps: u64,
+    #[serde(with = "exact")]
     lateness_ps: f64,
     backward: bool,
-    crossing: Crossing,
+    /// First tick of the crossing's move.
+    start_tick: u64,
+    /// Seconds from that tick to the crossing.
+    #[serde(with = "exact")]
+    seconds: f64,
+}
+
+/// What was found so far on the pins of an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Found {
+    watch: PinWatch,
+    position: i64,
+    wrong_direction: u64,
+    /// The pulse that was paired last.
+    last: Option<Paired>,
+    errors: Spread,
+    #[serde(with = "exact")]
+    curvature_ps: f64,
+    #[serde(with = "exact::optional")]
+    jitter_ps: Option<f64>,
+    #[serde(with = "exact::optional")]
+    ripple: Option<f64>,
+    #[serde(with = "exact")]
+    shortest_ideal_ps: f64,
+    /// Messages about single pulses, at most [`SPELLED_OUT`].
+    pulse_failures: Vec<String>,
+    omitted: u64,
+}
+
+impl Found {
+    fn new(watch: PinWatch) -> Self {
+        Self {
+            watch,
+            position: 0,
+            wrong_direction: 0,
+            last: None,
+            errors: Spread::default(),
+            curvature_ps: 0.0,
+            jitter_ps: None,
+            ripple: None,
+            shortest_ideal_ps: f64::INFINITY,
+            pulse_failures: Vec::new(),
+            omitted: 0,
+        }
+    }
+
+    fn fail_pulse(&mut self, message: String) {
+        if self.pulse_failures.len() < SPELLED_OUT {
+            self.pulse_failures.push(message);
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    /// Takes the next paired pulse beside the one before.
+    fn follow(&mut self, next: Paired) {
+        if let Some(last) = self.last.filter(|last| last.backward == next.backward) {
+            let since = next.ps.saturating_sub(last.ps) as f64;
+            let jitter = (next.lateness_ps - last.lateness_ps).abs();
+            self.jitter_ps = greater(self.jitter_ps, jitter);
+            if last.start_tick == next.start_tick && since > 0.0 {
+                // Most pulses are far from the greatest ripple, and need no division.
+                if self.ripple.is_none_or(|most| jitter > most * since * ALMOST) {
+                    self.ripple = greater(self.ripple, jitter / since);
+                }
+                let ideal = (next.seconds - last.seconds) * PS;
+                self.shortest_ideal_ps = self.shortest_ideal_ps.min(ideal);
+            }
+        }
+        self.last = Some(next);
+    }
 }
 
 /// An edge beside the next crossing.
@@ -84,18 +159,12 @@ pub(crate) struct AxisCheck<'a> {
     /// pulse. A fit may shift both edges of the period.
     tolerance_ps: f64,
     ahead: Ahead,
-    watch: PinWatch,
-    position: i64,
-    wrong_direction: u64,
-    last: Option<Paired>,
-    errors: Spread,
-    curvature_ps: f64,
-    jitter_ps: Option<f64>,
-    ripple: Option<f64>,
-    shortest_ideal_ps: f64,
-    /// Messages about single pulses, at most [`SPELLED_OUT`].
-    pulse_failures: Vec<String>,
-    omitted: u64,
+    /// Number of the crossing with which the check of a part of the capture has begun; `None` if
+    /// it began at the start of the capture.
+    begun_at: Option<u64>,
+    found: Found,
+    /// The first pulse, if it was paired.
+    first_paired: Option<Paired>,
     /// Messages about the axis as a whole; there are only a few.
     failures: Vec<String>,
 }
@@ -122,17 +191,9 @@ impl<'a> AxisCheck<'a> {
             fit_ps,
             tolerance_ps: phase_ps(&timebase) + slack_ps as f64 + 2.0 * fit_ps,
             ahead: Ahead::new(&timeline, phase, tick_ps),
-            watch: PinWatch::default(),
-            position: 0,
-            wrong_direction: 0,
-            last: None,
-            errors: Spread::default(),
-            curvature_ps: 0.0,
-            jitter_ps: None,
-            ripple: None,
-            shortest_ideal_ps: f64::INFINITY,
-            pulse_failures: Vec::new(),
-            omitted: 0,
+            begun_at: None,
+            found: Found::new(PinWatch::default()),
+            first_paired: None,
             failures: Vec::new(),
         }
     }
@@ -142,11 +203,7 @@ impl<'a> AxisCheck<'a> {
     }
 
     fn fail_pulse(&mut self, what: &str) {
-        if self.pulse_failures.len() < SPELLED_OUT {
-            self.pulse_failures.push(format!("axis {}: {what}", self.name));
-        } else {
-            self.omitted += 1;
-        }
+        self.found.fail_pulse(format!("axis {}: {what}", self.name));
     }
 
     /// When the first pulse is due; `None` if there is none.
@@ -155,7 +212,7 @@ impl<'a> AxisCheck<'a> {
     }
 
     pub(crate) fn initial(&mut self, pin: Pin, level: bool) {
-        self.watch.initial(pin, level);
+        self.found.watch.initial(pin, level);
         if pin == Pin::Step && level {
             self.fail("STEP is high when the capture begins");
         }
@@ -163,15 +220,17 @@ impl<'a> AxisCheck<'a> {
 
     /// Takes a change of a pin.
     pub(crate) fn change(&mut self, change: PinChange, base: Base) {
-        if self.watch.change(change) {
+        if self.found.watch.change(change) {
             self.pulse(change, base);
         }
     }
 
     fn pulse(&mut self, change: PinChange, base: Base) {
-        let backward = self.watch.backward();
-        self.position += if backward { -1 } else { 1 };
         self.look_ahead(change.ps, base);
+        let next = self.ahead.next(0);
+        self.found.watch.assume_dir(|| next.is_some_and(|(crossing, _)| crossing.backward));
+        let backward = self.found.watch.backward();
+        self.found.position += if backward { -1 } else { 1 };
         let mut compared = self.compare(change.ps, base);
         if self.is_extra(&compared) {
             let after = match self.ahead.number() - 1 {
@@ -192,7 +251,7 @@ impl<'a> AxisCheck<'a> {
             return;
         };
         if crossing.backward != backward {
-            self.wrong_direction += 1;
+            self.found.wrong_direction += 1;
             let way = |back| if back { "backward" } else { "forward" };
             self.fail_pulse(&format!(
                 "pulse {} at {} goes {}, the profile {}",
@@ -214,7 +273,9 @@ impl<'a> AxisCheck<'a> {
         if self.ahead.has_two() || self.ahead.number() > self.travel.pulses {
             return;
         }
-        let tick = self.since_last(ps, base).map_or(u64::MAX, |(since, before)| {
+        // The first pulse of a part is compared with the next crossing alone.
+        let beside = self.begun_at.map(|_| (0.0, 0.0));
+        let tick = self.since_last(ps, base).or(beside).map_or(u64::MAX, |(since, before)| {
             let now = nearest(i128::from(ps) - i128::from(base.ps));
             let latest = now + since + 2.0 * (self.tolerance_ps + before.abs());
             // A cast saturates: before the origin the tick is 0.
@@ -226,9 +287,11 @@ impl<'a> AxisCheck<'a> {
     /// The time from the last paired pulse to `ps`, ps, and the lateness of that pulse. Before the
     /// first one the origin counts as a pulse in time, unless it is only an estimate.
     fn since_last(&self, ps: u64, base: Base) -> Option<(f64, f64)> {
-        match self.last {
+        match self.found.last {
             Some(last) => Some((ps.saturating_sub(last.ps) as f64, last.lateness_ps)),
-            None if base.is_sure => Some((nearest(i128::from(ps) - i128::from(base.ps)), 0.0)),
+            None if base.is_sure && self.begun_at.is_none() => {
+                Some((nearest(i128::from(ps) - i128::from(base.ps)), 0.0))
+            }
             None => None,
         }
     }
@@ -298,31 +361,30 @@ impl<'a> AxisCheck<'a> {
     }
 
     fn pair(&mut self, ps: u64, backward: bool, crossing: Crossing, lateness_ps: f64) {
-        self.errors.add(lateness_ps, self.ahead.number(), ps);
-        self.curvature_ps = self.curvature_ps.max(curvature_ps(&crossing, &self.timebase));
-        if let Some(last) = self.last.filter(|last| last.backward == backward) {
-            let since = ps.saturating_sub(last.ps) as f64;
-            let jitter = (lateness_ps - last.lateness_ps).abs();
-            self.jitter_ps = greater(self.jitter_ps, jitter);
-            if last.crossing.start_tick == crossing.start_tick && since > 0.0 {
-                // Most pulses are far from the greatest ripple, and need no division.
-                if self.ripple.is_none_or(|most| jitter > most * since * ALMOST) {
-                    self.ripple = greater(self.ripple, jitter / since);
-                }
-                let ideal = (crossing.seconds - last.crossing.seconds) * PS;
-                self.shortest_ideal_ps = self.shortest_ideal_ps.min(ideal);
-            }
+        let found = &mut self.found;
+        found.errors.add(lateness_ps, self.ahead.number(), ps);
+        if !is_less_curved(&crossing, &self.timebase, found.curvature_ps) {
+            found.curvature_ps = found.curvature_ps.max(curvature_ps(&crossing, &self.timebase));
         }
-        self.last = Some(Paired { ps, lateness_ps, backward, crossing });
+        let Crossing { start_tick, seconds, .. } = crossing;
+        let paired = Paired { ps, lateness_ps, backward, start_tick, seconds };
+        if found.watch.pulses() == 1 {
+            self.first_paired = Some(paired);
+        }
+        found.follow(paired);
     }
 
     /// Least and greatest lateness so far, ps.
     pub(crate) fn range_ps(&self) -> Option<(f64, f64)> {
-        Some((self.errors.min()?.value, self.errors.max()?.value))
+        Some((self.found.errors.min()?.value, self.found.errors.max()?.value))
     }
 
     /// The greatest allowed deviation of an edge from the profile, ps.
     pub(crate) fn bound_ps(&self) -> f64 {
-        phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps + ROUNDING_PS + self.slack_ps
+        phase_ps(&self.timebase)
+            + self.found.curvature_ps
+            + self.fit_ps
+            + ROUNDING_PS
+            + self.slack_ps
     }
 }

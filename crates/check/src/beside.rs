@@ -34,7 +34,17 @@ pub fn check_beside<R>(
     setup: Setup<'_>,
     make: impl FnOnce(&mut dyn PinSink) -> R,
 ) -> (R, CheckReport) {
-    let Checker { axes, lines, mut origin, slack_ps, phase_ns } = Checker::new(setup);
+    let (made, checker) = go_on_beside(Checker::new(setup), make);
+    (made, checker.finish())
+}
+
+/// Lets a checker go on with what `make` sends to the sink. Returns what `make` returns, and the
+/// checker.
+pub(crate) fn go_on_beside<'a, R>(
+    checker: Checker<'a>,
+    make: impl FnOnce(&mut dyn PinSink) -> R,
+) -> (R, Checker<'a>) {
+    let Checker { axes, lines, mut origin, slack_ps, phase_ns } = checker;
     let threads = available_parallelism().map_or(1, usize::from).min(axes.len()).max(1);
     let firsts = axes.iter().map(AxisCheck::first).collect();
     let mut shares: Vec<Share<'_>> = (0..threads).map(|_| Share::default()).collect();
@@ -70,7 +80,7 @@ pub fn check_beside<R>(
     }
     axes.sort_by_key(|(number, _)| *number);
     let axes = axes.into_iter().map(|(_, axis)| axis).collect();
-    (made, Checker { axes, lines, origin, slack_ps, phase_ns }.finish())
+    (made, Checker { axes, lines, origin, slack_ps, phase_ns })
 }
 
 /// What a thread is sent.

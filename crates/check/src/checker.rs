@@ -19,6 +19,10 @@ use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::{Course, Reader};
 use std::fmt;
 
+mod part;
+
+pub use part::Part;
+
 /// The values against which a capture is checked.
 #[derive(Debug, Clone)]
 pub struct Setup<'a> {

@@ -92,6 +92,16 @@ pub(crate) fn curvature_ps(crossing: &Crossing, timebase: &Timebase) -> f64 {
     if shift.is_nan() { tick * PS } else { shift.min(tick) * PS }
 }
 
+/// A factor by which rounding cannot make a product too great.
+pub(crate) const ALMOST: f64 = 1.0 - 1e-12;
+
+/// Whether [`curvature_ps`] is surely less than `most_ps`; this needs no division.
+pub(crate) fn is_less_curved(crossing: &Crossing, timebase: &Timebase, most_ps: f64) -> bool {
+    let tick = timebase.tick_seconds();
+    let shift_ps = tick * tick * PS * crossing.acceleration.abs();
+    shift_ps < most_ps * (8.0 * crossing.speed) * ALMOST
+}
+
 /// Formats a time of the capture for a message.
 pub(crate) fn moment(ps: impl Into<i128>) -> String {
     let ps = ps.into() as f64;
@@ -141,7 +151,13 @@ mod tests {
         for (speed, acceleration, ps) in cases {
             let found = curvature_ps(&crossing(0, 0.0, speed, acceleration), &timebase);
             assert!((found - ps).abs() < 1e-6, "{found} {ps}");
+            for most in [0.0, 1.0, 99.0, 101.0, 9e3, 2e4] {
+                let is_less =
+                    is_less_curved(&crossing(0, 0.0, speed, acceleration), &timebase, most);
+                assert!(!is_less || found < most, "{found} {most}");
+            }
         }
+        assert!(is_less_curved(&crossing(0, 0.0, 1e4, 8e6), &timebase, 101.0));
     }
 
     #[test]

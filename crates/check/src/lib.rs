@@ -12,6 +12,7 @@ mod checker;
 mod csv_out;
 mod edge;
 mod error;
+mod exact;
 mod follow;
 mod fst_out;
 mod gtkw;
@@ -36,7 +37,7 @@ mod worst_lines;
 
 pub use axis_check::AxisSetup;
 pub use beside::check_beside;
-pub use checker::{Checker, Setup};
+pub use checker::{Checker, Part, Setup};
 pub use csv_out::csv_writer;
 pub use edge::{Pin, PinChange, PinSink, Tee};
 pub use error::{ReadError, TraceError};

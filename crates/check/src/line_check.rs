@@ -11,10 +11,15 @@ use crate::ideal::nearest;
 use crate::worst_lines::{OnLine, WorstLines};
 use carrystep_core::StartPhase;
 use carrystep_profile::{Course, Reader};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
+mod part;
+
+pub(crate) use part::LinesPart;
+
 /// The greatest deviation of two axes from each other on one line.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Worst {
     /// Deviation beyond half a step of both axes, in 1 / (4 n m) of the line for axes of n and m
     /// steps; negative if they are nearer.
@@ -34,9 +39,11 @@ struct LineCheck {
     speed: f64,
     /// Pulses that each axis has to make before the line.
     before: Vec<u64>,
-    /// For each pair of axes, at the place that [`pair`] gives.
-    pairs: Vec<Option<Worst>>,
+    pairs: Pairs,
 }
+
+/// For each pair of axes, at the place that [`pair`] gives.
+type Pairs = Vec<Option<Worst>>;
 
 /// How far an axis was off its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +70,13 @@ pub(crate) struct LinesCheck {
     lines: VecDeque<LineCheck>,
     /// Number of lines that all axes have travelled.
     travelled: usize,
+    /// Number of lines, the first ones, that had begun before the part of the capture that is
+    /// checked; 0 if the check began where the capture begins.
+    earlier: usize,
+    /// Of the earlier lines, those that all axes have travelled.
+    ended: Vec<Pairs>,
+    /// The pulses of each axis before that part.
+    before: Vec<u64>,
     /// Of each axis, the number of the first line that its pulses have not passed.
     reached: Vec<usize>,
     /// For each axis, the lines that all axes have travelled.
@@ -80,6 +94,9 @@ impl LinesCheck {
             required: vec![0; axes],
             lines: VecDeque::new(),
             travelled: 0,
+            earlier: 0,
+            ended: Vec::new(),
+            before: vec![0; axes],
             reached: vec![0; axes],
             worst: vec![WorstLines::default(); axes],
         }
@@ -106,10 +123,7 @@ impl LinesCheck {
     fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
-        while self.required[axis] < pulse {
-            let Some(course) = self.courses.next() else { break };
-            self.begin(course);
-        }
+        while self.required[axis] < pulse && self.begin_next() {}
         let place = self.reached[axis].max(self.travelled);
         for (number, check) in (self.travelled..).zip(&mut self.lines).skip(place - self.travelled)
         {
@@ -126,8 +140,9 @@ impl LinesCheck {
         self.reached[axis] = self.travelled + self.lines.len();
     }
 
-    /// Adds the next move, if its axes travel along a line.
-    fn begin(&mut self, Course { steps, line_speed }: Course) {
+    /// Adds the next move, if its axes travel along a line. False if there is no further move.
+    fn begin_next(&mut self) -> bool {
+        let Some(Course { steps, line_speed }) = self.courses.next() else { return false };
         let before = self.required.clone();
         for (sum, steps) in self.required.iter_mut().zip(&steps) {
             *sum += steps.unsigned_abs();
@@ -136,6 +151,7 @@ impl LinesCheck {
             let pairs = vec![None; steps.len() * steps.len()];
             self.lines.push_back(LineCheck { steps, speed, before, pairs });
         }
+        true
     }
 
     /// Ends the check of the first lines, as far as all axes have travelled them.
@@ -143,9 +159,17 @@ impl LinesCheck {
         while self.lines.front().is_some_and(|check| check.is_over(&self.pulses)) {
             let Some(check) = self.lines.pop_front() else { return };
             self.travelled += 1;
-            for (axis, worst) in self.worst.iter_mut().enumerate() {
-                check.deviation(axis).into_iter().for_each(|deviation| worst.add(deviation));
+            if self.travelled <= self.earlier {
+                self.ended.push(check.pairs);
+            } else {
+                self.keep_worst(&check);
             }
+        }
+    }
+
+    fn keep_worst(&mut self, check: &LineCheck) {
+        for (axis, worst) in self.worst.iter_mut().enumerate() {
+            check.deviation(axis).into_iter().for_each(|deviation| worst.add(deviation));
         }
     }
 

@@ -59,6 +59,16 @@ impl RunningOrigin {
         }
     }
 
+    /// The origin from which errors are counted, ps; `None` if it is not estimated yet.
+    pub(crate) fn base_ps(&self) -> Option<i64> {
+        self.base_ps
+    }
+
+    /// Sets the origin, where the beginning of the capture was read before.
+    pub(crate) fn set_base_ps(&mut self, base_ps: Option<i64>) {
+        self.base_ps = base_ps;
+    }
+
     pub(crate) fn base(&self) -> Base {
         Base { ps: self.base_ps.unwrap_or(0), is_sure: self.origin != Origin::Midpoint }
     }

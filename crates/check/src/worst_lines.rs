@@ -15,19 +15,24 @@
 //!          +------------------------- t
 //! ```
 
+use crate::exact;
+use serde::{Deserialize, Serialize};
+
 /// The greatest deviation of an axis on one line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct OnLine {
     /// The deviation, steps.
+    #[serde(with = "exact")]
     pub steps: f64,
     /// The greatest speed of the axis on the line, steps/s.
+    #[serde(with = "exact")]
     pub speed: f64,
     /// Number of the pulse, on any axis, after which it occurred.
     pub pulse: u64,
 }
 
 /// The lines of one axis that may be the worst, by speed and by deviation from the least one up.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WorstLines(Vec<OnLine>);
 
 impl WorstLines {

@@ -11,18 +11,18 @@ use crate::report::AxisReport;
 impl AxisCheck<'_> {
     /// Judges the axis. All changes were taken with `origin_ps`; `shift_ps` is added to it now.
     pub(crate) fn finish(mut self, origin_ps: i64, shift_ps: i64, line: Option<Off>) -> AxisReport {
-        if self.watch.step() {
+        if self.found.watch.step() {
             self.fail("STEP is still high when the capture ends");
         }
         self.miss_rest(origin_ps.saturating_add(shift_ps));
-        let found = self.watch.pulses();
+        let found = self.found.watch.pulses();
         if found != self.travel.pulses {
             self.fail(&format!("{found} pulses, {} expected", self.travel.pulses));
         }
-        if self.position != self.travel.position {
+        if self.found.position != self.travel.position {
             self.fail(&format!(
                 "final position {}, {} expected",
-                self.position, self.travel.position
+                self.found.position, self.travel.position
             ));
         }
         let phase = phase_ps(&self.timebase);
@@ -33,15 +33,15 @@ impl AxisCheck<'_> {
                 "{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"
             ));
         }
-        let Shortest { step_high, step_low, dir_setup, dir_hold } = self.watch.shortest();
+        let Shortest { step_high, step_low, dir_setup, dir_hold } = self.found.watch.shortest();
         let required = self.pins_ns;
         self.judge_pin("STEP high", step_high, required.step_high);
         self.judge_pin("STEP low", step_low, required.step_low);
         self.judge_pin("DIR set-up", dir_setup, required.dir_setup);
         self.judge_pin("DIR hold", dir_hold, required.dir_hold);
         let ns = |stretch: Option<Stretch>| stretch.map(|stretch| stretch.ps as f64 / NS);
-        let errors = self.errors.shifted(-(shift_ps as f64));
-        self.failures.append(&mut self.pulse_failures);
+        let errors = self.found.errors.shifted(-shift_ps);
+        self.failures.append(&mut self.found.pulse_failures);
         AxisReport {
             axis: self.name.to_owned(),
             unit: self.unit.cloned(),
@@ -49,8 +49,8 @@ impl AxisCheck<'_> {
             pulses_expected: self.travel.pulses,
             pulses_found: found,
             position_expected: self.travel.position,
-            position_found: self.position,
-            pulses_wrong_direction: self.wrong_direction,
+            position_found: self.found.position,
+            pulses_wrong_direction: self.found.wrong_direction,
             error_min_ns: errors.min().map(|e| e.value / NS),
             error_max_ns: errors.max().map(|e| e.value / NS),
             error_rms_ns: errors.rms().map(|rms| rms / NS),
@@ -66,19 +66,19 @@ impl AxisCheck<'_> {
             dir_setup_required_ns: required.dir_setup as f64,
             dir_hold_min_ns: ns(dir_hold),
             dir_hold_required_ns: required.dir_hold as f64,
-            period_jitter_max_ns: self.jitter_ps.map(|jitter| jitter / NS),
-            period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
-            speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),
-            speed_ripple_theory_percent: 100.0 * phase / self.shortest_ideal_ps,
+            period_jitter_max_ns: self.found.jitter_ps.map(|jitter| jitter / NS),
+            period_jitter_theory_ns: (phase + 2.0 * self.found.curvature_ps) / NS,
+            speed_ripple_max_percent: self.found.ripple.map(|ripple| 100.0 * ripple),
+            speed_ripple_theory_percent: 100.0 * phase / self.found.shortest_ideal_ps,
             line_off_max_steps: line.map(|off| off.steps),
             line_off_bound_steps: line.map(|off| off.bound),
             failures: self.failures,
-            failures_omitted: self.omitted,
+            failures_omitted: self.found.omitted,
         }
     }
 
     fn judge_errors(&mut self, shift: f64, bound: f64) {
-        let worst = [(self.errors.min(), "early"), (self.errors.max(), "late")];
+        let worst = [(self.found.errors.min(), "early"), (self.found.errors.max(), "late")];
         for (extreme, word) in worst {
             let Some(extreme) = extreme else { continue };
             let error = extreme.value - shift;
