@@ -196,8 +196,10 @@ fn parts_that_do_not_follow_are_refused() {
     let machine = Machine::there_and_back(1);
     let setup = setup(&machine, true, false);
     let train = machine.train();
-    let place = train.len() / 2;
-    let ps = train[place - 1].ps + 1;
+    let is_high = |place: &usize| train[place - 1].pin == Pin::Step && train[place - 1].level;
+    let place = (train.len() / 2..).find(is_high).unwrap();
+    // The crossing is at most a phase after the pulse.
+    let ps = train[place - 1].ps + 100_000;
     let part = |from: usize, levels: (bool, Option<bool>)| {
         let mut checker = Checker::new(setup.clone());
         checker.begin_at(ps, Some(ORIGIN_PS), &[levels]);
@@ -215,8 +217,21 @@ fn parts_that_do_not_follow_are_refused() {
     assert!(begun(place).append(&part(place, (step, None))));
     assert!(!begun(place).append(&part(place, (!step, None))), "STEP");
     assert!(!begun(place).append(&part(place, (step, Some(!dir)))), "DIR");
+    assert!(step, "the part begins while STEP is high");
     // Two pulses are missing.
     assert!(!begun(place - 4).append(&good), "another crossing");
+    // A pulse too many is the first of the part.
+    let mut train = train.clone();
+    let mut extra = train[place - 1];
+    extra.ps += 2 * HIGH_PS;
+    let fall = PinChange { ps: extra.ps + HIGH_PS, level: false, ..extra };
+    train.extend([extra, fall]);
+    train.sort_by_key(|change| change.ps);
+    let mut checker = Checker::new(setup.clone());
+    checker.begin_at(extra.ps, Some(ORIGIN_PS), &[(false, Some(dir))]);
+    checker.changes(&train[place + 1..]).unwrap();
+    assert_eq!(train[place + 1], extra);
+    assert!(!begun(place + 1).append(&checker.into_part()), "a pulse too many");
     let mut other = Checker::new(setup.clone());
     other.begin_at(ps, Some(ORIGIN_PS + 1), &[(step, None)]);
     other.changes(&train[place..]).unwrap();
