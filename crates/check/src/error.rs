@@ -2,6 +2,7 @@
 //!
 //! The messages are part of the command's interface: transcripts in tests/ quote them.
 
+use carrystep_files::InputFailure;
 use std::io;
 use thiserror::Error;
 
@@ -12,6 +13,23 @@ pub enum TraceError {
     /// A VCD cannot be used.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// A capture cannot be opened.
+    #[error(transparent)]
+    Open(#[from] InputFailure),
+    /// A slice was not cut from this capture.
+    #[error("slice {number} is of another capture, or the capture was changed since")]
+    OtherCapture {
+        /// Number of the slice.
+        number: u64,
+    },
+    /// A slice does not begin where the one before it ends.
+    #[error(
+        "slice {number} does not follow the one before it: other moves or another carrystep have cut it; check all slices again"
+    )]
+    NotInOrder {
+        /// Number of the slice.
+        number: u64,
+    },
     /// A file cannot be written.
     #[error("cannot write {what}: {source}")]
     Write {
@@ -135,6 +153,23 @@ pub enum ReadError {
         /// What is wrong with it, in words.
         message: String,
     },
+}
+
+impl ReadError {
+    /// The error with so many lines added to its line.
+    #[must_use]
+    pub(crate) fn later(mut self, lines: u64) -> Self {
+        match &mut self {
+            Self::Syntax { line, .. }
+            | Self::Truncated { line, .. }
+            | Self::Timescale { line, .. }
+            | Self::TimeBackwards { line, .. }
+            | Self::TimeRange { line, .. }
+            | Self::Depth { line, .. } => *line += lines,
+            _ => {}
+        }
+        self
+    }
 }
 
 fn candidates(found: &[String]) -> String {

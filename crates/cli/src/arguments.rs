@@ -8,6 +8,7 @@ mod sweep;
 mod table;
 
 use carrystep_simulators::Level;
+use carrystep_sweep::Shard;
 use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser};
@@ -232,6 +233,16 @@ pub struct CheckArguments {
     /// Uncertainty of the capture's times; for a logic analyser one sample period.
     #[arg(long, default_value_t = 0, value_name = "NS")]
     pub slack_ns: u64,
+    /// Check only this slice of the capture: 3/64 is the third of sixty-four. It is kept in the file
+    /// of --out, and gives no verdict.
+    #[arg(long, value_name = "N/OF", requires = "out", conflicts_with_all = ["junit", "json"])]
+    pub slice: Option<Shard>,
+    /// The file of the slice.
+    #[arg(long, value_name = "SLICE", requires = "slice")]
+    pub out: Option<PathBuf>,
+    /// Make one report of all slices, from their files.
+    #[arg(long, value_name = "SLICE", num_args = 1.., conflicts_with = "slice")]
+    pub merge: Vec<PathBuf>,
     /// Also write the result as JUnit XML, a test case for each axis.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,

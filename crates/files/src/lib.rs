@@ -26,6 +26,7 @@ mod number;
 mod output;
 mod place;
 mod registry;
+pub mod sealed;
 mod state_file;
 mod toml_lines;
 pub mod unit;

@@ -1,22 +1,20 @@
 //! The file in which a shard keeps its progress, so that it can be killed and started again.
 //!
-//! The first line has the name of the format, its version and the SHA-256 of the rest. The rest is
-//! JSON: the judged cases and their report. The file is always replaced as a whole, so a killed
-//! process leaves a whole file. A file that was changed or cut off in another way does not have its
-//! SHA-256 and is refused.
+//! It is a sealed file of JSON: the judged cases and their report. It is always replaced as a whole,
+//! so a killed process leaves a whole file.
 
 use crate::difference::Difference;
 use crate::error::{PartFault, SweepError};
 use crate::progress::Progress;
 use crate::report::SweepReport;
 use carrystep_files::StateFile;
+use carrystep_files::sealed::{SealFault, seal, unseal};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The beginning of each such file.
-const NAME: &str = "carrystep-sweep-shard ";
+const NAME: &str = "carrystep-sweep-shard";
 
 /// The version of the format.
 const VERSION: &str = "1";
@@ -108,36 +106,29 @@ impl KeptShard {
     }
 }
 
-fn sum(body: &[u8]) -> String {
-    Sha256::digest(body).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 fn text(progress: &Progress) -> Result<Vec<u8>, SweepError> {
     let body = Body { done: progress.ranges(), report: &progress.report };
-    let body = serde_json::to_vec_pretty(&body)
+    let body = serde_json::to_string_pretty(&body)
         .map_err(|error| SweepError::NotMade(format!("no JSON: {error}")))?;
-    let mut text = format!("{NAME}{VERSION} {}\n", sum(&body)).into_bytes();
-    text.extend(body);
-    Ok(text)
+    Ok(seal(NAME, VERSION, &body).into_bytes())
 }
 
 /// The progress in these bytes; `None` if they are not such a file at all.
 pub(crate) fn parse(bytes: &[u8]) -> Option<Result<Progress, PartFault>> {
-    let rest = bytes.strip_prefix(NAME.as_bytes())?;
-    let line = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
-    let (head, body) = rest.split_at(line);
-    Some(parse_rest(&String::from_utf8_lossy(head), body.get(1..).unwrap_or_default()))
+    Some(unseal(NAME, VERSION, bytes)?.map_err(PartFault::from).and_then(progress))
 }
 
-fn parse_rest(head: &str, body: &[u8]) -> Result<Progress, PartFault> {
-    let (version, hash) = head.split_once(' ').ok_or(PartFault::Damaged)?;
-    if version != VERSION {
-        return Err(PartFault::Version(version.to_owned()));
-    }
-    if hash != sum(body) {
-        return Err(PartFault::Damaged);
-    }
+fn progress(body: &[u8]) -> Result<Progress, PartFault> {
     let Body { done, report }: Body<SweepReport> =
         serde_json::from_slice(body).map_err(|_| PartFault::Damaged)?;
     Progress::checked(report, &done)
+}
+
+impl From<SealFault> for PartFault {
+    fn from(fault: SealFault) -> Self {
+        match fault {
+            SealFault::Damaged => Self::Damaged,
+            SealFault::Version(version) => Self::Version(version),
+        }
+    }
 }

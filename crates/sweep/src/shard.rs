@@ -62,7 +62,7 @@ impl FromStr for Shard {
             Some((Ok(number), Ok(count))) if (1..=count).contains(&number) => {
                 Ok(Self { number, count })
             }
-            _ => Err(format!("'{text}' is no shard: 3/16 is the third of sixteen")),
+            _ => Err(format!("'{text}' is not N/OF: 3/16 is the third of sixteen")),
         }
     }
 }

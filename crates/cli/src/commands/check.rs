@@ -1,14 +1,20 @@
-//! `carrystep check`: checks any VCD against a move file.
+//! `carrystep check`: checks any VCD against a move file, as a whole or in slices.
 
 use crate::arguments::CheckArguments;
 use crate::failure::Failure;
 use crate::junit::JunitFile;
+use crate::output::OutputFile;
 use crate::{job, output};
-use carrystep_check::{CheckReport, Origin, SignalMap, TraceError, VcdReader, check_beside};
+use carrystep_check::{
+    Capture, CheckReport, Origin, Setup, SignalMap, SliceFault, Slices, TraceError, check_beside,
+};
 use carrystep_core::Timebase;
+use carrystep_files::OutputClaim;
 use carrystep_plan::{AxisTotals, Pass, Survey};
+use carrystep_sweep::Shard;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::io::{self, Write as _};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -18,12 +24,20 @@ pub struct Checked<'a> {
     check: &'a CheckReport,
 }
 
-/// Checks a capture and prints the report.
+/// Checks a capture and prints the report, or keeps what a slice of it shows.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let survey = job::survey(job::load(&arguments.file, arguments.fit_ns)?, |_| Ok(()))?;
     let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
     let mut junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
-    let report = read(arguments, &survey)?;
+    let out = arguments.out.as_deref().map(OutputFile::claim).transpose()?;
+    let map =
+        SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
+    let names: Vec<&str> = survey.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
+    let check = Check::new(arguments, &survey, &names, &map)?;
+    if let (Some(shard), Some(out)) = (arguments.slice, out) {
+        return check.slice(shard, out);
+    }
+    let report = if arguments.merge.is_empty() { check.whole()? } else { check.merged()? };
     if let Some(mut junit) = junit.take() {
         for axis in &report.axes {
             junit.case(format!("axis {}", axis.axis), &axis.failures);
@@ -45,47 +59,131 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     if report.passed() { Ok(()) } else { Err(Failure::Check) }
 }
 
-fn read(arguments: &CheckArguments, survey: &Survey) -> Result<CheckReport, Failure> {
-    job::fits_a_capture(survey)?;
-    let timebase = survey.build().timebase;
-    let unusable =
-        |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
-    let capture = carrystep_files::open(&arguments.capture)
-        .map_err(|error| Failure::input(error.to_string()))?;
-    let map =
-        SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
-    let names: Vec<&str> = survey.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
-    let reader =
-        VcdReader::new(capture, &names, &map).map_err(|error| unusable(error.to_string()))?;
-    if let Some(own) = reader.own().filter(|own| own.timebase != timebase) {
-        return Err(unusable(format!(
-            "recorded from gateware with {}, but the machine of {} has {}",
-            figures(&own.timebase),
-            arguments.file.display(),
-            figures(&timebase)
-        )));
+/// A capture, and what it is checked against.
+struct Check<'a> {
+    arguments: &'a CheckArguments,
+    survey: &'a Survey,
+    capture: Capture<'a>,
+    origin: Origin,
+}
+
+impl<'a> Check<'a> {
+    fn new(
+        arguments: &'a CheckArguments,
+        survey: &'a Survey,
+        names: &'a [&'a str],
+        map: &'a SignalMap,
+    ) -> Result<Self, Failure> {
+        job::fits_a_capture(survey)?;
+        let timebase = survey.build().timebase;
+        let failed = |error| unusable(arguments, error);
+        let capture = Capture::new(&arguments.capture, names, map).map_err(failed)?;
+        let own = capture.open().map_err(failed)?.own();
+        if let Some(own) = own.filter(|own| own.timebase != timebase) {
+            return Err(Failure::input(format!(
+                "{}: recorded from gateware with {}, but the machine of {} has {}",
+                arguments.capture.display(),
+                figures(&own.timebase),
+                arguments.file.display(),
+                figures(&timebase)
+            )));
+        }
+        let origin = match (arguments.origin_ps, own) {
+            (Some(ps), _) => Origin::Fixed { ps },
+            (None, Some(own)) => Origin::Known { ps: own.origin_ps },
+            (None, None) => Origin::Midpoint,
+        };
+        uncertain_by_less_than_a_period(arguments.slack_ns, survey)?;
+        Ok(Self { arguments, survey, capture, origin })
     }
-    let origin = match (arguments.origin_ps, reader.own()) {
-        (Some(ps), _) => Origin::Fixed { ps },
-        (None, Some(own)) => Origin::Known { ps: own.origin_ps },
-        (None, None) => Origin::Midpoint,
-    };
-    uncertain_by_less_than_a_period(arguments.slack_ns, survey)?;
-    let Pass { timelines, courses, .. } = survey.begin();
-    let mut setup = job::check_setup(survey, &timelines, courses, origin);
-    // Only the checker keeps a place in the plan.
-    drop(timelines);
-    setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
-    let (played, report) = check_beside(setup, |mut checker| reader.play(&mut checker));
-    survey.whole()?;
-    let played = played.map_err(|error| match error {
-        TraceError::Read(error) => unusable(error.to_string()),
-        other => other.into(),
-    })?;
-    if let Origin::Fixed { ps } = origin {
-        overlap(ps, played.end_ps, survey).map_err(unusable)?;
+
+    /// A new pass through the moves.
+    fn setup(&self) -> Setup<'a> {
+        // Only the checker keeps a place in the plan.
+        let Pass { timelines, courses, .. } = self.survey.begin();
+        let mut setup = job::check_setup(self.survey, &timelines, courses, self.origin);
+        setup.slack_ps = self.arguments.slack_ns.saturating_mul(1000);
+        setup
     }
-    Ok(report)
+
+    /// Checks the whole capture.
+    fn whole(&self) -> Result<CheckReport, Failure> {
+        let failed = |error| unusable(self.arguments, error);
+        let reader = self.capture.open().map_err(failed)?;
+        let (played, report) = check_beside(self.setup(), |mut checker| reader.play(&mut checker));
+        self.survey.whole()?;
+        self.overlap(played.map_err(failed)?.end_ps)?;
+        Ok(report)
+    }
+
+    /// Checks a slice and keeps it in a file.
+    fn slice(&self, shard: Shard, out: OutputClaim) -> Result<(), Failure> {
+        let checked = self.capture.check_slice(|| self.setup(), shard.number, shard.count);
+        self.survey.whole()?;
+        let slice = checked.map_err(|error| unusable(self.arguments, error))?;
+        let (from, to) = slice.bytes();
+        let mut out = OutputFile::begin(out)?;
+        out.text(&Slices::text(slice, self.options())?)?;
+        let path = out.keep()?;
+        output::print(&format!(
+            "slice {shard}: bytes {from} to {to} of the capture are in {}; --merge gives the verdict\n",
+            path.display()
+        ))
+    }
+
+    /// Merges all slices.
+    fn merged(&self) -> Result<CheckReport, Failure> {
+        let mut slices = Slices::default();
+        self.arguments.merge.iter().try_for_each(|file| slices.add(file))?;
+        let (slices, options) = slices.in_order()?;
+        if options != self.options() {
+            return Err(Failure::input(
+                "the slices were checked with other options (--fit-ns, --map, --origin-ps, --slack-ns) than this merge",
+            ));
+        }
+        let merged = self.capture.merge(self.setup(), &slices);
+        self.survey.whole()?;
+        let merged = merged.map_err(|error| unusable(self.arguments, error))?;
+        self.overlap(merged.end_ps)?;
+        for number in merged.again {
+            let _ = writeln!(
+                io::stderr(),
+                "note: slice {number} did not begin as the slices before it ended, and was checked again"
+            );
+        }
+        Ok(merged.report)
+    }
+
+    /// The options that decide the report.
+    fn options(&self) -> Vec<String> {
+        let CheckArguments { map, origin_ps, slack_ns, fit_ns, .. } = self.arguments;
+        let mut options = map.clone();
+        options.sort();
+        options.extend([format!("{origin_ps:?}"), format!("{slack_ns}"), format!("{fit_ns:?}")]);
+        options
+    }
+
+    /// Refuses an origin with which no move overlaps the capture, which ends at `end_ps`.
+    fn overlap(&self, end_ps: u64) -> Result<(), Failure> {
+        let Origin::Fixed { ps } = self.origin else { return Ok(()) };
+        let capture = self.arguments.capture.display();
+        overlap(ps, end_ps, self.survey)
+            .map_err(|reason| Failure::input(format!("{capture}: {reason}")))
+    }
+}
+
+/// The failure of reading a capture.
+fn unusable(arguments: &CheckArguments, error: TraceError) -> Failure {
+    match error {
+        TraceError::Write { .. } | TraceError::Open(_) => error.into(),
+        other => Failure::input(format!("{}: {other}", arguments.capture.display())),
+    }
+}
+
+impl From<SliceFault> for Failure {
+    fn from(error: SliceFault) -> Self {
+        Self::input(error.to_string())
+    }
 }
 
 /// Refuses a slack of more than half of the shortest period, because a pulse could then match the

@@ -116,7 +116,7 @@ fn refused_arguments_are_reported_as_a_document() {
         ("--json", "'--json'"),
         ("simulat --json", "unrecognized subcommand 'simulat'"),
         ("simulate m.toml --level slow --json", "invalid value 'slow'"),
-        ("sweep --json --shard 0/3 s.toml", "'0/3' is no shard"),
+        ("sweep --json --shard 0/3 s.toml", "'0/3' is not N/OF"),
     ] {
         let found = error(&folder.run(arguments), 2);
         assert_eq!(found["kind"], "usage");
