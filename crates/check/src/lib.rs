@@ -54,7 +54,7 @@ pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
 pub use report::{AxisReport, CheckReport, OriginKind};
 pub use signal_map::SignalMap;
-pub use slice_file::{SliceFault, Slices};
+pub use slice_file::{SliceFault, SliceSettings, Slices};
 pub use slices::{Capture, Merged, Slice};
 pub use vcd_in::VcdReader;
 pub use vcd_out::vcd_writer;

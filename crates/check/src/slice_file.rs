@@ -98,22 +98,40 @@ impl fmt::Display for Numbers {
 
 /// What must be the same for all slices of a check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-struct Settings {
+pub struct SliceSettings {
     carrystep: String,
-    /// The options of the check, as they were given.
     options: Vec<String>,
+    moves: String,
+}
+
+impl SliceSettings {
+    /// `options` are those of the check, as they were given; `moves` tells machine and moves from
+    /// others.
+    pub fn new(options: Vec<String>, moves: String) -> Self {
+        Self { carrystep: env!("CARGO_PKG_VERSION").to_owned(), options, moves }
+    }
+
+    /// What differs from others, in words.
+    fn difference(&self, other: &Self) -> Option<&'static str> {
+        let differences = [
+            ("the versions of carrystep", self.carrystep != other.carrystep),
+            ("the options", self.options != other.options),
+            ("the moves or the machines", self.moves != other.moves),
+        ];
+        differences.into_iter().find(|(_, differ)| *differ).map(|(what, _)| what)
+    }
 }
 
 #[derive(Serialize, Deserialize)]
 struct Body {
-    settings: Settings,
+    settings: SliceSettings,
     slice: Slice,
 }
 
 /// The slices of a check, which were read from their files.
 #[derive(Debug, Default)]
 pub struct Slices {
-    slices: BTreeMap<u64, (String, Settings, Slice)>,
+    slices: BTreeMap<u64, (String, SliceSettings, Slice)>,
 }
 
 impl Slices {
@@ -121,8 +139,7 @@ impl Slices {
     ///
     /// # Errors
     /// [`SliceFault::NotMade`].
-    pub fn text(slice: Slice, options: Vec<String>) -> Result<String, SliceFault> {
-        let settings = Settings { carrystep: env!("CARGO_PKG_VERSION").to_owned(), options };
+    pub fn text(slice: Slice, settings: SliceSettings) -> Result<String, SliceFault> {
         Ok(seal(NAME, VERSION, &serde_json::to_string(&Body { settings, slice })?))
     }
 
@@ -146,12 +163,9 @@ impl Slices {
             Err(fault) => return Err(SliceFault::Seal { path, fault }),
         };
         if let Some((one, first, begun)) = self.slices.values().next() {
-            let differences = [
-                ("the numbers of slices", begun.count != slice.count),
-                ("the versions of carrystep", first.carrystep != settings.carrystep),
-                ("the options", first.options != settings.options),
-            ];
-            if let Some((what, _)) = differences.into_iter().find(|(_, differs)| *differs) {
+            let differs = begun.count != slice.count;
+            let count = differs.then_some("the numbers of slices");
+            if let Some(what) = count.or_else(|| first.difference(&settings)) {
                 return Err(SliceFault::NotOneCheck { one: one.clone(), other: path, what });
             }
         }
@@ -163,15 +177,18 @@ impl Slices {
         Ok(())
     }
 
-    /// All slices in order, and the options with which they were checked.
+    /// All slices in order, if they were checked with these settings.
     ///
     /// # Errors
-    /// [`SliceFault::Missing`].
-    pub fn in_order(self) -> Result<(Vec<Slice>, Vec<String>), SliceFault> {
-        let mut options = Vec::new();
+    /// [`SliceFault::Missing`] or [`SliceFault::NotOneCheck`].
+    pub fn in_order(self, settings: &SliceSettings) -> Result<Vec<Slice>, SliceFault> {
         let mut count = 0;
-        for (_, settings, slice) in self.slices.values() {
-            (count, options) = (slice.count, settings.options.clone());
+        if let Some((one, own, slice)) = self.slices.values().next() {
+            if let Some(what) = own.difference(settings) {
+                let (one, other) = (one.clone(), "this merge".to_owned());
+                return Err(SliceFault::NotOneCheck { one, other, what });
+            }
+            count = slice.count;
         }
         let left = count - (self.slices.len() as u64).min(count);
         if left > 0 || count == 0 {
@@ -180,6 +197,6 @@ impl Slices {
             let more = left - (named.len() as u64).min(left);
             return Err(SliceFault::Missing { count, missing: Numbers(named, more) });
         }
-        Ok((self.slices.into_values().map(|(_, _, slice)| slice).collect(), options))
+        Ok(self.slices.into_values().map(|(_, _, slice)| slice).collect())
     }
 }

@@ -9,6 +9,7 @@
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
+use std::io::{self, BufRead as _, BufReader, Read};
 use thiserror::Error;
 
 /// Why such a file cannot be used.
@@ -24,7 +25,28 @@ pub enum SealFault {
 
 /// The SHA-256 of these bytes, in hexadecimal digits.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+    hex(&Sha256::digest(bytes))
+}
+
+/// The same for bytes of any number.
+///
+/// # Errors
+/// The bytes cannot be read.
+pub fn sha256_of(bytes: impl Read) -> io::Result<String> {
+    let (mut bytes, mut hash) = (BufReader::new(bytes), Sha256::new());
+    loop {
+        let buffer = bytes.fill_buf()?;
+        if buffer.is_empty() {
+            return Ok(hex(&hash.finalize()));
+        }
+        hash.update(buffer);
+        let length = buffer.len();
+        bytes.consume(length);
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     })

@@ -6,15 +6,17 @@ use crate::junit::JunitFile;
 use crate::output::OutputFile;
 use crate::{job, output};
 use carrystep_check::{
-    Capture, CheckReport, Origin, Setup, SignalMap, SliceFault, Slices, TraceError, check_beside,
+    Capture, CheckReport, Origin, Setup, SignalMap, SliceFault, SliceSettings, Slices, TraceError,
+    check_beside,
 };
 use carrystep_core::Timebase;
 use carrystep_files::OutputClaim;
+use carrystep_files::sealed::sha256_of;
 use carrystep_plan::{AxisTotals, Pass, Survey};
 use carrystep_sweep::Shard;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -123,7 +125,7 @@ impl<'a> Check<'a> {
         let slice = checked.map_err(|error| unusable(self.arguments, error))?;
         let (from, to) = slice.bytes();
         let mut out = OutputFile::begin(out)?;
-        out.text(&Slices::text(slice, self.options())?)?;
+        out.text(&Slices::text(slice, self.settings()?)?)?;
         let path = out.keep()?;
         output::print(&format!(
             "slice {shard}: bytes {from} to {to} of the capture are in {}; --merge gives the verdict\n",
@@ -135,12 +137,7 @@ impl<'a> Check<'a> {
     fn merged(&self) -> Result<CheckReport, Failure> {
         let mut slices = Slices::default();
         self.arguments.merge.iter().try_for_each(|file| slices.add(file))?;
-        let (slices, options) = slices.in_order()?;
-        if options != self.options() {
-            return Err(Failure::input(
-                "the slices were checked with other options (--fit-ns, --map, --origin-ps, --slack-ns) than this merge",
-            ));
-        }
+        let slices = slices.in_order(&self.settings()?)?;
         let merged = self.capture.merge(self.setup(), &slices);
         self.survey.whole()?;
         let merged = merged.map_err(|error| unusable(self.arguments, error))?;
@@ -154,13 +151,19 @@ impl<'a> Check<'a> {
         Ok(merged.report)
     }
 
-    /// The options that decide the report.
-    fn options(&self) -> Vec<String> {
-        let CheckArguments { map, origin_ps, slack_ns, fit_ns, .. } = self.arguments;
+    /// What decides the report besides the capture.
+    fn settings(&self) -> Result<SliceSettings, Failure> {
+        let CheckArguments { map, origin_ps, slack_ns, fit_ns, file, .. } = self.arguments;
         let mut options = map.clone();
         options.sort();
         options.extend([format!("{origin_ps:?}"), format!("{slack_ns}"), format!("{fit_ns:?}")]);
-        options
+        let machine = format!("{:?}", self.survey.machine());
+        let bytes = carrystep_files::open(file)
+            .map_err(|error| Failure::input(error.to_string()))?
+            .chain(machine.as_bytes());
+        let moves = sha256_of(bytes)
+            .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+        Ok(SliceSettings::new(options, moves))
     }
 
     /// Refuses an origin with which no move overlaps the capture, which ends at `end_ps`.

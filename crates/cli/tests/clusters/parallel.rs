@@ -42,3 +42,29 @@ fn shards_by_gnu_parallel_merge_to_one_run() {
     succeeded(&run_sh(&folder).output().unwrap());
     assert_eq!(folder.read("jobs/report.json"), folder.whole(), "byte for byte");
 }
+
+/// The line for GNU parallel in docs/checks.md, as it stands there.
+#[test]
+fn slices_of_a_capture_by_gnu_parallel_merge_to_one_check() {
+    let page = include_str!("../../../../docs/checks.md");
+    let line = page.lines().find_map(|line| line.strip_prefix("    parallel ")).unwrap();
+    let folder = Folder::new(&[100], &["a4988"], "60");
+    let text = folder.read("the sweep.toml");
+    let moves = text.split("'''").nth(1).unwrap();
+    let moves = moves.replace("{{ driver }}", "a4988").replace("{{ a_to }}", "9000");
+    std::fs::write(folder.path("move.toml"), moves).unwrap();
+    succeeded(&folder.carrystep(&["simulate", "move.toml", "--vcd", "long.vcd"]).output().unwrap());
+    let carrystep = std::path::Path::new(crate::folder::CARRYSTEP).parent().unwrap();
+    let path = format!("{}:{}", carrystep.display(), std::env::var("PATH").unwrap());
+    let mut parallel = Command::new("sh");
+    parallel.args(["-c", &format!("parallel {line}")]).current_dir(folder.path(""));
+    succeeded(&parallel.env("PATH", path).env("PARALLEL", "--jobs 2").output().unwrap());
+    let slices: Vec<String> = (1..=64).map(|slice| format!("{slice}.slice")).collect();
+    let check = ["check", "long.vcd", "move.toml", "--json"];
+    let mut merge = check.to_vec();
+    merge.push("--merge");
+    merge.extend(slices.iter().map(String::as_str));
+    let merged = folder.carrystep(&merge).output().unwrap();
+    assert_eq!(succeeded(&merged), succeeded(&folder.carrystep(&check).output().unwrap()));
+    assert!(merged.stderr.is_empty(), "{}", shown(&merged));
+}

@@ -11,6 +11,7 @@ mod bad_outputs;
 mod boards;
 #[cfg(unix)]
 mod cache;
+mod check_slices;
 #[cfg(target_os = "linux")]
 mod ci_action;
 mod clocks;
