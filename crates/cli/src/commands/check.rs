@@ -5,10 +5,7 @@ use crate::failure::Failure;
 use crate::junit::JunitFile;
 use crate::output::OutputFile;
 use crate::{job, output};
-use carrystep_check::{
-    Capture, CheckReport, Origin, Setup, SignalMap, SliceFault, SliceSettings, Slices, TraceError,
-    check_beside,
-};
+use carrystep_check::{Capture, CheckReport, Origin, Setup, SignalMap, TraceError, check_beside};
 use carrystep_core::Timebase;
 use carrystep_files::OutputClaim;
 use carrystep_files::sealed::sha256_of;
@@ -16,7 +13,10 @@ use carrystep_plan::{AxisTotals, Pass, Survey};
 use carrystep_sweep::Shard;
 use schemars::JsonSchema;
 use serde::Serialize;
+use slice_file::{SliceFault, SliceSettings, Slices};
 use std::io::{self, Read as _, Write as _};
+
+mod slice_file;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]

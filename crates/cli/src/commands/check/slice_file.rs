@@ -1,6 +1,6 @@
 //! The files in which slices of a check are kept until they are merged.
 
-use crate::slices::Slice;
+use carrystep_check::Slice;
 use carrystep_files::sealed::{SealFault, seal, unseal};
 use carrystep_files::{InputFailure, open};
 use serde::{Deserialize, Serialize};
