@@ -243,14 +243,14 @@ impl<'a> Capture<'a> {
         let Some(levels) = levels else {
             let reader = self.reader(range.end)?;
             let must_end = is_last && reader.own().is_some();
-            return reader.playing(&mut sink, must_end).to_the_end();
+            return reader.playing(&mut sink, must_end).play_out();
         };
         let header = self.open()?.into_header();
         let must_end = is_last && header.own.is_some();
         let levels = levels.into_iter().flat_map(|(step, dir)| [Some(step), dir]).collect();
         let player = Player::within(&mut sink, levels);
         let bytes = Box::new(self.bytes(range.clone())?);
-        let played = Playing::new(parser(bytes), header, player, must_end).to_the_end();
+        let played = Playing::new(parser(bytes), header, player, must_end).play_out();
         match played {
             Err(TraceError::Read(error)) => {
                 // Lines are counted from the start of the capture, but only if one is named.

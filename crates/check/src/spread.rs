@@ -90,13 +90,13 @@ impl Spread {
     pub(crate) fn rms(&self) -> Option<f64> {
         let (count, sum, squares, shift) = self.whole();
         let all = squares + (sum * 2 + count * &shift) * shift;
-        self.root(all * self.count)
+        self.root(&(all * self.count))
     }
 
     /// Root mean square about the mean, which is the standard deviation.
     pub(crate) fn deviation(&self) -> Option<f64> {
         let (count, sum, squares, _) = self.whole();
-        self.root(count * squares - sum.pow(2))
+        self.root(&(count * squares - sum.pow(2)))
     }
 
     /// Count, sum, sum of squares and shift.
@@ -106,7 +106,7 @@ impl Spread {
     }
 
     /// The square root of `squares`, which is in square units, divided by the count.
-    fn root(&self, squares: BigInt) -> Option<f64> {
+    fn root(&self, squares: &BigInt) -> Option<f64> {
         let root = squares.to_f64()?.sqrt();
         (self.count > 0).then(|| root / self.count as f64 / UNITS)
     }

@@ -111,7 +111,7 @@ impl<'a> VcdReader<'a> {
     /// [`TraceError`] if the sink cannot write.
     pub fn play(self, sink: &mut dyn PinSink) -> Result<Played, TraceError> {
         let must_end = self.header.own.is_some();
-        self.playing(sink, must_end).to_the_end()
+        self.playing(sink, must_end).play_out()
     }
 
     /// Begins to play. A capture that `must_end` is refused if its last line is missing.

@@ -45,7 +45,7 @@ impl<'a, 's> Playing<'a, 's> {
     }
 
     /// Plays all of it.
-    pub(crate) fn to_the_end(mut self) -> Result<Played, TraceError> {
+    pub(crate) fn play_out(mut self) -> Result<Played, TraceError> {
         while self.next()? {}
         if self.may_end {
             return self.player.finish();

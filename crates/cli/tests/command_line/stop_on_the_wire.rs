@@ -90,7 +90,8 @@ fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
         let asked = Instant::now();
         passed(&stop(&folder, &spy.port, ""));
         took.push(spy.stops.recv_timeout(Duration::from_secs(10)).unwrap() - asked);
-        assert_eq!(document(child)["stopped_by"], "stop");
+        let report = document(child);
+        assert_eq!(report["stopped_by"], "stop", "{report}");
     }
     println!("from the start of the command to its frame on the wire: {took:?}");
     assert!(took.iter().min().unwrap() <= &Duration::from_millis(100), "{took:?}");
