@@ -23,12 +23,20 @@ pub enum TraceError {
         number: u64,
     },
     /// A slice does not begin where the one before it ends.
-    #[error(
-        "slice {number} does not follow the one before it: other moves or another carrystep have cut it; check all slices again"
-    )]
+    #[error("slice {number} does not begin where the one before it ends: check all slices again")]
     NotInOrder {
         /// Number of the slice.
         number: u64,
+    },
+    /// A slice begins at an earlier time than that at which the one before it ends.
+    #[error("time goes back from {from} ps to {to} ps where slice {number} begins")]
+    TimeBackwards {
+        /// Number of the slice.
+        number: u64,
+        /// The last time before, ps.
+        from: u64,
+        /// The time that follows it, ps.
+        to: u64,
     },
     /// A file cannot be written.
     #[error("cannot write {what}: {source}")]

@@ -212,8 +212,8 @@ impl<'a> Capture<'a> {
             if from == to {
                 continue;
             }
-            if slice.from_ps.is_some_and(|ps| ps < end_ps) {
-                return Err(TraceError::NotInOrder { number });
+            if let Some(to) = slice.from_ps.filter(|&ps| ps < end_ps) {
+                return Err(TraceError::TimeBackwards { number, from: end_ps, to });
             }
             if !checker.append(&slice.part) {
                 let levels = (from > 0).then(|| checker.levels());

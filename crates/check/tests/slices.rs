@@ -174,6 +174,29 @@ fn mistakes_are_told_with_the_lines_of_the_capture() {
 }
 
 #[test]
+fn a_time_that_goes_back_between_two_slices_is_told() {
+    let machine = Machine::there_and_back(1);
+    let text = vector(&machine, &machine.train());
+    let (head, values) = text.split_at(text.find("#0").unwrap());
+    let half = values.len() / 2 + values[values.len() / 2..].find("\n#").unwrap() + 1;
+    let own = written(format!("{head}{}{}", &values[half..], &values[..half]));
+    let map = map(&machine);
+    let capture = Capture::new(&own.path, machine.names(), &map).unwrap();
+    let setup = machine.setup(KNOWN);
+    let (mut in_a_slice, mut between) = (0, 0);
+    for count in 2..10 {
+        let slice = |number| capture.check_slice(|| setup.clone(), number, count);
+        let told = match (1..=count).map(slice).collect::<Result<Vec<_>, _>>() {
+            Err(error) => (&mut in_a_slice, error),
+            Ok(slices) => (&mut between, capture.merge(setup.clone(), &slices).unwrap_err()),
+        };
+        *told.0 += 1;
+        assert!(told.1.to_string().contains("time goes back from "), "{}", told.1);
+    }
+    assert!(in_a_slice > 0 && between > 0, "{in_a_slice} {between}");
+}
+
+#[test]
 fn slices_of_other_captures_and_gaps_are_refused() {
     let machine = Machine::there_and_back(1);
     let train = machine.train();
@@ -194,7 +217,7 @@ fn slices_of_other_captures_and_gaps_are_refused() {
     let mut gap = slices(&one, 3);
     gap[1] = slices(&one, 4)[1].clone();
     let error = one.merge(setup.clone(), &gap).unwrap_err().to_string();
-    assert!(error.starts_with("slice 2 does not follow the one before it"), "{error}");
+    assert!(error.starts_with("slice 2 does not begin where"), "{error}");
     gap.truncate(1);
     assert!(one.merge(setup.clone(), &gap).is_err());
 }
