@@ -2,8 +2,9 @@
 //!
 //! `cargo test` runs the binaries one after another, so that one core idles while the last test of
 //! each binary ends. Here all binaries are built once, long ones are split into slices of their
-//! tests, and the slices run side by side, the longest first. The runner is our own because
-//! cargo-nextest would have to be compiled for many minutes before the first test.
+//! tests, and the slices run side by side, the longest first. Tests that mostly wait for a board in
+//! real time run beside them, one after the other. The runner is our own because cargo-nextest would
+//! have to be compiled for many minutes before the first test.
 //!
 //! The seconds of each test are remembered in `target/test-durations.json`, and each binary's
 //! output in `target/test-output/`.
@@ -23,7 +24,7 @@ use outcome::Counts;
 use process::Running;
 use report::TestReport;
 use schedule::Schedule;
-use slices::Slice;
+use slices::{Needs, Slice};
 use std::fs;
 use std::path::Path;
 use std::thread;
@@ -61,7 +62,8 @@ impl Workspace {
         let mut running: Vec<Running> = Vec::new();
         loop {
             let busy: usize = running.iter().map(|one| slices[one.slice].cores(cores)).sum();
-            if let Some(slice) = schedule.next(cores.saturating_sub(busy)) {
+            let waits = running.iter().any(|one| slices[one.slice].needs == Needs::Patience);
+            if let Some(slice) = schedule.next(cores.saturating_sub(busy), waits) {
                 running.push(self.start(&slices, slice, &outputs)?);
                 continue;
             }

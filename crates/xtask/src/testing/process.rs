@@ -166,6 +166,7 @@ impl Seen {
 
 #[cfg(test)]
 mod tests {
+    use super::super::slices::Needs;
     use super::{Binary, Running, Seen, Slice, listed, tests};
     use std::time::Duration;
 
@@ -206,7 +207,7 @@ mod tests {
             binary: 0,
             names,
             count,
-            is_wide: false,
+            needs: Needs::OneCore,
             seconds: 0.0,
         };
         for (name, count, passed, failed) in

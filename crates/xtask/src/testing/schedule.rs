@@ -1,68 +1,90 @@
-//! Which slice is started next: those that take all cores first, then the longest.
+//! Which slice is started next: those that take all cores first, then the longest. Slices that only
+//! wait run beside them, one after the other.
 
-use super::slices::Slice;
+use super::slices::{Needs, Slice};
 
 /// The slices that have not been started.
 pub struct Schedule {
     /// Place of each slice and the cores that it takes; the next one is the last.
-    waiting: Vec<(usize, usize)>,
+    working: Vec<(usize, usize)>,
+    /// The slices that only wait; the next one is the last.
+    waiting: Vec<usize>,
 }
 
 impl Schedule {
     /// Orders all slices for so many cores.
     pub fn new(slices: &[Slice], cores: usize) -> Self {
         let mut order: Vec<usize> = (0..slices.len()).collect();
+        let is_wide = |slice: &Slice| slice.needs == Needs::AllCores;
         order.sort_by(|&one, &other| {
             let (one, other) = (&slices[one], &slices[other]);
-            one.is_wide.cmp(&other.is_wide).then(one.seconds.total_cmp(&other.seconds))
+            is_wide(one).cmp(&is_wide(other)).then(one.seconds.total_cmp(&other.seconds))
         });
-        let waiting = order.into_iter().map(|place| (place, slices[place].cores(cores))).collect();
-        Self { waiting }
+        let waits = |place: &usize| slices[*place].needs == Needs::Patience;
+        let (waiting, working): (Vec<usize>, Vec<usize>) = order.into_iter().partition(waits);
+        let working = working.into_iter().map(|place| (place, slices[place].cores(cores)));
+        Self { working: working.collect(), waiting }
     }
 
-    /// The next slice for so many cores that are free. A wide slice is never passed by a later one,
-    /// so that it is not put off for ever.
-    pub fn next(&mut self, free: usize) -> Option<usize> {
-        self.waiting.pop_if(|(_, cores)| *cores <= free).map(|(place, _)| place)
+    /// The next slice for so many cores that are free; `waits` if a slice is running that only
+    /// waits. A wide slice is never passed by a later one, so that it is not put off for ever.
+    pub fn next(&mut self, free: usize, waits: bool) -> Option<usize> {
+        let next = if waits { None } else { self.waiting.pop() };
+        next.or_else(|| self.working.pop_if(|(_, cores)| *cores <= free).map(|(place, _)| place))
     }
 }
 
 impl Slice {
     /// How many of all cores it takes.
     pub fn cores(&self, all: usize) -> usize {
-        if self.is_wide { all } else { 1 }
+        match self.needs {
+            Needs::AllCores => all,
+            Needs::OneCore => 1,
+            Needs::Patience => 0,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Schedule, Slice};
+    use super::{Needs, Schedule, Slice};
 
-    fn slice(seconds: f64, is_wide: bool) -> Slice {
-        Slice { binary: 0, names: Vec::new(), count: None, is_wide, seconds }
+    fn slice(seconds: f64, needs: Needs) -> Slice {
+        Slice { binary: 0, names: Vec::new(), count: None, needs, seconds }
     }
 
     #[test]
     fn wide_slices_come_first_and_then_the_longest() {
-        let slices = [slice(1.0, false), slice(9.0, false), slice(2.0, true), slice(5.0, false)];
+        let slices = [(1.0, Needs::OneCore), (9.0, Needs::OneCore), (2.0, Needs::AllCores)];
+        let slices = slices.map(|(seconds, needs)| slice(seconds, needs));
         let mut schedule = Schedule::new(&slices, 2);
-        assert_eq!(schedule.next(1), None);
-        assert_eq!(schedule.next(2), Some(2));
-        assert_eq!(schedule.next(0), None);
-        assert_eq!(
-            [schedule.next(2), schedule.next(1), schedule.next(1)],
-            [Some(1), Some(3), Some(0)]
-        );
-        assert_eq!(schedule.next(2), None);
+        assert_eq!(schedule.next(1, false), None);
+        assert_eq!(schedule.next(2, false), Some(2));
+        assert_eq!(schedule.next(0, false), None);
+        assert_eq!([2, 1].map(|free| schedule.next(free, false)), [Some(1), Some(0)]);
+        assert_eq!(schedule.next(2, false), None);
+    }
+
+    #[test]
+    fn one_slice_that_waits_runs_beside_the_others() {
+        let slices = [(1.0, Needs::Patience), (2.0, Needs::AllCores), (5.0, Needs::Patience)];
+        let slices = slices.map(|(seconds, needs)| slice(seconds, needs));
+        let mut schedule = Schedule::new(&slices, 2);
+        assert_eq!(schedule.next(2, false), Some(2), "the longer one that waits");
+        assert_eq!(schedule.next(2, true), Some(1));
+        assert_eq!(schedule.next(0, true), None);
+        assert_eq!(schedule.next(0, false), Some(0));
+        assert_eq!(schedule.next(2, false), None);
     }
 
     /// The makespan of a simulated run is near the least that is possible.
     #[test]
     fn no_core_idles_at_the_end() {
-        let slices: Vec<Slice> = (1..=40).map(|n| slice(f64::from(n * 7 % 41), false)).collect();
+        let slices: Vec<Slice> =
+            (1..=40).map(|n| slice(f64::from(n * 7 % 41), Needs::OneCore)).collect();
         let mut schedule = Schedule::new(&slices, 2);
         let mut free_at = [0.0_f64; 2];
-        while let Some(place) = schedule.next(1) {
+        while let Some(place) = schedule.next(1, true) {
             let core = usize::from(free_at[1] < free_at[0]);
             free_at[core] += slices[place].seconds;
         }

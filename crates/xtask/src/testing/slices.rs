@@ -13,6 +13,37 @@ const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equa
 const WIDE: [&str; 2] =
     ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
 
+/// Binaries whose tests mostly wait for a board or a line that runs in real time.
+const WAITING: [&str; 4] = [
+    "carrystep-virtual-board::bad_line",
+    "carrystep-virtual-board::facts",
+    "carrystep-virtual-board::homing",
+    "carrystep-virtual-board::rates",
+];
+
+/// What a slice needs of the computer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// All cores.
+    AllCores,
+    /// One core.
+    OneCore,
+    /// Hardly anything: it runs beside others.
+    Patience,
+}
+
+impl Needs {
+    fn of(binary: &str) -> Self {
+        if WIDE.contains(&binary) {
+            Self::AllCores
+        } else if WAITING.contains(&binary) {
+            Self::Patience
+        } else {
+            Self::OneCore
+        }
+    }
+}
+
 /// Tests of a binary that run in one process, one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slice {
@@ -22,8 +53,8 @@ pub struct Slice {
     pub names: Vec<String>,
     /// How many tests it has, where that is known.
     pub count: Option<usize>,
-    /// Whether it takes all cores.
-    pub is_wide: bool,
+    /// What it needs.
+    pub needs: Needs,
     /// How long it is expected to take.
     pub seconds: f64,
 }
@@ -31,15 +62,15 @@ pub struct Slice {
 /// The slices of a binary; none where it has no tests.
 pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -> Vec<Slice> {
     let id = binary.id.as_str();
-    let is_wide = WIDE.contains(&id);
+    let needs = Needs::of(id);
     if !binary.lists {
         let seconds = memory.expect(id, &[String::new()]).into_iter().sum();
-        return vec![Slice { binary: place, names: Vec::new(), count: None, is_wide, seconds }];
+        return vec![Slice { binary: place, names: Vec::new(), count: None, needs, seconds }];
     }
     let expected = memory.expect(id, tests);
     let seconds: f64 = expected.iter().sum();
-    let parts =
-        if TOGETHER.contains(&id) || is_wide { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
+    let is_one = TOGETHER.contains(&id) || needs == Needs::AllCores;
+    let parts = if is_one { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
     let parts = split(&expected, (parts as usize).min(tests.len()));
     let is_whole = parts.len() == 1;
     let slice = |part: Vec<usize>| Slice {
@@ -50,7 +81,7 @@ pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -
             part.iter().map(|&test| tests[test].clone()).collect()
         },
         count: Some(part.len()),
-        is_wide,
+        needs,
         seconds: part.iter().map(|&test| expected[test]).sum(),
     };
     parts.into_iter().map(slice).collect()
