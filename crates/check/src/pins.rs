@@ -62,6 +62,7 @@ pub struct PinWatch {
     fall: Option<u64>,
     dir_change: Option<u64>,
     shortest: Shortest,
+    /// Of each kind, the first end of a time whose beginning was not seen; its length is 0.
     ends: Shortest,
 }
 

@@ -147,7 +147,7 @@ impl<'a> Capture<'a> {
     ) -> Result<Slice, TraceError> {
         let Beginning { origin_ps, settled } = self.beginning(Checker::new(setups()))?;
         let mut crossings = Checker::new(Setup { courses: None, ..setups() });
-        crossings.begin_at(0, origin_ps, &[]);
+        crossings.set_origin_ps(origin_ps);
         let mut cut = |number: u64| match number {
             0 => Ok(None),
             _ if number >= count => Ok(None),

@@ -139,7 +139,11 @@ fn cut(longest_ps: u64) -> impl Strategy<Value = Cut> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn parts_give_the_report_of_the_whole(
@@ -173,7 +177,7 @@ fn parts_of_a_good_capture_are_appended() {
             train[at].ps += 100_000;
         }
         let mut cuts = Checker::new(setup.clone());
-        cuts.begin_at(0, Some(ORIGIN_PS), &[]);
+        cuts.set_origin_ps(Some(ORIGIN_PS));
         let all = (1..50).map(|part| part * 10_000_000_000 + 12_345);
         let clear: Vec<Cut> = all
             .filter(|&ps| !cuts.is_near(ps))

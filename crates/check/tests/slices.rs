@@ -83,25 +83,19 @@ fn without_pulses(train: &[PinChange], lost: std::ops::Range<usize>) -> Vec<PinC
 }
 
 #[test]
-fn slices_of_a_carrystep_capture_are_all_appended() {
+fn slices_of_a_good_capture_are_all_appended() {
     let machine = Machine::there_and_back(3);
     let train = machine.train();
-    let own = written(machine.vcd(&train));
-    for count in [1, 2, 3, 5, 8, 40] {
-        let again = check(&own.path, &machine, &SignalMap::default(), &machine.setup(KNOWN), count);
-        assert_eq!(again, [0_u64; 0], "{count} slices");
-    }
-}
-
-#[test]
-fn slices_of_a_foreign_capture_are_all_appended() {
-    let machine = Machine::there_and_back(3);
-    let foreign = written(vector(&machine, &machine.train()));
-    let mut setup = machine.setup(Origin::Midpoint);
-    setup.slack_ps = 1000;
-    for count in [1, 2, 7, 30] {
-        let again = check(&foreign.path, &machine, &map(&machine), &setup, count);
-        assert_eq!(again, [0_u64; 0], "{count} slices");
+    let analyser = Setup { slack_ps: 1000, ..machine.setup(Origin::Midpoint) };
+    for (capture, map, setup) in [
+        (machine.vcd(&train), SignalMap::default(), machine.setup(KNOWN)),
+        (vector(&machine, &train).into_bytes(), map(&machine), analyser),
+    ] {
+        let capture = written(capture);
+        for count in [1, 2, 3, 5, 8, 40] {
+            let again = check(&capture.path, &machine, &map, &setup, count);
+            assert_eq!(again, [0_u64; 0], "{count} slices");
+        }
     }
 }
 
@@ -124,16 +118,17 @@ fn a_slice_that_begins_in_a_gap_is_checked_again() {
     let train = without_pulses(&machine.train(), 200..800);
     let own = written(machine.vcd(&train));
     let setup = machine.setup(KNOWN);
-    for count in [2, 3, 10, 40] {
-        check(&own.path, &machine, &SignalMap::default(), &setup, count);
-    }
+    let again = [2, 3, 10, 40]
+        .map(|count| check(&own.path, &machine, &SignalMap::default(), &setup, count).len());
+    assert!(again.iter().all(|&again| again <= 2) && again[3] > 0, "{again:?}");
 }
 
 #[test]
 fn captures_without_a_pulse_or_with_one_time_can_be_sliced() {
     let machine = Machine::there_and_back(1);
     let setup = machine.setup(Origin::Midpoint);
-    let head = "$timescale 1 ns $end\n$var wire 1 ! x.step $end\n$var wire 1 # x.dir $end\n$enddefinitions $end\n";
+    let head = "$timescale 1 ns $end\n$var wire 1 ! x.step $end\n\
+                $var wire 1 # x.dir $end\n$enddefinitions $end\n";
     for body in [
         "",
         "#0\n1!\n1#\n",

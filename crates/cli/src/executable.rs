@@ -1,7 +1,7 @@
 //! The executable of this command, by which builds of the same version are told apart.
 
 use crate::failure::Failure;
-use sha2::{Digest, Sha256};
+use carrystep_files::sealed::sha256;
 use std::path::PathBuf;
 
 /// The executable of this process. Linux finds it here also if it was replaced or removed since.
@@ -21,5 +21,5 @@ pub fn build() -> Result<String, Failure> {
             Failure::Run(format!("cannot read the executable of carrystep: {error}"))
         })?,
     };
-    Ok(Sha256::digest(bytes).iter().take(8).map(|byte| format!("{byte:02x}")).collect())
+    Ok(sha256(&bytes).chars().take(16).collect())
 }

@@ -23,7 +23,7 @@ impl Checker<'_> {
     /// Begins at a time of the capture, before any edge. `origin_ps` is the origin, or its
     /// estimate; `levels` are those of STEP and DIR of each axis, that of DIR if it is known.
     pub fn begin_at(&mut self, ps: u64, origin_ps: Option<i64>, levels: &[(bool, Option<bool>)]) {
-        self.origin.set_base_ps(origin_ps);
+        self.set_origin_ps(origin_ps);
         let base = self.origin.base();
         for (axis, &levels) in self.axes.iter_mut().zip(levels) {
             axis.begin_at(ps, levels, base);
@@ -41,6 +41,12 @@ impl Checker<'_> {
         let base = self.origin.base();
         // Every axis goes on to this time.
         self.axes.iter_mut().fold(false, |near, axis| axis.is_near(ps, base) | near)
+    }
+
+    /// Sets the origin from which errors are counted, ps, if the beginning of the capture was read
+    /// before.
+    pub fn set_origin_ps(&mut self, origin_ps: Option<i64>) {
+        self.origin.set_base_ps(origin_ps);
     }
 
     /// The origin from which errors are counted, ps; `None` if it is not known yet.

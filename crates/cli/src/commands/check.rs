@@ -101,7 +101,7 @@ impl<'a> Check<'a> {
 
     /// A new pass through the moves.
     fn setup(&self) -> Setup<'a> {
-        // Only the checker keeps a place in the plan.
+        // The timelines end with this function, so that only the checker keeps a place in the plan.
         let Pass { timelines, courses, .. } = self.survey.begin();
         let mut setup = job::check_setup(self.survey, &timelines, courses, self.origin);
         setup.slack_ps = self.arguments.slack_ns.saturating_mul(1000);
