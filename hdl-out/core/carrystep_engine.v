@@ -53,7 +53,9 @@ module carrystep_time_slot (
     // The axis of the next clock, as a number.
     output wire   [2:0] axis_next,
     // The axis of the slot, one-hot. After the last slot it is the first axis.
-    output wire   [5:0] axis_one_hot
+    output wire   [5:0] axis_one_hot,
+    // The time slot is that of the last axis.
+    output wire         is_last
 );
     localparam BY_ONE = 1'b1;
     localparam [16:0] FIRST_BEAT = 17'd1;
@@ -75,6 +77,7 @@ module carrystep_time_slot (
     assign axis = number;
     assign axis_next = axis_to_come;
     assign axis_one_hot = one_hot;
+    assign is_last = ends;
 
     always @(*) begin
         axis_to_come = number;
@@ -175,14 +178,15 @@ module carrystep_adder (
     reg [33:0] low;
     reg [32:0] extended;
 
-    wire counting = beat[5] | beat[6];
+    wire adds_tick = beat[15] & !beat[2];
+    wire counting = beat[5] | beat[6] | adds_tick;
     wire ones_in = (beat[5] & counts) | (beat[6] & !up);
     wire load = beat[2] | beat[3] | beat[7] | beat[9];
     wire halve = beat[11] | beat[12] | beat[13] | beat[14];
     wire [31:0] half = (b >> BY_ONE) | (b & SIGN);
     wire halves_on = beat[12] | beat[13] | beat[14];
     wire crosses_now = top ^ crossed;
-    wire carry_due = (beat[5] & lost) | (beat[6] & !down) | ((beat[8] | beat[9] | beat[10]) & carry_2);
+    wire carry_due = adds_tick | (beat[5] & lost) | (beat[6] & !down) | ((beat[8] | beat[9] | beat[10]) & carry_2);
     wire odd = halves_on & b[0];
     wire odd_beyond = odd & bisects & crosses_now;
     wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({1'b0, extended} << BY_ONE) | low);
@@ -231,7 +235,7 @@ module carrystep_adder (
     end
 
     always @(posedge clock) begin
-        if (beat[1] | beat[4] | beat[5] | beat[6] | beat[8] | beat[10]) begin
+        if (beat[1] | beat[4] | beat[5] | beat[6] | beat[8] | beat[10] | beat[13]) begin
             a <= word;
         end
         if (beat[7]) begin
@@ -301,17 +305,17 @@ module carrystep_control (
     // The address of the word to read.
     input  wire   [2:0] read_address,
     // The word at the address of the cycle before.
-    output wire  [18:0] read_data,
+    output wire  [23:0] read_data,
     // The address of the word to write.
     input  wire   [2:0] write_address,
     // The write enable of each bit.
-    input  wire  [18:0] write_bits,
+    input  wire  [23:0] write_bits,
     // The new values of the bits that are written.
-    input  wire  [18:0] write_data
+    input  wire  [23:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [18:0] words [0:7];
-    reg [18:0] value; // a block RAM gives no value before its first clock
+    (* no_rw_check, ram_style = "block" *) reg [23:0] words [0:7];
+    reg [23:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -394,6 +398,10 @@ module carrystep_queue (
     input  wire         turned,
     // V < 0.
     input  wire         back,
+    // In beat 12: P + V crosses a step, if the axis moves.
+    input  wire         crosses,
+    // In beat 12: the axis, which waits for its limit, has found it.
+    input  wire         caught,
     // The low bits of the position, from the pulser.
     input  wire   [2:0] pulses,
     // The low bits of the discarded steps, from the pulser.
@@ -404,7 +412,7 @@ module carrystep_queue (
     output wire   [2:0] fresh,
     // Fault: the word accepted in the clock before was not the one that was due.
     output wire         misplaced,
-    // No slot is free for the host.
+    // From beat 1: no slot is free for the host.
     output wire         full,
     // The number of segments for which the queue has space, 0 to 7.
     output wire   [2:0] room,
@@ -433,17 +441,27 @@ module carrystep_queue (
     // From beat 5: a step backward is subtracted from the position.
     output wire         down,
     // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
-    output wire         lost
+    output wire         lost,
+    // The axis found its limit in the tick before, while it waited for it.
+    output wire         met,
+    // Carries since the last clear less counted steps, modulo 16.
+    output wire   [3:0] on_way
 );
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] MINUS_ONE = 3'd7;
     localparam [2:0] ZERO = 3'd0;
-    localparam [18:0] NO = 19'd0;
-    localparam [18:0] RUNNING_BIT = 19'd64;
-    localparam [18:0] UNFIT_BIT = 19'd128;
-    localparam [18:0] BACK_BIT = 19'd16384;
-    localparam [18:0] KNOWN_BIT = 19'd32768;
-    localparam [18:0] ALL = 19'h7ffff;
+    localparam [23:0] NO = 24'd0;
+    localparam [23:0] RUNNING_BIT = 24'd64;
+    localparam [23:0] UNFIT_BIT = 24'd128;
+    localparam [23:0] BACK_BIT = 24'd16384;
+    localparam [23:0] KNOWN_BIT = 24'd32768;
+    localparam [23:0] ALL = 24'hffffff;
+    localparam [23:0] MET_BIT = 24'h80000;
+    localparam [3:0] NONE_ON_WAY = 4'd0;
+    localparam [3:0] ONE_MORE = 4'd1;
+    localparam [3:0] TWO_MORE = 4'd2;
+    localparam [3:0] ONE_LESS = 4'd15;
+    localparam [3:0] TWO_LESS = 4'd14;
     localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
@@ -451,7 +469,9 @@ module carrystep_queue (
     localparam [3:0] AT_8 = 4'd8;
     localparam [3:0] AT_11 = 4'd11;
     localparam [4:0] AT_16 = 5'd16;
+    localparam [4:0] AT_20 = 5'd20;
 
+    reg filled = 1'b0;
     reg took = 1'b0;
     reg wrong = 1'b0;
     reg forward = 1'b0;
@@ -464,18 +484,21 @@ module carrystep_queue (
     reg [2:0] next_live;
     reg [2:0] next_newest;
     reg [2:0] next_due;
-    reg [18:0] next_running;
-    reg [18:0] next_unfit;
-    reg [18:0] next_known;
-    reg [18:0] next_back;
+    reg [23:0] next_running;
+    reg [23:0] next_unfit;
+    reg [23:0] next_known;
+    reg [23:0] next_back;
     reg [2:0] next_seen;
     reg [2:0] next_lost;
-    reg [18:0] control_write_bits;
+    reg [23:0] next_met;
+    reg [3:0] gain;
+    reg [3:0] next_on_way;
+    reg [23:0] control_write_bits;
 
-    wire [18:0] control_read_data;
+    wire [23:0] control_read_data;
     wire lasts_read_data;
 
-    wire [18:0] word = control_read_data;
+    wire [23:0] word = control_read_data;
     wire [2:0] old_live = word[2:0];
     wire [2:0] newest = word[5:3];
     wire [2:0] fresh_now = newest + ONE;
@@ -490,11 +513,13 @@ module carrystep_queue (
     wire [2:0] unseen = losses ^ word[13:11];
     wire [2:0] due = word[18:16];
     wire fits_in = put_word == due;
+    wire ahead = moves & crosses & !back;
+    wire behind = moves & crosses & back;
 
     assign live = live_now;
     assign fresh = fresh_now;
     assign misplaced = wrong;
-    assign full = fresh_now == live_now;
+    assign full = filled;
     assign room = live_now + ~newest;
     assign empty = none;
     assign running = runs;
@@ -509,6 +534,8 @@ module carrystep_queue (
     assign up = forward;
     assign down = backward;
     assign lost = gone;
+    assign met = word[19];
+    assign on_way = word[23:20];
 
     always @(*) begin
         live_now = old_live;
@@ -606,6 +633,48 @@ module carrystep_queue (
     end
 
     always @(*) begin
+        next_met = NO;
+        if (caught) begin
+            next_met = MET_BIT;
+        end
+    end
+
+    always @(*) begin
+        gain = NONE_ON_WAY;
+        if (forward) begin
+            gain = ONE_LESS;
+        end
+        if (backward) begin
+            gain = ONE_MORE;
+        end
+        if (ahead) begin
+            gain = ONE_MORE;
+            if (forward) begin
+                gain = NONE_ON_WAY;
+            end
+            if (backward) begin
+                gain = TWO_MORE;
+            end
+        end
+        if (behind) begin
+            gain = ONE_LESS;
+            if (forward) begin
+                gain = TWO_LESS;
+            end
+            if (backward) begin
+                gain = NONE_ON_WAY;
+            end
+        end
+    end
+
+    always @(*) begin
+        next_on_way = word[23:20] + gain;
+        if (clear) begin
+            next_on_way = NONE_ON_WAY;
+        end
+    end
+
+    always @(*) begin
         control_write_bits = NO;
         if (beat[12]) begin
             control_write_bits = ALL;
@@ -618,7 +687,7 @@ module carrystep_queue (
         .read_data(control_read_data),
         .write_address(axis),
         .write_bits(control_write_bits),
-        .write_data({16'b0, next_live} | ({16'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({16'b0, next_seen} << AT_8) | ({16'b0, next_lost} << AT_11) | ({16'b0, next_due} << AT_16))
+        .write_data({21'b0, next_live} | ({21'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({21'b0, next_seen} << AT_8) | ({21'b0, next_lost} << AT_11) | ({21'b0, next_due} << AT_16) | next_met | ({20'b0, next_on_way} << AT_20))
     );
 
     carrystep_lasts lasts (
@@ -643,6 +712,7 @@ module carrystep_queue (
         if (take & fits_in) begin
             took <= 1'b1;
         end
+        filled <= fresh_now == live_now;
     end
 endmodule
 
@@ -661,16 +731,18 @@ module carrystep_segments #(
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [8:0] read_address,
+    input  wire   [9:0] read_address,
     // The word at the address of the cycle before.
     output wire  [31:0] read_data,
     // The address of the word to write.
-    input  wire   [8:0] write_address,
+    input  wire   [9:0] write_address,
     // The write enable of each bit.
     input  wire  [31:0] write_bits,
     // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
+    wire unused = &{read_address[9:9], write_address[9:9]};
+
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
     reg [31:0] value; // a block RAM gives no value before its first clock
@@ -710,11 +782,12 @@ module carrystep_segments #(
         words[367] = ~STOP_ACCEL_5[63:32] + ((STOP_ACCEL_5[31:0] == 32'd0) ? 32'd1 : 32'd0);
         words[375] = STOP_ACCEL_5[31:0];
         words[383] = STOP_ACCEL_5[63:32];
+        words[511] = 32'h1;
     end
 
     always @(posedge clock) begin
-        value <= words[read_address];
-        if (write_bits[0]) words[write_address] <= write_data;
+        value <= words[read_address[8:0]];
+        if (write_bits[0]) words[write_address[8:0]] <= write_data;
     end
 endmodule
 
@@ -759,10 +832,6 @@ module carrystep_store #(
     input  wire         put,
     // The number of that word in its segment.
     input  wire   [2:0] put_word,
-    // The axis that the host reads.
-    input  wire   [2:0] get_axis,
-    // The item that the host reads; it is the slot of word 7.
-    input  wire   [1:0] get_item,
     // The sum to write.
     input  wire  [31:0] sum,
     // The word that was read.
@@ -786,6 +855,7 @@ module carrystep_store #(
     localparam [2:0] UP_HIGH = 3'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
+    localparam [9:0] TICK_ADDRESS = 10'd1023;
     localparam [31:0] START_HIGH = START_HALF[0] ? 32'h80000000 : 32'd0;
     localparam [31:0] NO = 32'd0;
     localparam [31:0] ALL = 32'hffffffff;
@@ -814,12 +884,14 @@ module carrystep_store #(
         end
     endgenerate
 
-    reg [2:0] read_axis;
+    reg counted = 1'b0;
     reg [2:0] read_slot;
     reg [2:0] read_word;
+    reg [9:0] segments_read_address;
     reg [2:0] write_slot;
     reg [2:0] write_word;
     reg writes;
+    reg [9:0] segments_write_address;
     reg [31:0] segments_write_data;
     reg [31:0] segments_write_bits;
 
@@ -828,7 +900,6 @@ module carrystep_store #(
     assign word = segments_read_data;
 
     always @(*) begin
-        read_axis = axis;
         read_slot = live;
         read_word = KEPT;
         if (beat[0]) begin
@@ -879,9 +950,12 @@ module carrystep_store #(
         if (beat[9]) begin
             read_slot = P_HIGH;
         end
-        if (beat[10]) begin
-            read_axis = get_axis;
-            read_slot = {1'b0, get_item};
+    end
+
+    always @(*) begin
+        segments_read_address = ({7'b0, axis} << AT_6) | ({7'b0, read_slot} << AT_3) | {7'b0, read_word};
+        if (beat[10] | beat[12]) begin
+            segments_read_address = TICK_ADDRESS;
         end
     end
 
@@ -930,6 +1004,11 @@ module carrystep_store #(
             write_slot = P_HIGH;
             writes = moves | wipe;
         end
+        segments_write_address = ({7'b0, axis} << AT_6) | ({7'b0, write_slot} << AT_3) | {7'b0, write_word};
+        if (counted) begin
+            segments_write_address = TICK_ADDRESS;
+            writes = 1'b1;
+        end
     end
 
     always @(*) begin
@@ -956,12 +1035,16 @@ module carrystep_store #(
         .STOP_ACCEL_5(STOP_ACCEL_5)
     ) segments (
         .clock(clock),
-        .read_address(({6'b0, read_axis} << AT_6) | ({6'b0, read_slot} << AT_3) | {6'b0, read_word}),
+        .read_address(segments_read_address),
         .read_data(segments_read_data),
-        .write_address(({6'b0, axis} << AT_6) | ({6'b0, write_slot} << AT_3) | {6'b0, write_word}),
+        .write_address(segments_write_address),
         .write_bits(segments_write_bits),
         .write_data(segments_write_data)
     );
+
+    always @(posedge clock) begin
+        counted <= beat[16] & !beat[3];
+    end
 endmodule
 
 // The tick counter: a strobe in the last clock of each tick, and the phases of a tick.
@@ -1427,7 +1510,9 @@ module carrystep_homing_control (
     // The axis of the slot waits for its limit.
     output wire         waits,
     // The axis of the slot has reached its limit in an earlier tick and ramps down.
-    output wire         slows
+    output wire         slows,
+    // In the last beat of a slot: its axis has waited for its limit and has reached it.
+    output wire         caught
 );
     localparam [5:0] NONE = 6'd0;
     localparam BY_ONE = 1'b1;
@@ -1440,11 +1525,12 @@ module carrystep_homing_control (
     reg [5:0] slower;
 
     wire mine = (waiting & axis_one_hot) != 6'd0;
-    wire caught = hit & mine;
+    wire found = hit & mine;
 
     assign axes = waiting;
     assign waits = mine;
     assign slows = mine_slows;
+    assign caught = found;
 
     always @(*) begin
         axis_one_hot_next = axis_one_hot;
@@ -1455,14 +1541,14 @@ module carrystep_homing_control (
 
     always @(*) begin
         slower = NONE;
-        if (caught) begin
+        if (found) begin
             slower = axis_one_hot;
         end
     end
 
     always @(posedge clock) begin
         mine_slows <= (slowing & axis_one_hot_next) != 6'd0;
-        if (caught) begin
+        if (found) begin
             waiting <= waiting & ~axis_one_hot;
         end
         if (set) begin
@@ -1476,6 +1562,124 @@ module carrystep_homing_control (
             if (!goes_on) begin
                 slowing <= (slowing & ~axis_one_hot) | slower;
             end
+        end
+    end
+endmodule
+
+// Outputs the state of every axis in its time slot, and takes snapshots of all axes.
+module carrystep_readout (
+    // The clock.
+    input  wire         clock,
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The time slot is that of the last axis.
+    input  wire         is_last,
+    // The host requests a snapshot.
+    input  wire         snapshot,
+    // In beat 12: the axis, which waits for its limit, has found it.
+    input  wire         caught,
+    // The axis found its limit in the tick before, while it waited for it.
+    input  wire         met,
+    // The word that the memory returns.
+    input  wire  [31:0] word,
+    // The slot of the running segment.
+    input  wire   [2:0] live,
+    // The axis runs in this tick.
+    input  wire         running,
+    // The number of segments for which the queue has space.
+    input  wire   [2:0] room,
+    // Carries less counted steps, modulo 16.
+    input  wire   [3:0] on_way,
+    // A word of the state of the axis of this time slot is output.
+    output wire         valid,
+    // Its page.
+    output reg    [1:0] page,
+    // Its item.
+    output reg    [2:0] item,
+    // The word. Of the status, bits 31 to 16 have no meaning.
+    output wire  [31:0] state,
+    // All live words of this tick have been output.
+    output wire         refreshed
+);
+    localparam [31:0] HIGH_HALF = 32'hffff0000;
+    localparam [15:0] NO_STATUS = 16'd0;
+    localparam [15:0] RUNNING_BIT = 16'd32;
+    localparam [3:0] AT_6 = 4'd6;
+    localparam [3:0] AT_12 = 4'd12;
+    localparam [1:0] NO_PAGE = 2'd0;
+    localparam [1:0] LIVE_PAGE = 2'd1;
+    localparam [1:0] SNAPSHOT_PAGE = 2'd2;
+    localparam [2:0] NO_ITEM = 3'd0;
+    localparam [2:0] ODD_ITEM = 3'd1;
+    localparam [2:0] MIDDLE_ITEM = 3'd2;
+    localparam [2:0] HIGH_ITEM = 3'd4;
+
+    reg asked = 1'b0;
+    reg takes = 1'b0;
+    reg found = 1'b0;
+    reg [15:0] running_now;
+    reg [15:0] low;
+
+    wire ticks_left = beat[5];
+    wire p_or_position = beat[4] | beat[10] | beat[6];
+    wire odd = (ticks_left & running) | beat[10] | beat[11] | beat[12];
+    wire [2:0] waiting = ~room;
+    wire [15:0] status = {13'b0, live} | running_now | ({13'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
+
+    assign valid = (ticks_left & !met) | p_or_position | beat[11] | beat[12];
+    assign state = (word & HIGH_HALF) | {16'b0, low};
+    assign refreshed = beat[12] & is_last & !takes;
+
+    always @(*) begin
+        page = LIVE_PAGE;
+        if (met) begin
+            page = NO_PAGE;
+        end
+        if (takes) begin
+            page = SNAPSHOT_PAGE;
+        end
+    end
+
+    always @(*) begin
+        item = NO_ITEM;
+        if (odd) begin
+            item = ODD_ITEM;
+        end
+        if (beat[11] | beat[6] | beat[12]) begin
+            item = item | MIDDLE_ITEM;
+        end
+        if (p_or_position | beat[12]) begin
+            item = item | HIGH_ITEM;
+        end
+    end
+
+    always @(*) begin
+        running_now = NO_STATUS;
+        if (running) begin
+            running_now = RUNNING_BIT;
+        end
+    end
+
+    always @(*) begin
+        low = word[15:0];
+        if (beat[12]) begin
+            low = status;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (caught) begin
+            found <= 1'b1;
+        end
+        if (strobe) begin
+            takes <= asked & !found;
+            asked <= asked & found;
+            found <= 1'b0;
+        end
+        if (snapshot) begin
+            asked <= 1'b1;
         end
     end
 endmodule
@@ -2102,6 +2306,8 @@ module carrystep_engine #(
     // The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
     // axis i.
     input  wire   [5:0] home_mask,
+    // The host requests a snapshot of the state of all axes; asserted for one clock or longer.
+    input  wire         snapshot,
     // A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     input  wire         kick,
     // The host requests power for the motor drivers, as long as it is asserted.
@@ -2115,19 +2321,19 @@ module carrystep_engine #(
     // The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
     // only if `LIMITS` is 1.
     input  wire   [5:0] limit_max,
-    // The axis that the host reads.
-    input  wire   [2:0] get_axis,
-    // The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
-    // complement; 3 the number of discarded steps.
-    input  wire   [1:0] get_item,
-    // The item that the engine returns.
-    output wire  [31:0] get_data,
-    // `get_data` is the item requested in the clock before.
-    output wire         get_valid,
-    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    output wire         latch,
-    // The axis of the present time slot.
-    output wire   [2:0] latch_axis,
+    // A word of the state of an axis is output in this clock.
+    output wire         state_valid,
+    // The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    output wire   [1:0] state_page,
+    // The axis, as a number from 0.
+    output wire   [2:0] state_axis,
+    // The meaning of the word: 0 discarded steps, 1 remaining ticks, 3 number of the tick, 4 and 5
+    // P (low and high half), 6 position in steps, 7 status.
+    output wire   [2:0] state_item,
+    // The word. Of the status only bits 15 to 0 have a meaning.
+    output wire  [31:0] state,
+    // All live words of this tick have been output; asserted for one clock.
+    output wire         refreshed,
     // The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
     output wire   [2:0] room,
     // `room` is valid in this clock, once in the time slot of that axis.
@@ -2176,7 +2382,7 @@ module carrystep_engine #(
     localparam [3:0] AXES = 4'd6;
 
     generate
-        if (CLOCKS_PER_TICK < 32'd79) begin : clocks_per_tick_too_few_for_the_axes
+        if (CLOCKS_PER_TICK < 32'd80) begin : clocks_per_tick_too_few_for_the_axes
             carrystep_error_clocks_per_tick_too_few_for_the_axes error ();
         end
     endgenerate
@@ -2211,6 +2417,7 @@ module carrystep_engine #(
     wire [2:0] time_slot_axis;
     wire [2:0] time_slot_axis_next;
     wire [5:0] time_slot_axis_one_hot;
+    wire time_slot_is_last;
     wire [31:0] adder_sum;
     wire adder_ended;
     wire adder_overflow;
@@ -2238,6 +2445,8 @@ module carrystep_engine #(
     wire queue_up;
     wire queue_down;
     wire queue_lost;
+    wire queue_met;
+    wire [3:0] queue_on_way;
     wire [31:0] store_word;
     wire event_wheel_strobe;
     wire event_wheel_phase_start;
@@ -2247,6 +2456,12 @@ module carrystep_engine #(
     wire [5:0] homing_control_axes;
     wire homing_control_waits;
     wire homing_control_slows;
+    wire homing_control_caught;
+    wire readout_valid;
+    wire [1:0] readout_page;
+    wire [2:0] readout_item;
+    wire [31:0] readout_state;
+    wire readout_refreshed;
     wire stops_fault;
     wire stops_finds;
     wire stops_frozen;
@@ -2311,10 +2526,12 @@ module carrystep_engine #(
 
     assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
-    assign get_data = store_word;
-    assign get_valid = time_slot_beat[11];
-    assign latch = time_slot_beat[6] & homing_control_waits;
-    assign latch_axis = time_slot_axis;
+    assign state_valid = readout_valid;
+    assign state_page = readout_page;
+    assign state_axis = time_slot_axis;
+    assign state_item = readout_item;
+    assign state = readout_state;
+    assign refreshed = readout_refreshed;
     assign room = queue_room;
     assign room_valid = listens;
     assign step[0] = pulser_0_step;
@@ -2461,7 +2678,8 @@ module carrystep_engine #(
         .beat(time_slot_beat),
         .axis(time_slot_axis),
         .axis_next(time_slot_axis_next),
-        .axis_one_hot(time_slot_axis_one_hot)
+        .axis_one_hot(time_slot_axis_one_hot),
+        .is_last(time_slot_is_last)
     );
 
     carrystep_adder adder (
@@ -2504,6 +2722,8 @@ module carrystep_engine #(
         .least(adder_least),
         .turned(adder_turned),
         .back(adder_back),
+        .crosses(adder_crosses),
+        .caught(homing_control_caught),
         .pulses(counts[2:0]),
         .losses(counts[5:3]),
         .live(queue_live),
@@ -2523,7 +2743,9 @@ module carrystep_engine #(
         .dry(queue_dry),
         .up(queue_up),
         .down(queue_down),
-        .lost(queue_lost)
+        .lost(queue_lost),
+        .met(queue_met),
+        .on_way(queue_on_way)
     );
 
     carrystep_store #(
@@ -2549,8 +2771,6 @@ module carrystep_engine #(
         .wipe(stops_clearing),
         .put(taken),
         .put_word(taken_word),
-        .get_axis(get_axis),
-        .get_item(get_item),
         .sum(adder_sum),
         .word(store_word)
     );
@@ -2604,7 +2824,28 @@ module carrystep_engine #(
         .resetting(resets_resetting),
         .axes(homing_control_axes),
         .waits(homing_control_waits),
-        .slows(homing_control_slows)
+        .slows(homing_control_slows),
+        .caught(homing_control_caught)
+    );
+
+    carrystep_readout readout (
+        .clock(clock),
+        .strobe(strobe),
+        .beat(time_slot_beat),
+        .is_last(time_slot_is_last),
+        .snapshot(snapshot),
+        .caught(homing_control_caught),
+        .met(queue_met),
+        .word(store_word),
+        .live(queue_live),
+        .running(queue_running),
+        .room(queue_room),
+        .on_way(queue_on_way),
+        .valid(readout_valid),
+        .page(readout_page),
+        .item(readout_item),
+        .state(readout_state),
+        .refreshed(readout_refreshed)
     );
 
     carrystep_stops #(

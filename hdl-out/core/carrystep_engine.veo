@@ -62,17 +62,18 @@ carrystep_engine #(
     .broken(),      // input
     .home_valid(),  // input
     .home_mask(),   // input [5:0]
+    .snapshot(),    // input
     .kick(),        // input
     .enable(),      // input
     .estop(),       // input
     .limit_min(),   // input [5:0]
     .limit_max(),   // input [5:0]
-    .get_axis(),    // input [2:0]
-    .get_item(),    // input [1:0]
-    .get_data(),    // output [31:0]
-    .get_valid(),   // output
-    .latch(),       // output
-    .latch_axis(),  // output [2:0]
+    .state_valid(), // output
+    .state_page(),  // output [1:0]
+    .state_axis(),  // output [2:0]
+    .state_item(),  // output [2:0]
+    .state(),       // output [31:0]
+    .refreshed(),   // output
     .room(),        // output [2:0]
     .room_valid(),  // output
     .step(),        // output [5:0]

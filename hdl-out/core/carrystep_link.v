@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     dc28579ec9280efe
+// Build id     106e11e37ad8277a
 
 `default_nettype none
 
@@ -82,28 +82,28 @@ module carrystep_instructions (
         words[34] = 16'h2005;
         words[35] = 16'h8300;
         words[36] = 16'h4081;
-        words[37] = 16'h801f;
-        words[38] = 16'h1001;
-        words[39] = 16'h80f5;
-        words[40] = 16'h2a2c;
-        words[41] = 16'h80f4;
-        words[42] = 16'h232c;
-        words[43] = 16'h80f3;
-        words[44] = 16'h8881;
-        words[45] = 16'h2900;
-        words[46] = 16'h80f2;
-        words[47] = 16'h1001;
-        words[48] = 16'h8400;
-        words[49] = 16'h8900;
-        words[50] = 16'h2900;
-        words[51] = 16'h1006;
-        words[52] = 16'h2230;
-        words[53] = 16'h1080;
-        words[54] = 16'h80f1;
-        words[55] = 16'h4083;
-        words[56] = 16'h801f;
-        words[57] = 16'h1001;
-        words[58] = 16'h2a8e;
+        words[37] = 16'h88f5;
+        words[38] = 16'h2130;
+        words[39] = 16'h801f;
+        words[40] = 16'h1001;
+        words[41] = 16'h2a00;
+        words[42] = 16'h80f4;
+        words[43] = 16'h232d;
+        words[44] = 16'h80f3;
+        words[45] = 16'h8881;
+        words[46] = 16'h2900;
+        words[47] = 16'h80f6;
+        words[48] = 16'h4083;
+        words[49] = 16'h80f2;
+        words[50] = 16'h1001;
+        words[51] = 16'h8400;
+        words[52] = 16'h8900;
+        words[53] = 16'h2900;
+        words[54] = 16'h1006;
+        words[55] = 16'h2233;
+        words[56] = 16'h1080;
+        words[57] = 16'h8083;
+        words[58] = 16'h2197;
         words[59] = 16'h801e;
         words[60] = 16'h1001;
         words[61] = 16'h8882;
@@ -116,153 +116,164 @@ module carrystep_instructions (
         words[68] = 16'h8300;
         words[69] = 16'h8882;
         words[70] = 16'h293f;
-        words[71] = 16'h208e;
-        words[72] = 16'h80f0;
+        words[71] = 16'h2097;
+        words[72] = 16'h80f1;
         words[73] = 16'h4083;
-        words[74] = 16'h208e;
+        words[74] = 16'h2097;
         words[75] = 16'h801f;
         words[76] = 16'h1001;
-        words[77] = 16'h236d;
+        words[77] = 16'h2376;
         words[78] = 16'h801f;
-        words[79] = 16'h88ef;
-        words[80] = 16'h215b;
+        words[79] = 16'h88f0;
+        words[80] = 16'h215e;
         words[81] = 16'h801f;
-        words[82] = 16'h88ee;
-        words[83] = 16'h2168;
+        words[82] = 16'h88ef;
+        words[83] = 16'h2171;
         words[84] = 16'h801f;
-        words[85] = 16'h88ed;
-        words[86] = 16'h2162;
+        words[85] = 16'h88ee;
+        words[86] = 16'h2167;
         words[87] = 16'h801f;
-        words[88] = 16'h88ec;
-        words[89] = 16'h215f;
-        words[90] = 16'h2089;
-        words[91] = 16'h8020;
-        words[92] = 16'h4084;
-        words[93] = 16'h1040;
-        words[94] = 16'h2089;
-        words[95] = 16'h8020;
-        words[96] = 16'h10c0;
-        words[97] = 16'h2089;
-        words[98] = 16'h8084;
-        words[99] = 16'h1240;
-        words[100] = 16'h1020;
-        words[101] = 16'h1020;
-        words[102] = 16'h1040;
-        words[103] = 16'h2089;
-        words[104] = 16'h2589;
-        words[105] = 16'h2e48;
-        words[106] = 16'h8020;
-        words[107] = 16'h1420;
-        words[108] = 16'h2089;
-        words[109] = 16'h2589;
-        words[110] = 16'h1028;
-        words[111] = 16'h1028;
-        words[112] = 16'h8501;
-        words[113] = 16'h217a;
-        words[114] = 16'h80eb;
-        words[115] = 16'h1001;
-        words[116] = 16'h9102;
-        words[117] = 16'h88ea;
-        words[118] = 16'h297c;
-        words[119] = 16'h8300;
-        words[120] = 16'h88f5;
-        words[121] = 16'h2974;
-        words[122] = 16'h1100;
-        words[123] = 16'h2089;
-        words[124] = 16'h80eb;
-        words[125] = 16'h1001;
-        words[126] = 16'h9102;
-        words[127] = 16'h1004;
-        words[128] = 16'h9102;
-        words[129] = 16'h1004;
-        words[130] = 16'h9102;
-        words[131] = 16'h1004;
-        words[132] = 16'h8100;
-        words[133] = 16'h1004;
-        words[134] = 16'h801f;
-        words[135] = 16'h1822;
-        words[136] = 16'h2b7e;
-        words[137] = 16'h8082;
-        words[138] = 16'h1001;
-        words[139] = 16'h1002;
-        words[140] = 16'h8300;
-        words[141] = 16'h4082;
-        words[142] = 16'h801f;
-        words[143] = 16'h1001;
-        words[144] = 16'h2a95;
-        words[145] = 16'h88e9;
-        words[146] = 16'h2394;
-        words[147] = 16'h80e8;
-        words[148] = 16'h1001;
-        words[149] = 16'h8500;
-        words[150] = 16'h4074;
-        words[151] = 16'h8300;
-        words[152] = 16'h1020;
-        words[153] = 16'h1020;
-        words[154] = 16'h8501;
-        words[155] = 16'h8883;
-        words[156] = 16'h4075;
-        words[157] = 16'h8502;
-        words[158] = 16'h4076;
-        words[159] = 16'h8503;
-        words[160] = 16'h4077;
-        words[161] = 16'h1018;
-        words[162] = 16'h8400;
-        words[163] = 16'h4078;
-        words[164] = 16'h1004;
-        words[165] = 16'h8400;
-        words[166] = 16'h4079;
-        words[167] = 16'h1004;
-        words[168] = 16'h8400;
-        words[169] = 16'h407a;
-        words[170] = 16'h1004;
-        words[171] = 16'h8400;
-        words[172] = 16'h407b;
-        words[173] = 16'h1004;
-        words[174] = 16'h801e;
-        words[175] = 16'h4071;
-        words[176] = 16'h801f;
-        words[177] = 16'h4072;
-        words[178] = 16'h8082;
-        words[179] = 16'h4073;
-        words[180] = 16'h80e7;
-        words[181] = 16'h1011;
-        words[182] = 16'h9102;
-        words[183] = 16'h100c;
-        words[184] = 16'h8300;
-        words[185] = 16'h88e6;
-        words[186] = 16'h29b6;
-        words[187] = 16'h8400;
-        words[188] = 16'h88ea;
-        words[189] = 16'h5102;
-        words[190] = 16'h1004;
-        words[191] = 16'h2abb;
-        words[192] = 16'h80e7;
-        words[193] = 16'h1001;
-        words[194] = 16'h80fa;
-        words[195] = 16'h1220;
-        words[196] = 16'h22d7;
-        words[197] = 16'h9102;
-        words[198] = 16'h2fc3;
-        words[199] = 16'h4080;
-        words[200] = 16'h88fa;
-        words[201] = 16'h21cf;
-        words[202] = 16'h8080;
-        words[203] = 16'h88f9;
-        words[204] = 16'h21d3;
-        words[205] = 16'h8080;
-        words[206] = 16'h20c3;
-        words[207] = 16'h80f9;
-        words[208] = 16'h1220;
-        words[209] = 16'h80f8;
-        words[210] = 16'h20c3;
-        words[211] = 16'h80f9;
-        words[212] = 16'h1220;
-        words[213] = 16'h80f7;
-        words[214] = 16'h20c3;
-        words[215] = 16'h80fa;
-        words[216] = 16'h1220;
-        words[217] = 16'h2000;
+        words[88] = 16'h88ed;
+        words[89] = 16'h2162;
+        words[90] = 16'h801f;
+        words[91] = 16'h88ec;
+        words[92] = 16'h2165;
+        words[93] = 16'h2092;
+        words[94] = 16'h8020;
+        words[95] = 16'h4084;
+        words[96] = 16'h1040;
+        words[97] = 16'h2092;
+        words[98] = 16'h8020;
+        words[99] = 16'h10c0;
+        words[100] = 16'h2092;
+        words[101] = 16'h1140;
+        words[102] = 16'h2092;
+        words[103] = 16'h8084;
+        words[104] = 16'h1240;
+        words[105] = 16'h1020;
+        words[106] = 16'h1020;
+        words[107] = 16'h1020;
+        words[108] = 16'h1020;
+        words[109] = 16'h1020;
+        words[110] = 16'h1020;
+        words[111] = 16'h1040;
+        words[112] = 16'h2092;
+        words[113] = 16'h2592;
+        words[114] = 16'h2e48;
+        words[115] = 16'h8020;
+        words[116] = 16'h1420;
+        words[117] = 16'h2092;
+        words[118] = 16'h2592;
+        words[119] = 16'h1028;
+        words[120] = 16'h1028;
+        words[121] = 16'h8501;
+        words[122] = 16'h2183;
+        words[123] = 16'h80eb;
+        words[124] = 16'h1001;
+        words[125] = 16'h9102;
+        words[126] = 16'h88ea;
+        words[127] = 16'h2985;
+        words[128] = 16'h8300;
+        words[129] = 16'h88f5;
+        words[130] = 16'h297d;
+        words[131] = 16'h1100;
+        words[132] = 16'h2092;
+        words[133] = 16'h80eb;
+        words[134] = 16'h1001;
+        words[135] = 16'h9102;
+        words[136] = 16'h1004;
+        words[137] = 16'h9102;
+        words[138] = 16'h1004;
+        words[139] = 16'h9102;
+        words[140] = 16'h1004;
+        words[141] = 16'h8100;
+        words[142] = 16'h1004;
+        words[143] = 16'h801f;
+        words[144] = 16'h1822;
+        words[145] = 16'h2b87;
+        words[146] = 16'h8082;
+        words[147] = 16'h1001;
+        words[148] = 16'h1002;
+        words[149] = 16'h8300;
+        words[150] = 16'h4082;
+        words[151] = 16'h801f;
+        words[152] = 16'h1001;
+        words[153] = 16'h8083;
+        words[154] = 16'h21a0;
+        words[155] = 16'h80e9;
+        words[156] = 16'h2b9f;
+        words[157] = 16'h801f;
+        words[158] = 16'h88e8;
+        words[159] = 16'h1001;
+        words[160] = 16'h8500;
+        words[161] = 16'h4074;
+        words[162] = 16'h8300;
+        words[163] = 16'h1020;
+        words[164] = 16'h1020;
+        words[165] = 16'h8501;
+        words[166] = 16'h8883;
+        words[167] = 16'h4075;
+        words[168] = 16'h8502;
+        words[169] = 16'h4076;
+        words[170] = 16'h8503;
+        words[171] = 16'h4077;
+        words[172] = 16'h1018;
+        words[173] = 16'h8400;
+        words[174] = 16'h4078;
+        words[175] = 16'h1004;
+        words[176] = 16'h8400;
+        words[177] = 16'h4079;
+        words[178] = 16'h1004;
+        words[179] = 16'h8400;
+        words[180] = 16'h407a;
+        words[181] = 16'h1004;
+        words[182] = 16'h8400;
+        words[183] = 16'h407b;
+        words[184] = 16'h1004;
+        words[185] = 16'h801e;
+        words[186] = 16'h4071;
+        words[187] = 16'h801f;
+        words[188] = 16'h4072;
+        words[189] = 16'h8082;
+        words[190] = 16'h4073;
+        words[191] = 16'h80e7;
+        words[192] = 16'h1011;
+        words[193] = 16'h9102;
+        words[194] = 16'h100c;
+        words[195] = 16'h8300;
+        words[196] = 16'h88e6;
+        words[197] = 16'h29c1;
+        words[198] = 16'h8400;
+        words[199] = 16'h88ea;
+        words[200] = 16'h5102;
+        words[201] = 16'h1004;
+        words[202] = 16'h2ac6;
+        words[203] = 16'h80e7;
+        words[204] = 16'h1001;
+        words[205] = 16'h80fa;
+        words[206] = 16'h1220;
+        words[207] = 16'h22e2;
+        words[208] = 16'h9102;
+        words[209] = 16'h2fce;
+        words[210] = 16'h4080;
+        words[211] = 16'h88fa;
+        words[212] = 16'h21da;
+        words[213] = 16'h8080;
+        words[214] = 16'h88f9;
+        words[215] = 16'h21de;
+        words[216] = 16'h8080;
+        words[217] = 16'h20ce;
+        words[218] = 16'h80f9;
+        words[219] = 16'h1220;
+        words[220] = 16'h80f8;
+        words[221] = 16'h20ce;
+        words[222] = 16'h80f9;
+        words[223] = 16'h1220;
+        words[224] = 16'h80f7;
+        words[225] = 16'h20ce;
+        words[226] = 16'h80fa;
+        words[227] = 16'h1220;
+        words[228] = 16'h2000;
     end
 
     always @(posedge clock) begin
@@ -297,15 +308,16 @@ module carrystep_data (
         for (i = 0; i < 256; i = i + 1) words[i] = 0;
         words[230] = 8'h7c;
         words[231] = 8'h71;
-        words[232] = 8'h42;
-        words[233] = 8'h82;
+        words[232] = 8'hb0;
+        words[233] = 8'h70;
         words[234] = 8'hff;
         words[235] = 8'h20;
-        words[236] = 8'ha3;
-        words[237] = 8'ha2;
-        words[238] = 8'ha1;
-        words[239] = 8'ha0;
-        words[240] = 8'h8;
+        words[236] = 8'ha4;
+        words[237] = 8'ha3;
+        words[238] = 8'ha2;
+        words[239] = 8'ha1;
+        words[240] = 8'ha0;
+        words[241] = 8'h88;
         words[242] = 8'hfc;
         words[243] = 8'h28;
         words[244] = 8'h44;
@@ -452,14 +464,16 @@ module carrystep_processor (
     output wire         broken,
     // A replaces the mask of the axes that wait for their limit.
     output wire         home_valid,
+    // The host requests a snapshot.
+    output wire         snapshot,
     // The host has sent a valid request.
     output wire         kick,
     // The host requests power for the motor drivers.
     output wire         enable,
     // The host requests a controlled stop of all axes.
     output wire         stop,
-    // A cycle through all items of all axes is complete.
-    input  wire         scanned,
+    // The engine has output all live words of a tick.
+    input  wire         refreshed,
     // The engine has latched a stop.
     input  wire         fault,
     // No axis moves any more after a stop.
@@ -552,8 +566,9 @@ module carrystep_processor (
     assign put_data = crc_word_out;
     assign start_valid = does & code[10];
     assign clear = clears;
-    assign broken = does & code[8];
+    assign broken = does & code[8] & !code[6];
     assign home_valid = does & code[6] & code[7];
+    assign snapshot = does & code[8] & code[6];
     assign kick = does & code[7] & !code[6];
     assign enable = control[0];
     assign stop = control[1];
@@ -578,7 +593,7 @@ module carrystep_processor (
     end
 
     always @(*) begin
-        waited = scanned | (code[3] & room_valid);
+        waited = refreshed | (code[3] & room_valid);
         if (code[11]) begin
             waited = put_ready | fault;
         end
@@ -742,18 +757,17 @@ module carrystep_processor (
         if (room_valid) begin
             space <= room;
         end
-        if (does & code[6] & !code[7]) begin
+        if (does & code[6] & !code[7] & !code[8]) begin
             control <= sum[1:0];
             clears <= code[9];
         end
     end
 endmodule
 
-// Memory of carrystep_register_mirror: constants of the build, and the last known state of each
-// axis.
+// Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
+    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -766,27 +780,27 @@ module carrystep_known #(
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [6:0] read_address,
+    input  wire   [7:0] read_address,
     // The word at the address of the cycle before.
     output wire  [31:0] read_data,
     // The address of the word to write.
-    input  wire   [6:0] write_address,
+    input  wire   [7:0] write_address,
     // The write enable of each bit.
     input  wire  [31:0] write_bits,
     // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:127];
+    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:255];
     reg [31:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
 
     initial begin
-        for (i = 0; i < 128; i = i + 1) words[i] = 0;
+        for (i = 0; i < 256; i = i + 1) words[i] = 0;
         words[0] = 32'h50545343;
-        words[1] = 32'h1;
+        words[1] = 32'h2;
         words[2] = BUILD_ID[31:0];
         words[3] = BUILD_ID[63:32];
         words[4] = 32'h6;
@@ -798,14 +812,15 @@ module carrystep_known #(
 
     always @(posedge clock) begin
         value <= words[read_address];
-        if (write_bits[0]) words[write_address] <= write_data;
+        if (write_bits[0]) words[write_address][15:0] <= write_data[15:0];
+        if (write_bits[16]) words[write_address][31:16] <= write_data[31:16];
     end
 endmodule
 
-// What the host can read: constants of the build, and the last known state of each axis.
+// What the host can read: constants of the build, and the last words of state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
+    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -818,55 +833,47 @@ module carrystep_register_mirror #(
     // The clock.
     input  wire         clock,
     // The address to read.
-    input  wire   [6:0] address,
+    input  wire   [7:0] address,
     // The word at the address of the clock before.
     output wire  [31:0] data,
-    // The axis that is requested from the engine.
-    output wire   [2:0] get_axis,
-    // The item that is requested from the engine.
-    output wire   [1:0] get_item,
-    // The value that the engine returns.
-    input  wire  [31:0] get_data,
-    // `get_data` is the value of the requested item.
-    input  wire         get_valid,
-    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    input  wire         latch,
-    // The axis of `latch`.
-    input  wire   [2:0] latch_axis,
-    // The last item of the last axis arrives in this clock, so that one cycle through all items is
-    // complete.
-    output wire         scanned
+    // The engine outputs a word of state in this clock.
+    input  wire         state_valid,
+    // Its page.
+    input  wire   [1:0] state_page,
+    // Its axis.
+    input  wire   [2:0] state_axis,
+    // Its item.
+    input  wire   [2:0] state_item,
+    // The word.
+    input  wire  [31:0] state
 );
-    localparam [4:0] ONE = 5'd1;
-    localparam [4:0] LAST_ITEM = 5'd31;
     localparam [2:0] AT_3 = 3'd3;
-    localparam [6:0] OF_AXES = 7'd64;
-    localparam [6:0] LATCHED = 7'd68;
+    localparam [2:0] AT_6 = 3'd6;
+    localparam [2:0] STATUS = 3'd7;
     localparam [31:0] NONE = 32'd0;
-    localparam [31:0] ALL = 32'hffffffff;
+    localparam [31:0] LOW_HALF = 32'd65535;
+    localparam [31:0] HIGH_HALF = 32'hffff0000;
 
-    reg [4:0] asked = 5'd0;
-    reg [6:0] place;
-    reg [31:0] bits;
+    reg [31:0] low_written;
+    reg [31:0] high_written;
 
     wire [31:0] known_read_data;
 
+    wire [7:0] place = ({6'b0, state_page} << AT_6) | ({5'b0, state_item} << AT_3) | {5'b0, state_axis};
+
     assign data = known_read_data;
-    assign get_axis = asked[4:2];
-    assign get_item = asked[1:0];
-    assign scanned = get_valid & (asked == LAST_ITEM);
 
     always @(*) begin
-        place = OF_AXES | ({4'b0, asked[4:2]} << AT_3) | {5'b0, asked[1:0]};
-        if (latch) begin
-            place = LATCHED | ({4'b0, latch_axis} << AT_3);
+        low_written = NONE;
+        if (state_valid) begin
+            low_written = LOW_HALF;
         end
     end
 
     always @(*) begin
-        bits = NONE;
-        if (latch | get_valid) begin
-            bits = ALL;
+        high_written = NONE;
+        if (state_valid & (state_item != STATUS)) begin
+            high_written = HIGH_HALF;
         end
     end
 
@@ -881,21 +888,15 @@ module carrystep_register_mirror #(
         .read_address(address),
         .read_data(known_read_data),
         .write_address(place),
-        .write_bits(bits),
-        .write_data(get_data)
+        .write_bits(low_written | high_written),
+        .write_data(state)
     );
-
-    always @(posedge clock) begin
-        if (get_valid) begin
-            asked <= asked + ONE;
-        end
-    end
 endmodule
 
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'hdc28579ec9280efe,
+    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -947,22 +948,24 @@ module carrystep_link #(
     output wire         home_valid,
     // The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
     output wire   [5:0] home_mask,
+    // The host requests a snapshot of the state of all axes.
+    output wire         snapshot,
     // The host has sent a valid request: the watchdog restarts.
     output wire         kick,
     // The host requests power for the motor drivers, as long as it is asserted.
     output wire         enable,
-    // The axis whose state the link reads from the engine.
-    output wire   [2:0] get_axis,
-    // The item that the link reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
-    output wire   [1:0] get_item,
-    // The value that the engine returns.
-    input  wire  [31:0] get_data,
-    // `get_data` is the value of the item requested in the clock before.
-    input  wire         get_valid,
-    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    input  wire         latch,
-    // The axis of `latch`.
-    input  wire   [2:0] latch_axis,
+    // The engine outputs a word of the state of an axis in this clock.
+    input  wire         state_valid,
+    // The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    input  wire   [1:0] state_page,
+    // Its axis, as a number from 0.
+    input  wire   [2:0] state_axis,
+    // Its meaning, numbered as at the port `state_item` of the engine.
+    input  wire   [2:0] state_item,
+    // The word.
+    input  wire  [31:0] state,
+    // All live words of this tick have been output.
+    input  wire         refreshed,
     // The engine has latched a stop.
     input  wire         fault,
     // No axis moves any more after a stop.
@@ -991,18 +994,16 @@ module carrystep_link #(
     wire processor_clear;
     wire processor_broken;
     wire processor_home_valid;
+    wire processor_snapshot;
     wire processor_kick;
     wire processor_enable;
     wire processor_stop;
     wire [31:0] register_mirror_data;
-    wire [2:0] register_mirror_get_axis;
-    wire [1:0] register_mirror_get_item;
-    wire register_mirror_scanned;
 
     assign answer_valid = processor_answer_valid;
     assign answer = processor_a;
     assign put_valid = processor_put_valid;
-    assign put_axis = processor_a[5:3];
+    assign put_axis = processor_a[2:0];
     assign put_word = processor_x[4:2];
     assign put_data = processor_put_data;
     assign start_valid = processor_start_valid;
@@ -1012,10 +1013,9 @@ module carrystep_link #(
     assign broken = processor_broken;
     assign home_valid = processor_home_valid;
     assign home_mask = processor_a[5:0];
+    assign snapshot = processor_snapshot;
     assign kick = processor_kick;
     assign enable = processor_enable;
-    assign get_axis = register_mirror_get_axis;
-    assign get_item = register_mirror_get_item;
 
     carrystep_processor processor (
         .clock(clock),
@@ -1034,10 +1034,11 @@ module carrystep_link #(
         .clear(processor_clear),
         .broken(processor_broken),
         .home_valid(processor_home_valid),
+        .snapshot(processor_snapshot),
         .kick(processor_kick),
         .enable(processor_enable),
         .stop(processor_stop),
-        .scanned(register_mirror_scanned),
+        .refreshed(refreshed),
         .fault(fault),
         .halted(halted),
         .idle(idle),
@@ -1058,15 +1059,13 @@ module carrystep_link #(
         .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS)
     ) register_mirror (
         .clock(clock),
-        .address(processor_x[6:0]),
+        .address(processor_x),
         .data(register_mirror_data),
-        .get_axis(register_mirror_get_axis),
-        .get_item(register_mirror_get_item),
-        .get_data(get_data),
-        .get_valid(get_valid),
-        .latch(latch),
-        .latch_axis(latch_axis),
-        .scanned(register_mirror_scanned)
+        .state_valid(state_valid),
+        .state_page(state_page),
+        .state_axis(state_axis),
+        .state_item(state_item),
+        .state(state)
     );
 endmodule
 

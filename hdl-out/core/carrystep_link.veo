@@ -5,7 +5,7 @@
 // in carrystep_link.v describe the ports. An output that is not used stays empty; each input needs
 // a value. This file is generated: change the generator instead.
 carrystep_link #(
-    .BUILD_ID(64'hdc28579ec9280efe),
+    .BUILD_ID(64'h106e11e37ad8277a),
     .CLOCK_HZ(32'h4c4b400),
     .TICK_NS(32'd1000),
     .ROUND_TICKS(32'd32),
@@ -32,14 +32,15 @@ carrystep_link #(
     .broken(),         // output
     .home_valid(),     // output
     .home_mask(),      // output [5:0]
+    .snapshot(),       // output
     .kick(),           // output
     .enable(),         // output
-    .get_axis(),       // output [2:0]
-    .get_item(),       // output [1:0]
-    .get_data(),       // input [31:0]
-    .get_valid(),      // input
-    .latch(),          // input
-    .latch_axis(),     // input [2:0]
+    .state_valid(),    // input
+    .state_page(),     // input [1:0]
+    .state_axis(),     // input [2:0]
+    .state_item(),     // input [2:0]
+    .state(),          // input [31:0]
+    .refreshed(),      // input
     .fault(),          // input
     .halted(),         // input
     .idle(),           // input

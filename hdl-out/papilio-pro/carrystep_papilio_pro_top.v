@@ -42,14 +42,15 @@ module carrystep_papilio_pro_top (
     wire broken;
     wire home_valid;
     wire [5:0] home_mask;
+    wire snapshot;
     wire kick;
     wire enable;
-    wire [2:0] get_axis;
-    wire [1:0] get_item;
-    wire [31:0] get_data;
-    wire get_valid;
-    wire latch;
-    wire [2:0] latch_axis;
+    wire state_valid;
+    wire [1:0] state_page;
+    wire [2:0] state_axis;
+    wire [2:0] state_item;
+    wire [31:0] state;
+    wire refreshed;
     wire fault;
     wire halted;
     wire idle;
@@ -73,7 +74,7 @@ module carrystep_papilio_pro_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h1711363e71c41483),
+        .BUILD_ID(64'hdd76ce1c4ee9796),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -99,14 +100,15 @@ module carrystep_papilio_pro_top (
         .broken(broken),
         .home_valid(home_valid),
         .home_mask(home_mask),
+        .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
-        .get_axis(get_axis),
-        .get_item(get_item),
-        .get_data(get_data),
-        .get_valid(get_valid),
-        .latch(latch),
-        .latch_axis(latch_axis),
+        .state_valid(state_valid),
+        .state_page(state_page),
+        .state_axis(state_axis),
+        .state_item(state_item),
+        .state(state),
+        .refreshed(refreshed),
         .fault(fault),
         .halted(halted),
         .idle(idle),
@@ -178,14 +180,15 @@ module carrystep_papilio_pro_top (
         .broken(broken),
         .home_valid(home_valid),
         .home_mask(home_mask),
+        .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
-        .get_axis(get_axis),
-        .get_item(get_item),
-        .get_data(get_data),
-        .get_valid(get_valid),
-        .latch(latch),
-        .latch_axis(latch_axis),
+        .state_valid(state_valid),
+        .state_page(state_page),
+        .state_axis(state_axis),
+        .state_item(state_item),
+        .state(state),
+        .refreshed(refreshed),
         .fault(fault),
         .halted(halted),
         .idle(idle),

@@ -43,14 +43,15 @@ module carrystep_tinyfpga_bx_top (
     wire broken;
     wire home_valid;
     wire [5:0] home_mask;
+    wire snapshot;
     wire kick;
     wire enable;
-    wire [2:0] get_axis;
-    wire [1:0] get_item;
-    wire [31:0] get_data;
-    wire get_valid;
-    wire latch;
-    wire [2:0] latch_axis;
+    wire state_valid;
+    wire [1:0] state_page;
+    wire [2:0] state_axis;
+    wire [2:0] state_item;
+    wire [31:0] state;
+    wire refreshed;
     wire fault;
     wire halted;
     wire idle;
@@ -74,7 +75,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h5ea785005c33df0e),
+        .BUILD_ID(64'h9a301fc929c80214),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -100,14 +101,15 @@ module carrystep_tinyfpga_bx_top (
         .broken(broken),
         .home_valid(home_valid),
         .home_mask(home_mask),
+        .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
-        .get_axis(get_axis),
-        .get_item(get_item),
-        .get_data(get_data),
-        .get_valid(get_valid),
-        .latch(latch),
-        .latch_axis(latch_axis),
+        .state_valid(state_valid),
+        .state_page(state_page),
+        .state_axis(state_axis),
+        .state_item(state_item),
+        .state(state),
+        .refreshed(refreshed),
         .fault(fault),
         .halted(halted),
         .idle(idle),
@@ -179,14 +181,15 @@ module carrystep_tinyfpga_bx_top (
         .broken(broken),
         .home_valid(home_valid),
         .home_mask(home_mask),
+        .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
-        .get_axis(get_axis),
-        .get_item(get_item),
-        .get_data(get_data),
-        .get_valid(get_valid),
-        .latch(latch),
-        .latch_axis(latch_axis),
+        .state_valid(state_valid),
+        .state_page(state_page),
+        .state_axis(state_axis),
+        .state_item(state_item),
+        .state(state),
+        .refreshed(refreshed),
         .fault(fault),
         .halted(halted),
         .idle(idle),

@@ -47,7 +47,7 @@ fn an_engine_with_a_pair_of_limits_for_each_axis() {
 
 #[test]
 fn an_engine_with_many_ticks_between_samples_of_limits() {
-    stops_at_any_clock(6, 79_000_000, 1, LimitWiring::Pair, 16);
+    stops_at_any_clock(6, 80_000_000, 1, LimitWiring::Pair, 16);
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn random_programs_at_16_phases() {
 
 #[test]
 fn random_programs_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, LimitWiring::One), 200_000);
+    in_rust_hdl(&build(6, 80_000_000, 1, StartPhase::Half, LimitWiring::One), 200_000);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn random_programs_of_eight_axes_at_4_phases_with_clocks_to_spare() {
 
 #[test]
 fn random_programs_of_eight_axes_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, LimitWiring::Pair), 200_000);
+    in_rust_hdl(&build(8, 106_000_000, 1, StartPhase::Half, LimitWiring::Pair), 200_000);
 }
 
 #[test]

@@ -97,6 +97,7 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         3 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
         6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
+        3 => Just((Event::Snapshot, Event::Snapshot)),
         1 => Just((Event::Broken, Event::Kick)),
         2 => Just((Event::Reset(true), Event::Reset(false))),
         1 => (1_u8..8).prop_map(|mask| (Event::WordError(mask), Event::WordError(0))),
@@ -104,6 +105,27 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length)
         .prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+}
+
+/// All axes wait for their limits, which become active one after the other, whichever way the axes
+/// move. The host takes snapshots meanwhile.
+fn homings(axes: usize) -> impl Strategy<Value = Events> {
+    let later = prop_oneof![1 => Just(0_u64), 1 => 1_u64..300, 3 => 300_u64..4000];
+    let limits = prop::collection::vec((0..=all(axes), later), 1..4);
+    (0_u64..60_000, limits).prop_map(move |(at, limits)| {
+        let mut events = vec![(at, Event::Home(all(axes)))];
+        let (mut then, mut reached) = (at, 0);
+        for (mask, later) in limits {
+            then += later;
+            reached |= mask;
+            events.push((then, Event::LimitMin(reached)));
+            events.push((then, Event::LimitMax(reached)));
+            events.push((then + later / 2, Event::Snapshot));
+        }
+        let ends = [Event::LimitMin(0), Event::LimitMax(0), Event::Home(0)];
+        events.extend(ends.map(|event| (then + 2000, event)));
+        events
+    })
 }
 
 /// The same program with the start behind as many rows of segments as fit into the queues, so that
@@ -126,8 +148,8 @@ fn signs_of_life() -> impl Strategy<Value = Events> {
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episodes =
-        prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
+    let episode = prop_oneof![12 => episode(axes), 1 => homings(axes)];
+    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life()).prop_map(|(episodes, life)| {
         let mut events = episodes.concat();
         events.extend(life);

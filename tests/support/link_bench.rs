@@ -111,13 +111,9 @@ impl LinkBench {
         }
         let asked = self.wire.settle(&seen).0;
         let told = asked.engine.with_pins(&self.pins);
-        let (axis, item) = (asked.get_axis.into(), asked.get_item.into());
-        self.engine.get(axis, item);
         let before = std::mem::replace(&mut self.outputs, self.engine.settle(&told)).step;
         self.steps += u64::from((self.outputs.step & !before).count_ones());
         seen.engine = self.outputs;
-        seen.get_valid = self.engine.get(axis, item).is_some();
-        seen.get_data = self.engine.latched();
         let (shown, level) = self.wire.settle(&seen);
         if let Some(both) = &mut self.vectors {
             self.wire.keep(&seen, &shown, level, both);

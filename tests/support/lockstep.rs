@@ -84,8 +84,8 @@ pub fn assert_random_programs_equal_model(level: Level, axes: usize, phases: u32
     assert!(refused > cases / 4, "only {refused} programs broke the protocol");
 }
 
-/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s,
-/// `latch` and `room`), in each cycle in which one of them changed, and how it ended.
+/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s and
+/// `room`), in each cycle in which one of them changed, and how it ended.
 fn engine_record(
     level: Level,
     build: &EngineBuild,
@@ -97,7 +97,7 @@ fn engine_record(
         EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
             let told =
                 EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
-            let told = EngineOutputs { latch: None, room: None, ..told };
+            let told = EngineOutputs { room: None, ..told };
             if changes.last().is_none_or(|(_, before)| *before != told) {
                 changes.push((cycle, told));
             }

@@ -28,6 +28,7 @@ mod parallel_core;
 mod promises;
 mod pulser;
 mod queue;
+mod readout;
 mod resets;
 mod sequencer;
 mod shaper;
@@ -135,6 +136,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         stops::proof(engine),
         supervisor::proof(engine),
         queue::proof(engine),
+        readout::proof(engine),
         limits::proof(engine),
         homing_control::proof(engine),
         resets::proof(engine),

@@ -162,14 +162,10 @@ fn pages_give_the_default_time_between_power_and_start() {
 
 #[test]
 fn specification_gives_the_beats_of_the_model() {
-    let model = |name| constant("crates/model/src/engine.rs", name);
-    let [sample, latch] = ["SAMPLE_BEAT", "LATCH_BEAT"].map(model);
+    let sample = constant("crates/model/src/engine/motion/limits.rs", "SAMPLE_BEAT");
     says(
         "docs/clock-by-clock.md",
-        &[
-            format!("The sample is the level of the pin in beat {sample}."),
-            format!("`latch` is 1 in beat {latch} of the time slots"),
-        ],
+        &[format!("The sample is the level of the pin in beat {sample}.")],
     );
 }
 

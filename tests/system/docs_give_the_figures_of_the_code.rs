@@ -10,7 +10,7 @@ use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
 use carrystep_core::link::{
     ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
-    MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, REQUEST_HEAD, WINDOW, WRITE, image,
+    MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, REQUEST_HEAD, WINDOW, image,
 };
 use carrystep_core::tick::{FIXED_CLOCK_HZ, default_tick};
 use carrystep_core::{AXES, Timebase};
@@ -74,7 +74,7 @@ fn pages_give_the_dimensions_of_the_engine() {
             format!("serves up to {} axes", word(MAX_AXES as u64)),
             format!("in clocks {slot} i .. {slot} i + {last}."),
             format!("The {slot} clocks of a time slot are its *beats* 0 .. {last}."),
-            format!("`{slot} N + 1 <= C`"),
+            format!("`{slot} N + 2 <= C`"),
             format!("a phase has at least {MIN_CLOCKS_PER_PHASE} clocks"),
             format!("a queue of up to {QUEUE} segments"),
             format!("room = {QUEUE} - the segments in the queue"),
@@ -88,7 +88,7 @@ fn pages_give_the_dimensions_of_the_engine() {
         &[
             format!("any number from one to {}", word(MAX_AXES as u64)),
             format!("there are more than {}.", word(MAX_AXES as u64)),
-            format!("fewer clocks than {slot} for each axis and one more"),
+            format!("fewer clocks than {slot} for each axis and two more"),
             format!("not from 1 to {most} clocks (in a machine file, up to {in_file})"),
             format!("a queue of {queue} segments costs no logic"),
         ],
@@ -118,7 +118,7 @@ fn machine_file_page_gives_the_ranges_of_the_gateware() {
         &[
             format!("| 1 to 10^{power} | frequency"),
             format!("| {MIN_CLOCKS_PER_TICK} to {MAX_CLOCKS} clocks, a whole number |"),
-            format!("needs {TIME_SLOT_CLOCKS} clocks per axis plus one"),
+            format!("needs {TIME_SLOT_CLOCKS} clocks per axis plus two"),
             format!("| {}; must divide the clocks of a tick |", phases.join(", ")),
             format!("| 1 to {MAX_AXES} tables |"),
             format!("accept at most {}", word(AXES as u64)),
@@ -259,7 +259,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!("a frame ends with END (`{END:02X}`)"),
             format!("the byte `{END:02X}` is sent as `{ESC:02X} {ESC_END:02X}`"),
             format!("the byte `{ESC:02X}` as `{ESC:02X} {ESC_ESC:02X}`"),
-            format!("an address below `{WRITE:02X}`"),
+            format!("a frame of {} bytes is a read", word(read as u64)),
             format!("The number is one of the {WINDOW} before `next`"),
             format!("up to {WINDOW} unacknowledged writes"),
             format!("over {WINDOW} a number is not unique any more"),

@@ -4,7 +4,7 @@
 use carrystep_core::build::{MIN_CLOCKS_PER_TICK, check_parallel_axes};
 use carrystep_core::engine::{
     COMMIT, ENGINE_PORTS, EngineBuild, Guard, MAX_AXES, MAX_ROUND, PUT_BEAT, SEGMENT_WORDS,
-    TIME_SLOT_CLOCKS, least_clocks,
+    StateItem, TIME_SLOT_CLOCKS, least_clocks,
 };
 use carrystep_core::link::{ANSWER, SEGMENT_FRAME_WORDS};
 use carrystep_core::ports::Width;
@@ -67,16 +67,24 @@ fn specification_gives_the_beats_of_the_layout() {
     let wiring = pages::file("crates/hdl/src/engine/wiring.rs");
     assert!(wiring.contains("self.room_valid.next = self.listens.val()"));
     assert_eq!(at("BEAT_LAST") as u32, TIME_SLOT_CLOCKS - 1);
-    let [p_low, p_high, position, discarded] =
-        [layout::SLOT_P_LOW, layout::SLOT_P_HIGH, layout::SLOT_POSITION, layout::SLOT_DISCARDED];
+    let output = |beat: &str, item: StateItem| format!("| {} | {} |", at(beat), item as u8);
     says(
         "docs/clock-by-clock.md",
         &[
             format!("room_valid in beat {} of its time slot", at("BEAT_PUT")),
             format!("Instead, after beat {} of its time slot,", at("BEAT_LAST")),
+            output("BEAT_STATE_P_LOW", StateItem::PLow) + " P, low half |",
             format!(
-                "an item: {p_low} {p_high} P, low and high, {position} position, {discarded} discarded steps"
+                "| {} | {} if the axis runs, else {} |",
+                at("BEAT_STATE_LEFT"),
+                StateItem::Left as u8,
+                StateItem::Discarded as u8
             ),
+            output("BEAT_STATE_POSITION", StateItem::Position) + " `counted`, the position |",
+            output("BEAT_STATE_P_HIGH", StateItem::PHigh) + " P, high half |",
+            output("BEAT_STATE_TICK", StateItem::Ticks) + " `ticks` |",
+            output("BEAT_STATE_STATUS", StateItem::Status) + " the status;",
+            format!("In beat {} of each time slot, the axis compares them", at("BEAT_COMPARE")),
         ],
     );
     let bits = moves::demo().build.timebase.phase_bits() as usize;
@@ -105,8 +113,14 @@ fn specification_gives_the_samples_of_a_round() {
     };
     let least = (0..=MAX_ROUND).find(|&round| accepted(round)).expect("a round");
     // The model compares the tick of the round with the number of the one that samples the highs.
-    let high = whole(behind("crates/model/src/engine.rs", "let pins = if tick_of_round == "));
-    let low = whole(behind("crates/model/src/engine.rs", "(self.supervisor.tick_of_round == "));
+    let high = whole(behind(
+        "crates/model/src/engine/motion/limits.rs",
+        "let pins = if tick_of_round == ",
+    ));
+    let low = whole(behind(
+        "crates/model/src/engine/motion/limits.rs",
+        "(self.supervisor.tick_of_round == ",
+    ));
     assert!(high < u64::from(least), "each round samples both ends");
     says(
         "docs/clock-by-clock.md",

@@ -33,7 +33,7 @@ fn engine_page_draws_the_beats_of_the_layout() {
     let numbers: Vec<usize> = head.split_whitespace().filter_map(|n| n.parse().ok()).collect();
     assert_eq!(numbers, (0..=beat("BEAT_PHASE")).collect::<Vec<_>>(), "{head}");
     assert_eq!(places.len(), numbers.len(), "{head}");
-    let rows: [(&str, &[(&str, &str)]); 3] = [
+    let rows: [(&str, &[(&str, &str)]); 4] = [
         (
             "reads",
             &[
@@ -47,7 +47,8 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("A'", "BEAT_READ_A_HIGH"),
                 ("V'", "BEAT_READ_V_HIGH"),
                 ("P'", "BEAT_READ_P_HIGH"),
-                ("get", "BEAT_READ_GET"),
+                ("tick", "BEAT_READ_TICK"),
+                ("tick", "BEAT_READ_TICK_AGAIN"),
             ],
         ),
         (
@@ -60,6 +61,7 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("V/2", "BEAT_BISECT_1"),
                 ("V/4", "BEAT_BISECT_2"),
                 ("V/8  V/16", "BEAT_BISECT_3"),
+                ("tick", "BEAT_SUM_TICK"),
             ],
         ),
         (
@@ -74,6 +76,17 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("A'", "BEAT_WRITE_A_HIGH"),
                 ("V'", "BEAT_WRITE_V_HIGH"),
                 ("P'", "BEAT_WRITE_P_HIGH"),
+            ],
+        ),
+        (
+            "outputs",
+            &[
+                ("P ", "BEAT_STATE_P_LOW"),
+                ("n ", "BEAT_STATE_LEFT"),
+                ("pos", "BEAT_STATE_POSITION"),
+                ("P'", "BEAT_STATE_P_HIGH"),
+                ("tick", "BEAT_STATE_TICK"),
+                ("stat", "BEAT_STATE_STATUS"),
             ],
         ),
     ];
@@ -145,7 +158,8 @@ fn engine_page_draws_the_words_of_the_memory() {
     // The widths of the three numbers in an address.
     let word = layout::state_address(0, 0).count_ones();
     let slot = layout::state_address(1, 0).ilog2() - word;
-    let axis = memory("store.rs", "segments").0 - slot - word;
+    // One more bit tells the number of the tick from the words of the eighth axis.
+    let axis = memory("store.rs", "segments").0 - 1 - slot - word;
     assert_eq!(layout::state_address(0, 1).ilog2(), word);
     says("docs/engine.md", &[format!("address axis {axis} | slot {slot} | word {word} word 0")]);
 }
@@ -163,7 +177,9 @@ fn engine_page_counts_the_block_rams() {
     const RAM: (u32, u32) = (256, 16);
     let rams =
         |(address, bits): (u32, u32)| (1_u32 << address).div_ceil(RAM.0) * bits.div_ceil(RAM.1);
+    // With up to seven axes, the highest bit of the address has no effect.
     let (address, bits) = memory("store.rs", "segments");
+    let address = address - 1;
     let (wide, deep) = (bits / RAM.1, (1 << address) / RAM.0);
     assert_eq!(1 << address, MAX_AXES as u32 * (QUEUE as u32 + 1) * (SEGMENT_WORDS as u32 + 1));
     let control = memory("queue.rs", "control");

@@ -1,7 +1,6 @@
 //! Figures of the documentation that describe the command and what surrounds it: exit statuses,
 //! documents, the scripts of the action, and long moves and runs.
 
-use carrystep_core::engine::MAX_AXES;
 use carrystep_tests::pages::{self, grouped, says, word};
 use carrystep_tests::sources::{behind, constant, power_of_ten, whole};
 
@@ -93,24 +92,6 @@ fn architecture_page_gives_the_longest_slow_move() {
         "decades(1.0, 2000.0), decades(100.0, ",
     ));
     says("docs/architecture.md", &[format!("of each profile, up to 10^{longest} s.")]);
-}
-
-#[test]
-fn virtual_board_page_gives_the_age_of_a_position() {
-    // The link reads the items of all axes that an engine can have, one in each time slot.
-    let mirror = "crates/hdl/src/link/register_mirror.rs";
-    let items = whole(behind(mirror, "last_item: Literal<5, ")) + 1;
-    let (axes, of_axis) = (6, items / MAX_AXES as u64);
-    says(
-        "docs/virtual-board.md",
-        &[format!(
-            "reads {} items of {} axes one after the other, one in each time slot: with {} axes it reads each position again within {} ticks.",
-            word(of_axis),
-            word(MAX_AXES as u64),
-            word(axes),
-            word(items.div_ceil(axes))
-        )],
-    );
 }
 
 /// The table gives the hour's time on the date of its measurement.

@@ -17,7 +17,8 @@ fn every_engine_build_fits_its_budget_of_logic_cells() {
         let build = (row.axes, row.clock_hz, row.tick_ns);
         if !netlists.iter().any(|(other, _)| *other == build) {
             let verilog = resources::verilog(row).expect("a fine engine");
-            netlists.push((build, ice40::synthesise(&verilog, ENGINE_NAME).expect("a netlist")));
+            netlists
+                .push((build, ice40::synthesise_tight(&verilog, ENGINE_NAME).expect("a netlist")));
         }
         let (_, netlist) = netlists.iter().find(|(other, _)| *other == build).expect("a netlist");
         let found = netlist.size(row.part).expect("a size");
@@ -34,7 +35,7 @@ fn eight_axes_need_few_more_logic_cells_than_six() {
     let (eight, six, most) = EIGHT_TO_SIX;
     let [eight, six] = [eight, six].map(|row| {
         let verilog = resources::verilog(&row).expect("a fine engine");
-        let netlist = ice40::synthesise(&verilog, ENGINE_NAME).expect("a netlist");
+        let netlist = ice40::synthesise_tight(&verilog, ENGINE_NAME).expect("a netlist");
         f64::from(netlist.size(row.part).expect("a size").logic_cells)
     });
     effort::say(&format!(

@@ -2,12 +2,13 @@
 //! there, while the other axes continue unchanged. The exported Verilog does the same in every
 //! clock, and planted bugs are caught.
 
-use carrystep_core::engine::{Cause, Guard, LimitWiring};
+use carrystep_core::engine::{
+    AxisStatus, Cause, Guard, LimitWiring, StateItem, StatePage, commanded_steps,
+};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
 use carrystep_hdl::EngineSim;
-use carrystep_model::Engine;
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_simulators::engine::{EngineCore, EngineHost, Event, Events};
@@ -124,31 +125,40 @@ fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
     assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
 }
 
+/// The words on the page of the limit are those of the tick after the one in which it was found,
+/// once, and no other axis has any.
 #[test]
-fn latch_reports_the_position_at_the_limit() {
+fn state_at_the_limit_is_that_of_the_next_tick() {
     let build = build(LimitWiring::Pair);
-    let (mut model, mut engine) =
-        (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
+    let mut engine = EngineSim::new(&build).expect("a fine build");
     let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
-    let (mut told, mut met) = (None, None);
-    while met.is_none() {
+    let mut at_limit = Vec::new();
+    let (mut live, mut waited, mut ticks_when_found) = (None, false, None);
+    while at_limit.len() < 5 {
         let inputs = host.inputs(false);
         let found = engine.settle(&inputs);
-        if found.latch.is_some() {
-            assert_eq!(found.latch, Some(HOMING as u8));
-            let says = engine.latched().cast_signed();
-            let is = model.shaper(HOMING).position;
-            // A pulse is counted in the register in the time slot after the next.
-            assert!((0..=1).contains(&(says - is)), "says {says}, is {is}");
-            told = Some(says);
+        match found.state {
+            Some(word) if word.page == StatePage::Limit => {
+                assert_eq!(word.axis as usize, HOMING);
+                at_limit.push((word.item, word.word));
+            }
+            Some(word) if word.item == StateItem::Ticks => live = Some(word.word),
+            _ => {}
         }
-        met = (told.is_some() && found.homing == 0).then(|| model.shaper(HOMING).position);
+        waited |= found.homing != 0;
+        if waited && found.homing == 0 && ticks_when_found.is_none() {
+            ticks_when_found = live;
+        }
         host.advance(&found);
-        EngineCore::clock(&mut model, &inputs);
         EngineCore::clock(&mut engine, &inputs);
     }
-    let (told, met) = (told.expect("a position"), met.expect("the end"));
-    assert!((0..=1).contains(&(told - met)) && met < -10, "told {told}, met {met}");
+    let word = |item| at_limit.iter().find(|(found, _)| *found == item).expect("an item").1;
+    let ticks = ticks_when_found.expect("the limit was found");
+    assert_eq!(word(StateItem::Ticks), ticks + 1);
+    let status = AxisStatus::of_word(word(StateItem::Status));
+    assert!(
+        status.running && commanded_steps(word(StateItem::Position).cast_signed(), status) < -10
+    );
 }
 
 /// Runs in which the limit becomes active in every part of a tick, while segments still arrive and

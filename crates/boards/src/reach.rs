@@ -83,7 +83,7 @@ mod tests {
             ),
             "{said}"
         );
-        // The time slots of eight axes need 105 clocks.
+        // The time slots of eight axes need 106 clocks.
         assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
     }
 }

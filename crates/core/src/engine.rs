@@ -18,12 +18,17 @@ mod cause;
 mod error;
 mod figures;
 mod ports;
+mod state;
 
 pub use build::{EngineBuild, Guard, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
-pub use ports::{ENGINE_PORTS, recorded_ports};
+pub use ports::{ENGINE_PORTS, is_recorded, ports_of};
+pub use state::{
+    AxisStatus, STATE_AXIS_BITS, STATE_ITEM_BITS, STATUS_BITS, StateItem, StatePage, StateWord,
+    address as state_address, commanded_steps,
+};
 
 pub use crate::schedule::{
     MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS, clocks_of_time_slots, least_clocks,
@@ -124,6 +129,8 @@ pub struct EngineInputs {
     pub broken: bool,
     /// New mask of the axes that wait for their limit, if the host writes one.
     pub home: Option<u8>,
+    /// The host requests a snapshot of the state of all axes.
+    pub snapshot: bool,
     /// The host has sent a valid request; this restarts the watchdog.
     pub kick: bool,
     /// The host requests power for the drivers.
@@ -185,10 +192,10 @@ pub struct EngineOutputs {
     pub ready: bool,
     /// Mask of the axes that wait for their limit.
     pub homing: u8,
-    /// The axis whose position `get_data` shows in this cycle: an axis that waits for its limit
-    /// shows its position once in every tick. The last position that it shows is that of the tick
-    /// in which the limit was found.
-    pub latch: Option<u8>,
+    /// The word of state that is output in this cycle, if any.
+    pub state: Option<StateWord>,
+    /// The live words of all axes have been output in this tick; 1 in one cycle of it.
+    pub refreshed: bool,
     /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in
     /// which that axis reports it.
     pub room: Option<u8>,
@@ -206,7 +213,7 @@ mod tests {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         assert_eq!(
             check_schedule(6, &timebase).unwrap_err().to_string(),
-            "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz \
+            "6 axes need 13 clocks each and two to close the tick, 80 in all, but a tick of 1000 ns at 48000000 Hz \
              has 48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do"
         );
         assert!(check_schedule(6, &Timebase::new(80_000_000, 1000, 16).unwrap()).is_ok());

@@ -67,7 +67,7 @@ constants! {
     CRC_RESIDUE: u32 = 0xdebb_20e3,
         "Value of the CRC register, before its inversion, after a frame and its CRC.";
     CRC_BYTES: usize = 4, "Length of a CRC in bytes.";
-    WRITE: u8 = 0x80, "Bit of the address that makes a request a write.";
+    WRITE: u8 = 0x80, "Bit that the address of every write has.";
     REQUEST_HEAD: usize = 2, "Length of the sequence number and the address of a request in bytes.";
     SEGMENT_FRAME_WORDS: usize = 8, "Number of words of a segment, the commit included.";
     LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES,
@@ -100,7 +100,7 @@ const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'stati
 }
 
 /// The fields of an answer, byte by byte. The data (low byte first) and the CRC follow them.
-pub const ANSWER: [Field; 13] = [
+pub const ANSWER: [Field; 14] = [
     field("sequence", 0, 0, 8, "the sequence number of the request"),
     field("address", 1, 0, 8, "the address of the request"),
     field(
@@ -127,6 +127,7 @@ pub const ANSWER: [Field; 13] = [
     },
     field("free", 4, 0, 3, "number of segments for which the queue of the addressed axis has room"),
     field("refused", 4, 3, 1, "this write was not executed: out of sequence, or busy"),
+    field("written", 4, 7, 1, "the request was a write; a read of the same address has 0 here"),
     field(
         "culprits",
         5,

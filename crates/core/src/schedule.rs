@@ -3,9 +3,10 @@
 /// Clocks in a time slot. Each axis has one time slot in each tick.
 pub const TIME_SLOT_CLOCKS: u32 = 13;
 
-/// Clocks of the time slots of this number of axes, plus the clock that closes the tick.
+/// Clocks of the time slots of this number of axes, plus the two clocks that close the
+/// tick: in them the engine counts the tick.
 pub const fn clocks_of_time_slots(axes: usize) -> u32 {
-    axes as u32 * TIME_SLOT_CLOCKS + 1
+    axes as u32 * TIME_SLOT_CLOCKS + 2
 }
 
 /// Fewest clocks of a tick: enough for the time slots of all axes and for the events of all phases.

@@ -20,13 +20,13 @@
 //! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
-//! Interface: the host writes segments word by word (`put`) into a queue of seven segments per
-//! axis, starts axes by a mask, and reads P, the position and the discarded steps of any axis
-//! (`get`). The inputs `estop`, `limit_min` and `limit_max` come directly from pins.
+//! Interface: the host writes segments word by word (`put`) into a queue of seven segments per axis
+//! and starts axes by a mask. The engine outputs the state of all axes in every tick (`state`), on
+//! request as a snapshot. The inputs `estop`, `limit_min` and `limit_max` come directly from pins.
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
-//! clocks per axis and one more.
+//! clocks per axis and two more.
 //!
 //! This file contains the ports and the parts; `wiring` connects them. Further terms of the code:
 //! `event_wheel` holds pending steps, which wait for their phase; `held_back` is a step that
@@ -51,6 +51,7 @@ pub mod layout;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
+pub mod readout;
 pub mod resets;
 mod sim;
 pub mod stops;
@@ -67,6 +68,7 @@ use homing_control::HomingControl;
 use limits::LimitSwitches;
 use pulser::Pulser;
 use queue::Queue;
+use readout::Readout;
 use resets::Resets;
 use stops::Stops;
 use store::Store;
@@ -115,6 +117,8 @@ pub struct Engine<const N: usize> {
     /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
     /// axis i.
     pub home_mask: Input<Word<N>>,
+    /// The host requests a snapshot of the state of all axes; asserted for one clock or longer.
+    pub snapshot: Input<Bit>,
     /// A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     pub kick: Input<Bit>,
     /// The host requests power for the motor drivers, as long as it is asserted.
@@ -128,19 +132,19 @@ pub struct Engine<const N: usize> {
     /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are
     /// used only if `LIMITS` is 1.
     pub limit_max: Input<Word<N>>,
-    /// The axis that the host reads.
-    pub get_axis: Input<Word<3>>,
-    /// The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
-    /// complement; 3 the number of discarded steps.
-    pub get_item: Input<Word<2>>,
-    /// The item that the engine returns.
-    pub get_data: Signal<Out, Word<32>>,
-    /// `get_data` is the item requested in the clock before.
-    pub get_valid: Signal<Out, Bit>,
-    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    pub latch: Signal<Out, Bit>,
-    /// The axis of the present time slot.
-    pub latch_axis: Signal<Out, Word<3>>,
+    /// A word of the state of an axis is output in this clock.
+    pub state_valid: Signal<Out, Bit>,
+    /// The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    pub state_page: Signal<Out, Word<2>>,
+    /// The axis, as a number from 0.
+    pub state_axis: Signal<Out, Word<3>>,
+    /// The meaning of the word: 0 discarded steps, 1 remaining ticks, 3 number of the tick, 4 and 5
+    /// P (low and high half), 6 position in steps, 7 status.
+    pub state_item: Signal<Out, Word<3>>,
+    /// The word. Of the status only bits 15 to 0 have a meaning.
+    pub state: Signal<Out, Word<32>>,
+    /// All live words of this tick have been output; asserted for one clock.
+    pub refreshed: Signal<Out, Bit>,
     /// The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
     pub room: Signal<Out, Word<3>>,
     /// `room` is valid in this clock, once in the time slot of that axis.
@@ -182,6 +186,7 @@ pub struct Engine<const N: usize> {
     event_wheel: EventWheel<N>,
     limits: LimitSwitches<N>,
     homing_control: HomingControl<N>,
+    readout: Readout,
     stops: Stops<N>,
     resets: Resets,
     supervisor: Supervisor,

@@ -5,7 +5,7 @@
 //!  rx ---->|      |--------->|         |--------------------------------> engine
 //!          | line |          |processor| state, room, culprits, homing
 //!          |      | answer   |         |<-------------------------------- engine
-//!  tx <----|      |<---------|         | facts  .-------. get, latch
+//!  tx <----|      |<---------|         | facts  .-------. words
 //!          '------'          '---------'<-------| facts |<--------------- engine
 //!                                               '-------'
 //! ```
@@ -87,22 +87,24 @@ pub struct Link<const N: usize> {
     pub home_valid: Signal<Out, Bit>,
     /// The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
     pub home_mask: Signal<Out, Word<N>>,
+    /// The host requests a snapshot of the state of all axes.
+    pub snapshot: Signal<Out, Bit>,
     /// The host has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Signal<Out, Bit>,
-    /// The axis whose state the link reads from the engine.
-    pub get_axis: Signal<Out, Word<3>>,
-    /// The item that the link reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
-    pub get_item: Signal<Out, Word<2>>,
-    /// The value that the engine returns.
-    pub get_data: Input<Word<32>>,
-    /// `get_data` is the value of the item requested in the clock before.
-    pub get_valid: Input<Bit>,
-    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    pub latch: Input<Bit>,
-    /// The axis of `latch`.
-    pub latch_axis: Input<Word<3>>,
+    /// The engine outputs a word of the state of an axis in this clock.
+    pub state_valid: Input<Bit>,
+    /// The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    pub state_page: Input<Word<2>>,
+    /// Its axis, as a number from 0.
+    pub state_axis: Input<Word<3>>,
+    /// Its meaning, numbered as at the port `state_item` of the engine.
+    pub state_item: Input<Word<3>>,
+    /// The word.
+    pub state: Input<Word<32>>,
+    /// All live words of this tick have been output.
+    pub refreshed: Input<Bit>,
     /// The engine has latched a stop.
     pub fault: Input<Bit>,
     /// No axis moves any more after a stop.
@@ -167,7 +169,7 @@ impl<const N: usize> Logic for Link<N> {
         self.processor.answer_take.next = self.answer_take.val();
 
         self.put_valid.next = self.processor.put_valid.val();
-        self.put_axis.next = self.processor.a.val().get_bits::<3>(3);
+        self.put_axis.next = self.processor.a.val().get_bits::<3>(0);
         self.put_word.next = self.processor.x.val().get_bits::<3>(2);
         self.put_data.next = self.processor.put_data.val();
         self.processor.put_ready.next = self.put_ready.val();
@@ -181,10 +183,11 @@ impl<const N: usize> Logic for Link<N> {
         self.clear.next = self.processor.clear.val();
         self.stop.next = self.processor.stop.val();
         self.broken.next = self.processor.broken.val();
+        self.snapshot.next = self.processor.snapshot.val();
         self.kick.next = self.processor.kick.val();
         self.enable.next = self.processor.enable.val();
 
-        self.processor.scanned.next = self.register_mirror.scanned.val();
+        self.processor.refreshed.next = self.refreshed.val();
         self.processor.fault.next = self.fault.val();
         self.processor.halted.next = self.halted.val();
         self.processor.idle.next = self.idle.val();
@@ -195,13 +198,12 @@ impl<const N: usize> Logic for Link<N> {
         self.processor.homing.next = self.homing.val();
         self.processor.facts.next = self.register_mirror.data.val();
 
-        self.register_mirror.address.next = self.processor.x.val().get_bits::<7>(0);
-        self.register_mirror.get_data.next = self.get_data.val();
-        self.register_mirror.get_valid.next = self.get_valid.val();
-        self.register_mirror.latch.next = self.latch.val();
-        self.register_mirror.latch_axis.next = self.latch_axis.val();
-        self.get_axis.next = self.register_mirror.get_axis.val();
-        self.get_item.next = self.register_mirror.get_item.val();
+        self.register_mirror.address.next = self.processor.x.val();
+        self.register_mirror.state_valid.next = self.state_valid.val();
+        self.register_mirror.state_page.next = self.state_page.val();
+        self.register_mirror.state_axis.next = self.state_axis.val();
+        self.register_mirror.state_item.next = self.state_item.val();
+        self.register_mirror.state.next = self.state.val();
     }
 }
 

@@ -1,8 +1,6 @@
 /* See carrystep_frame.h. */
 #include "carrystep_frame.h"
 
-#define PLAIN 0x7fu /* the bits of an address without CARRYSTEP_WRITE */
-
 uint32_t carrystep_crc(const uint8_t *bytes, size_t length)
 {
     uint32_t crc = UINT32_MAX;
@@ -15,19 +13,19 @@ uint32_t carrystep_crc(const uint8_t *bytes, size_t length)
     return crc ^ UINT32_MAX;
 }
 
-bool carrystep_names_axis(uint8_t address)
+bool carrystep_is_segment(uint8_t address)
 {
-    return (address & PLAIN) >= CARRYSTEP_AXES_AT;
+    return address >= (CARRYSTEP_WRITE | CARRYSTEP_SEGMENT);
+}
+
+bool carrystep_names_axis(const carrystep_answer *answer)
+{
+    return answer->written ? carrystep_is_segment(answer->address) : answer->address >= CARRYSTEP_AXES_AT;
 }
 
 uint8_t carrystep_axis_of(uint8_t address)
 {
-    return (uint8_t)(((address & PLAIN) - CARRYSTEP_AXES_AT) / CARRYSTEP_PER_AXIS);
-}
-
-bool carrystep_is_segment(uint8_t address)
-{
-    return address >= CARRYSTEP_WRITE && carrystep_names_axis(address);
+    return (uint8_t)(address & (CARRYSTEP_MOST_AXES - 1u));
 }
 
 static size_t put_word(uint8_t *frame, size_t at, uint32_t word)
@@ -55,14 +53,14 @@ size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request
     uint8_t frame[CARRYSTEP_LONGEST_REQUEST] = {sequence, request->address};
     size_t length = CARRYSTEP_REQUEST_HEAD;
     size_t out = 0;
-    if (carrystep_is_segment(request->address)) {
+    if (request->writes && carrystep_is_segment(request->address)) {
         const carrystep_segment *segment = &request->segment;
         length = put_word(frame, length, segment->ticks - 1u);
         length = put_long(frame, length, segment->v);
         length = put_long(frame, length, segment->a);
         length = put_long(frame, length, segment->j);
         length = put_word(frame, length, segment->last ? 1u : 0u);
-    } else if (request->address >= CARRYSTEP_WRITE) {
+    } else if (request->writes) {
         length = put_word(frame, length, request->word);
     }
     length = put_word(frame, length, carrystep_crc(frame, length));
@@ -100,6 +98,7 @@ static bool take(const uint8_t *frame, uint8_t length, carrystep_answer *answer)
     answer->cause = CARRYSTEP_ANSWER_CAUSE(frame);
     answer->free = CARRYSTEP_ANSWER_FREE(frame);
     answer->refused = CARRYSTEP_ANSWER_REFUSED(frame) != 0;
+    answer->written = CARRYSTEP_ANSWER_WRITTEN(frame) != 0;
     answer->culprits = CARRYSTEP_ANSWER_CULPRITS(frame);
     answer->homing = CARRYSTEP_ANSWER_HOMING(frame);
     answer->data = word_at(frame, CARRYSTEP_ANSWER_DATA);

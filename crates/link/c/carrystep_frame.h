@@ -26,9 +26,10 @@ typedef struct {
     bool last;      /* the axis stops when it is over */
 } carrystep_segment;
 
-/* A request: a read (address below CARRYSTEP_WRITE), a write of one word, or a segment (address
- * CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
+/* A request: a read, a write of one word (address CARRYSTEP_WRITE | register), or a segment
+ * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
 typedef struct {
+    bool writes;
     uint8_t address;
     uint32_t word;             /* of a write */
     carrystep_segment segment; /* of a segment */
@@ -47,6 +48,7 @@ typedef struct {
     uint8_t cause;
     uint8_t free;
     bool refused;
+    bool written; /* the request was a write */
     uint8_t culprits;
     uint8_t homing;
     uint32_t data;
@@ -69,9 +71,14 @@ typedef enum {
 /* The CRC-32 of Ethernet, zip and zlib. */
 uint32_t carrystep_crc(const uint8_t *bytes, size_t length);
 
-/* Whether this address writes a segment; whether it belongs to an axis, and to which. */
+/* Whether a write to this address is a segment. */
 bool carrystep_is_segment(uint8_t address);
-bool carrystep_names_axis(uint8_t address);
+
+/* Whether `free` of an answer belongs to an axis that its address names: that of a register that was
+ * read, or of a segment. */
+bool carrystep_names_axis(const carrystep_answer *answer);
+
+/* The axis that such an address names. */
 uint8_t carrystep_axis_of(uint8_t address);
 
 /* Encodes a request to `line`, which has CARRYSTEP_LINE_BYTES bytes. Returns the number of bytes

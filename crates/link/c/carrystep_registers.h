@@ -22,7 +22,7 @@
 #define CARRYSTEP_CRC_RESIDUE UINT32_C(0xdebb20e3)
 /* Length of a CRC in bytes. */
 #define CARRYSTEP_CRC_BYTES 4u
-/* Bit of the address that makes a request a write. */
+/* Bit that the address of every write has. */
 #define CARRYSTEP_WRITE 0x80u
 /* Length of the sequence number and the address of a request in bytes. */
 #define CARRYSTEP_REQUEST_HEAD 2u
@@ -39,22 +39,28 @@
 /* Value of the register IDENTITY. */
 #define CARRYSTEP_IDENTITY_VALUE UINT32_C(0x50545343)
 /* Version of the protocol to which this register map belongs. */
-#define CARRYSTEP_PROTOCOL_VERSION UINT32_C(0x00000001)
+#define CARRYSTEP_PROTOCOL_VERSION UINT32_C(0x00000002)
 /* Bit of CONTROL: power the drivers. */
 #define CARRYSTEP_CONTROL_ENABLE UINT32_C(0x00000001)
 /* Bit of CONTROL: stop all axes. */
 #define CARRYSTEP_CONTROL_STOP UINT32_C(0x00000002)
-/* First address of the axes' registers. */
-#define CARRYSTEP_AXES_AT 0x40u
-/* Number of addresses of each axis. */
-#define CARRYSTEP_PER_AXIS 0x08u
+/* Lowest address at which a register of an axis is read. */
+#define CARRYSTEP_AXES_AT 0x18u
+/* Bits of STATUS: the slot of the running segment. */
+#define CARRYSTEP_STATUS_SLOT UINT32_C(0x0000001f)
+/* Bit of STATUS: the axis runs a segment. */
+#define CARRYSTEP_STATUS_RUNS UINT32_C(0x00000020)
+/* Bits of STATUS: the number of segments that wait. */
+#define CARRYSTEP_STATUS_WAITING UINT32_C(0x000007c0)
+/* Bits of STATUS: the number of steps on their way, two's complement. */
+#define CARRYSTEP_STATUS_ON_WAY UINT32_C(0x0000f000)
 /* Greatest number of axes of a build. */
 #define CARRYSTEP_MOST_AXES 0x08u
 /* Number of segments that can wait for an axis, in addition to the one that runs. */
 #define CARRYSTEP_QUEUE_SEGMENTS 0x07u
 
 /* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
-#define CARRYSTEP_OF_AXIS(register, axis) ((register) + CARRYSTEP_PER_AXIS * (axis))
+#define CARRYSTEP_OF_AXIS(register, axis) ((register) + (axis))
 
 /* The bytes of "CSTP", low byte first, which identify carrystep (read) */
 #define CARRYSTEP_IDENTITY 0x00u
@@ -74,24 +80,54 @@
 #define CARRYSTEP_PHASES 0x07u
 /* Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
+/* TICKS of the other words at the limit (read, axis 0) */
+#define CARRYSTEP_LIMIT_TICKS 0x18u
+/* P in the tick after the one in which homing found the limit, low half (read, axis 0) */
+#define CARRYSTEP_LIMIT_P_LOW 0x20u
+/* P at the limit, high half (read, axis 0) */
+#define CARRYSTEP_LIMIT_P_HIGH 0x28u
+/* Position at the limit in steps (read, axis 0) */
+#define CARRYSTEP_LIMIT_POSITION 0x30u
+/* STATUS at the limit (read, axis 0) */
+#define CARRYSTEP_LIMIT_STATUS 0x38u
+/* Number of steps that freezes have discarded since configuration (read, axis 0) */
+#define CARRYSTEP_DISCARDED 0x40u
+/* Ticks of the running segment after the next one; no meaning while the axis does not run (read, axis 0) */
+#define CARRYSTEP_LEFT 0x48u
+/* Number of ticks since configuration, modulo 2^32; the same for all axes (read, axis 0) */
+#define CARRYSTEP_TICKS 0x58u
+/* P, the fraction of a step in units of 2^-64 step, low half (read, axis 0) */
+#define CARRYSTEP_P_LOW 0x60u
+/* P, high half (read, axis 0) */
+#define CARRYSTEP_P_HIGH 0x68u
+/* Position: steps forward minus steps backward, two's complement (read, axis 0) */
+#define CARRYSTEP_POSITION 0x70u
+/* Bits 4..0: slot of the running segment; 5: runs; 10..6: segments that wait; 15..12: steps on their way, two's complement; the other bits have no meaning (read, axis 0) */
+#define CARRYSTEP_STATUS 0x78u
+/* DISCARDED in the tick of the snapshot; no meaning if the axis ran (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_DISCARDED 0x80u
+/* LEFT in the tick of the snapshot; no meaning if the axis did not run (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_LEFT 0x88u
+/* TICKS of the snapshot; the same for all axes (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_TICKS 0x98u
+/* P in that tick, low half (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_P_LOW 0xa0u
+/* P in that tick, high half (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_P_HIGH 0xa8u
+/* POSITION in that tick (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_POSITION 0xb0u
+/* STATUS in that tick (read, axis 0) */
+#define CARRYSTEP_SNAPSHOT_STATUS 0xb8u
 /* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
 #define CARRYSTEP_CONTROL 0x20u
 /* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
 /* Any value ends a complete stop: queues empty, P at its start value, position kept (write) */
 #define CARRYSTEP_CLEAR 0x22u
-/* Axes, one bit each: the next limit latches the position and ramps down this axis only (write) */
+/* Axes, one bit each: the next limit latches the state and ramps down this axis only (write) */
 #define CARRYSTEP_HOME 0x23u
-/* P, the fraction of a step in units of 2^-64 step, low half (read, axis 0) */
-#define CARRYSTEP_P_LOW 0x40u
-/* P, high half (read, axis 0) */
-#define CARRYSTEP_P_HIGH 0x41u
-/* Position: steps forward minus steps backward, two's complement (read, axis 0) */
-#define CARRYSTEP_POSITION 0x42u
-/* Number of steps that freezes have discarded since configuration (read, axis 0) */
-#define CARRYSTEP_DISCARDED 0x43u
-/* Position in steps at which the limit was reached in homing (read, axis 0) */
-#define CARRYSTEP_LATCHED 0x44u
+/* Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write) */
+#define CARRYSTEP_SNAPSHOT 0x24u
 /* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
 
@@ -129,6 +165,8 @@
 #define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
 /* this write was not executed: out of sequence, or busy */
 #define CARRYSTEP_ANSWER_REFUSED(answer) ((uint8_t)((answer)[4] >> 3 & 1u))
+/* the request was a write; a read of the same address has 0 here */
+#define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[4] >> 7 & 1u))
 /* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
 /* the axes that still wait for their limit, one bit each */

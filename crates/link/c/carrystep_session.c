@@ -91,6 +91,7 @@ bool carrystep_write(carrystep_session *session, uint8_t address, uint32_t word)
 {
     carrystep_request request;
     memset(&request, 0, sizeof request);
+    request.writes = true;
     request.address = (uint8_t)WRITES(address);
     request.word = word;
     return push(session, &request);
@@ -103,6 +104,7 @@ bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_seg
         return false;
     }
     memset(&request, 0, sizeof request);
+    request.writes = true;
     request.address = (uint8_t)WRITES(CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis));
     request.segment = *segment;
     return push(session, &request);
@@ -157,7 +159,7 @@ static void refusal(carrystep_session *session, uint8_t behind, uint32_t now)
 static bool own(const carrystep_session *session, const carrystep_answer *answer)
 {
     uint8_t behind = (uint8_t)(answer->sequence - session->first);
-    if ((answer->address & CARRYSTEP_WRITE) == 0 || behind > CARRYSTEP_WINDOW) {
+    if (!answer->written || behind > CARRYSTEP_WINDOW) {
         return true;
     }
     return behind < session->reached && session->slots[slot(session, behind)].address == answer->address;
@@ -231,7 +233,7 @@ static size_t send_read(carrystep_session *session, uint32_t now, uint8_t *line)
 static void answered(carrystep_session *session, const carrystep_answer *answer)
 {
     for (int index = 0; index < (int)CARRYSTEP_MOST_AXES; index++) {
-        if (session->reads[index].open && session->reads[index].asked &&
+        if (!answer->written && session->reads[index].open && session->reads[index].asked &&
             session->reads[index].address == answer->address && session->reads[index].sequence == answer->sequence) {
             session->reads[index].open = false;
             return;
@@ -277,7 +279,7 @@ carrystep_event carrystep_receive(carrystep_session *session, uint8_t byte, uint
             return CARRYSTEP_OUT_OF_STEP;
         }
         session->armed = answer->armed;
-        if (carrystep_names_axis(answer->address)) {
+        if (carrystep_names_axis(answer)) {
             uint8_t axis = carrystep_axis_of(answer->address);
             uint8_t under_way = session->under_way[axis];
             session->room[axis] = (uint8_t)(answer->free > under_way ? answer->free - under_way : 0);

@@ -4,7 +4,7 @@ use crate::command::Segment;
 use crate::registers::{
     self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
 };
-use crate::registers::{AXES_AT, MOST_AXES, PER_AXIS, SEGMENT, SEGMENT_FRAME_WORDS};
+use crate::registers::{AXES_AT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS};
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use thiserror::Error;
 
@@ -53,7 +53,7 @@ impl Body {
     /// The address byte of the frame.
     pub const fn address(&self) -> u8 {
         match *self {
-            Self::Read { address } => address & !WRITE,
+            Self::Read { address } => address,
             Self::Write { address, .. } => address | WRITE,
             Self::Segment { axis, .. } => WRITE | of_axis(SEGMENT, axis),
         }
@@ -62,13 +62,12 @@ impl Body {
 
 /// The address of a register of an axis.
 pub const fn of_axis(register: u8, axis: u8) -> u8 {
-    register + PER_AXIS * (axis & (MOST_AXES - 1))
+    register + (axis & (MOST_AXES - 1))
 }
 
-/// The axis to which an address belongs; `None` for a register of no axis.
-pub const fn axis_of(address: u8) -> Option<u8> {
-    let plain = address & !WRITE;
-    if plain < AXES_AT { None } else { Some((plain - AXES_AT) / PER_AXIS) }
+/// The axis whose segments are written at this address; `None` for the address of another write.
+const fn axis_of_segment(address: u8) -> Option<u8> {
+    if address < WRITE | SEGMENT { None } else { Some(address & (MOST_AXES - 1)) }
 }
 
 /// A request: an operation with its sequence number.
@@ -133,8 +132,9 @@ impl Request {
             return Err(FrameError::Length(bytes.len()));
         };
         let words = match address {
-            0..WRITE => 0,
-            _ if axis_of(address).is_none() => 1,
+            _ if bytes.len() == REQUEST_HEAD + CRC_BYTES => 0,
+            0..WRITE => return Err(FrameError::Length(bytes.len())),
+            _ if axis_of_segment(address).is_none() => 1,
             _ => SEGMENT_FRAME_WORDS,
         };
         if bytes.len() != REQUEST_HEAD + 4 * words + CRC_BYTES {
@@ -145,7 +145,7 @@ impl Request {
         let long = |index: usize| {
             (u64::from(word(index + 1)) << 32 | u64::from(word(index))).cast_signed()
         };
-        let body = match (words, axis_of(address)) {
+        let body = match (words, axis_of_segment(address)) {
             (0, _) => Body::Read { address },
             (1, _) => Body::Write { address: address & !WRITE, word: word(0) },
             (_, Some(axis)) if address == WRITE | of_axis(SEGMENT, axis) => {
@@ -192,6 +192,8 @@ pub struct Answer {
     pub free: u8,
     /// The write of this answer was not executed.
     pub refused: bool,
+    /// The request was a write.
+    pub written: bool,
     /// Mask of the axes that caused the stop.
     pub culprits: u8,
     /// Mask of the axes that still wait for their limit.
@@ -221,10 +223,26 @@ impl Answer {
             cause: map::cause(bytes),
             free: map::free(bytes),
             refused: map::refused(bytes),
+            written: map::written(bytes),
             culprits: map::culprits(bytes),
             homing: map::homing(bytes),
             data: word_at(bytes, ANSWER_DATA),
         })
+    }
+
+    /// The axis whose state the request addressed: that of a register that was read, or of a
+    /// segment. `free` and, after a segment, `data` belong to it.
+    pub const fn axis(&self) -> Option<u8> {
+        match self.written {
+            true => axis_of_segment(self.address),
+            false if self.address < AXES_AT => None,
+            false => Some(self.address & (MOST_AXES - 1)),
+        }
+    }
+
+    /// Whether this answers a read of this register.
+    pub const fn is_read_of(&self, address: u8) -> bool {
+        !self.written && self.address == address
     }
 
     /// The name of the stop cause; `None` without a fault.

@@ -4,12 +4,14 @@
 mod error;
 mod homing;
 mod motion;
+mod snapshot;
 mod state;
 mod time;
 
 pub use error::{HomingFault, HostError};
 pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 pub use motion::{Ended, Progress, Wish};
+pub use snapshot::{AxisState, Snapshot};
 #[cfg(feature = "std")]
 pub use time::SystemClock;
 pub use time::{Clock, Patience};
@@ -148,7 +150,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         while words.iter().any(Option::is_none) {
             self.pump(|answer| {
                 for (word, address) in words.iter_mut().zip(addresses) {
-                    if answer.address == address {
+                    if answer.is_read_of(address) {
                         *word = Some(answer.data);
                     }
                 }
@@ -235,7 +237,6 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
 /// The axis whose position is in this answer: after a read of its position, and after every
 /// segment.
 fn axis_with_position(answer: &Answer) -> Option<u8> {
-    let axis = crate::frame::axis_of(answer.address)?;
-    let position = of_axis(map::POSITION, axis);
-    (answer.address == position || answer.address & map::WRITE != 0).then_some(axis)
+    let axis = answer.axis()?;
+    (answer.written || answer.address == of_axis(map::POSITION, axis)).then_some(axis)
 }

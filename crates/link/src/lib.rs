@@ -37,6 +37,7 @@ pub use facts::{BuildFacts, GatewareMismatch};
 pub use feeder::{Feeder, SegmentSource};
 pub use frame::{Answer, Body, FrameError, Request};
 pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
+pub use host::{AxisState, Snapshot};
 pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
 pub use line::{Exchanged, Line};
 pub use session::{Session, SessionError, Timing, WriteError};

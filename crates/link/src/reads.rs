@@ -2,7 +2,7 @@
 //! answer is sent again.
 
 use crate::frame::{Answer, Body, Request};
-use crate::registers::{MOST_AXES, WRITE};
+use crate::registers::MOST_AXES;
 use crate::window::Full;
 
 #[derive(Debug, Clone, Copy)]
@@ -25,7 +25,6 @@ impl Reads {
     /// # Errors
     /// [`Full`] if eight registers are being read.
     pub fn ask(&mut self, address: u8) -> Result<(), Full> {
-        let address = address & !WRITE;
         if self.questions.iter().flatten().any(|question| question.address == address) {
             return Ok(());
         }
@@ -59,7 +58,8 @@ impl Reads {
         let own = |place: &&mut Option<Question>| {
             place.is_some_and(|question| {
                 question.asked.is_some()
-                    && (question.address, question.sequence) == (answer.address, answer.sequence)
+                    && answer.is_read_of(question.address)
+                    && question.sequence == answer.sequence
             })
         };
         self.questions.iter_mut().find(own).map(Option::take).is_some()

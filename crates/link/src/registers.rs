@@ -18,7 +18,7 @@ pub const CRC_POLYNOMIAL: u32 = 0xedb8_8320;
 pub const CRC_RESIDUE: u32 = 0xdebb_20e3;
 /// Length of a CRC in bytes.
 pub const CRC_BYTES: usize = 4;
-/// Bit of the address that makes a request a write.
+/// Bit that the address of every write has.
 pub const WRITE: u8 = 0x80;
 /// Length of the sequence number and the address of a request in bytes.
 pub const REQUEST_HEAD: usize = 2;
@@ -35,15 +35,21 @@ pub const WINDOW: u8 = 0x7f;
 /// Value of the register IDENTITY.
 pub const IDENTITY_VALUE: u32 = 0x5054_5343;
 /// Version of the protocol to which this register map belongs.
-pub const PROTOCOL_VERSION: u32 = 0x0000_0001;
+pub const PROTOCOL_VERSION: u32 = 0x0000_0002;
 /// Bit of CONTROL: power the drivers.
 pub const CONTROL_ENABLE: u32 = 0x0000_0001;
 /// Bit of CONTROL: stop all axes.
 pub const CONTROL_STOP: u32 = 0x0000_0002;
-/// First address of the axes' registers.
-pub const AXES_AT: u8 = 0x40;
-/// Number of addresses of each axis.
-pub const PER_AXIS: u8 = 0x08;
+/// Lowest address at which a register of an axis is read.
+pub const AXES_AT: u8 = 0x18;
+/// Bits of STATUS: the slot of the running segment.
+pub const STATUS_SLOT: u32 = 0x0000_001f;
+/// Bit of STATUS: the axis runs a segment.
+pub const STATUS_RUNS: u32 = 0x0000_0020;
+/// Bits of STATUS: the number of segments that wait.
+pub const STATUS_WAITING: u32 = 0x0000_07c0;
+/// Bits of STATUS: the number of steps on their way, two's complement.
+pub const STATUS_ON_WAY: u32 = 0x0000_f000;
 /// Greatest number of axes of a build.
 pub const MOST_AXES: u8 = 0x08;
 /// Number of segments that can wait for an axis, in addition to the one that runs.
@@ -67,24 +73,54 @@ pub const TICK_NS: u8 = 0x06;
 pub const PHASES: u8 = 0x07;
 /// Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read).
 pub const WATCHDOG_TICKS: u8 = 0x08;
+/// TICKS of the other words at the limit (read, axis 0).
+pub const LIMIT_TICKS: u8 = 0x18;
+/// P in the tick after the one in which homing found the limit, low half (read, axis 0).
+pub const LIMIT_P_LOW: u8 = 0x20;
+/// P at the limit, high half (read, axis 0).
+pub const LIMIT_P_HIGH: u8 = 0x28;
+/// Position at the limit in steps (read, axis 0).
+pub const LIMIT_POSITION: u8 = 0x30;
+/// STATUS at the limit (read, axis 0).
+pub const LIMIT_STATUS: u8 = 0x38;
+/// Number of steps that freezes have discarded since configuration (read, axis 0).
+pub const DISCARDED: u8 = 0x40;
+/// Ticks of the running segment after the next one; no meaning while the axis does not run (read, axis 0).
+pub const LEFT: u8 = 0x48;
+/// Number of ticks since configuration, modulo 2^32; the same for all axes (read, axis 0).
+pub const TICKS: u8 = 0x58;
+/// P, the fraction of a step in units of 2^-64 step, low half (read, axis 0).
+pub const P_LOW: u8 = 0x60;
+/// P, high half (read, axis 0).
+pub const P_HIGH: u8 = 0x68;
+/// Position: steps forward minus steps backward, two's complement (read, axis 0).
+pub const POSITION: u8 = 0x70;
+/// Bits 4..0: slot of the running segment; 5: runs; 10..6: segments that wait; 15..12: steps on their way, two's complement; the other bits have no meaning (read, axis 0).
+pub const STATUS: u8 = 0x78;
+/// DISCARDED in the tick of the snapshot; no meaning if the axis ran (read, axis 0).
+pub const SNAPSHOT_DISCARDED: u8 = 0x80;
+/// LEFT in the tick of the snapshot; no meaning if the axis did not run (read, axis 0).
+pub const SNAPSHOT_LEFT: u8 = 0x88;
+/// TICKS of the snapshot; the same for all axes (read, axis 0).
+pub const SNAPSHOT_TICKS: u8 = 0x98;
+/// P in that tick, low half (read, axis 0).
+pub const SNAPSHOT_P_LOW: u8 = 0xa0;
+/// P in that tick, high half (read, axis 0).
+pub const SNAPSHOT_P_HIGH: u8 = 0xa8;
+/// POSITION in that tick (read, axis 0).
+pub const SNAPSHOT_POSITION: u8 = 0xb0;
+/// STATUS in that tick (read, axis 0).
+pub const SNAPSHOT_STATUS: u8 = 0xb8;
 /// Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write).
 pub const CONTROL: u8 = 0x20;
 /// Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write).
 pub const START: u8 = 0x21;
 /// Any value ends a complete stop: queues empty, P at its start value, position kept (write).
 pub const CLEAR: u8 = 0x22;
-/// Axes, one bit each: the next limit latches the position and ramps down this axis only (write).
+/// Axes, one bit each: the next limit latches the state and ramps down this axis only (write).
 pub const HOME: u8 = 0x23;
-/// P, the fraction of a step in units of 2^-64 step, low half (read, axis 0).
-pub const P_LOW: u8 = 0x40;
-/// P, high half (read, axis 0).
-pub const P_HIGH: u8 = 0x41;
-/// Position: steps forward minus steps backward, two's complement (read, axis 0).
-pub const POSITION: u8 = 0x42;
-/// Number of steps that freezes have discarded since configuration (read, axis 0).
-pub const DISCARDED: u8 = 0x43;
-/// Position in steps at which the limit was reached in homing (read, axis 0).
-pub const LATCHED: u8 = 0x44;
+/// Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write).
+pub const SNAPSHOT: u8 = 0x24;
 /// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;
 
@@ -145,6 +181,11 @@ pub const fn free(answer: &[u8; ANSWER_BYTES]) -> u8 {
 /// Of an answer: this write was not executed: out of sequence, or busy.
 pub const fn refused(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[4] >> 3 & 1 == 1
+}
+
+/// Of an answer: the request was a write; a read of the same address has 0 here.
+pub const fn written(answer: &[u8; ANSWER_BYTES]) -> bool {
+    answer[4] >> 7 & 1 == 1
 }
 
 /// Of an answer: the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0.

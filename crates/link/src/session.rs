@@ -3,7 +3,7 @@
 
 use crate::command::ProgramError;
 use crate::feeder::{Feeder, SegmentSource};
-use crate::frame::{Answer, Body, Request, axis_of, of_axis};
+use crate::frame::{Answer, Body, Request, of_axis};
 use crate::reads::Reads;
 use crate::registers::{ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, POSITION, START};
 use crate::slip::{Decoder, Received};
@@ -237,7 +237,7 @@ impl<const N: usize> Session<N> {
         let (under_way, starting) = (&mut self.under_way, &mut self.starting);
         self.window.answer(answer, now, |body| settle(body, under_way, starting))?;
         self.armed = answer.armed;
-        if let Some(axis) = axis_of(answer.address).map(usize::from)
+        if let Some(axis) = answer.axis().map(usize::from)
             && let (Some(room), Some(under_way)) =
                 (self.room.get_mut(axis), self.under_way.get(axis))
         {

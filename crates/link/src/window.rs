@@ -2,7 +2,7 @@
 //! again from the first that is missing.
 
 use crate::frame::{Answer, Body, Request};
-use crate::registers::{WINDOW, WRITE};
+use crate::registers::WINDOW;
 use thiserror::Error;
 
 /// Error: the gateware's sequence number is not one that this host can have caused. The gateware
@@ -150,7 +150,7 @@ impl<const N: usize> Window<N> {
     /// [`Foreign`] if the number was never sent, or was sent with another address.
     pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
         let behind = answer.sequence.wrapping_sub(self.first);
-        if answer.address & WRITE == 0 || behind > WINDOW {
+        if !answer.written || behind > WINDOW {
             return Ok(());
         }
         let slot = self.slots.get((self.at + usize::from(behind)) % N);

@@ -50,7 +50,7 @@ fn other_gateware_is_refused_and_both_builds_are_named() {
         "what answers is not carrystep: identity 0x42424242"
     );
     let said = refusal(|device| device.facts[1] = 9);
-    assert!(said.starts_with("the gateware speaks protocol 9, this driver 1:"), "{said}");
+    assert!(said.starts_with("the gateware speaks protocol 9, this driver 2:"), "{said}");
     let said = refusal(|device| device.facts[3] = 0xffff_ffff);
     let expected =
         "the gateware is build ffffffff89abcdef, this machine needs build 0123456789abcdef: ";

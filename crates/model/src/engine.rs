@@ -1,438 +1,67 @@
-//! The engine, described by its behaviour rather than by its structure: up to eight accumulators
-//! with queues. The results of a tick take effect for all axes together at the strobe that ends it.
-//! The contract is the section "engine" of docs/clock-by-clock.md; change both together.
+//! The engine, described by its behaviour rather than by its structure: the motion of up to eight
+//! axes, and beside it the readout, which outputs the state of the axes for a host. The readout
+//! only observes: nothing that it does changes a pin.
 //!
 //! ```text
-//! tick     |       n       |     n + 1     |     n + 2     |
-//! strobe   _______________/^______________/^______________/^
-//! segment  |  committed    |  in the queue
-//! step     |  computed     |  waits        |  requested in phase q
+//! inputs ----> Motion -----> pins, queues, stops
+//!    |           | P, segments, position, limits found
+//!    | snapshot  v
+//!    '------> Readout -----> words of state
 //! ```
-//!
-//! A segment whose commit arrives in tick n is in the queue from tick n + 1 on. The additions of
-//! tick n find a step and its phase q; the strobe that ends tick n commits them. The step is
-//! requested of the shaper two ticks later, in the first clock of phase q of tick n + 2, and is on
-//! the pin one clock after that.
 
-mod axis_model;
-mod guard;
-mod plain;
+mod motion;
 mod readout;
-mod reset;
+
+pub use motion::Motion;
+pub use readout::Readout;
+pub(crate) use readout::Span;
 
 use crate::parts::shaper;
-use axis_model::{AxisModel, LimitSample, Queued, Tick};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{
-    COMMIT, Cause, EngineInputs, EngineOutputs, LimitWiring, PUT_BEAT, Put, TIME_SLOT_CLOCKS,
-};
-use guard::{Stop, Supervisor};
-use reset::Reset;
-use std::sync::Arc;
-
-/// The beat of a time slot in which the output `latch` gives the number of its axis, if this axis
-/// waits for its limit. The gateware outputs the position of the axis at `get_data` then.
-const LATCH_BEAT: u32 = 6;
-
-/// The beat of a time slot in which the limit pin is sampled.
-const SAMPLE_BEAT: u32 = 10;
+use carrystep_core::engine::{EngineInputs, EngineOutputs};
 
 /// The state of the engine. [`Engine::outputs`] and [`Engine::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Engine {
-    build: Arc<EngineBuild>,
-    /// Number of the clock in the tick, from 0.
-    clock: u32,
-    /// False in the first tick after configuration, which has no time slots.
-    time_slots: bool,
-    armed: Option<u8>,
-    stop: Stop,
-    /// The word taken in the cycle before was not the next one of its segment.
-    misplaced: bool,
-    reset: Reset,
-    supervisor: Supervisor,
-    /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
-    rest: u32,
-    axis_models: Vec<AxisModel>,
-    /// The level of each axis' limit pin, as sampled in its last time slot; true is active.
-    pins: Vec<bool>,
+    motion: Motion,
+    readout: Readout,
 }
 
 impl Engine {
     /// The engine at configuration.
     pub fn new(build: &EngineBuild) -> Self {
-        let axis_model = |(pins, stop): (_, &u64)| {
-            AxisModel::new(
-                build.phase.start_value(),
-                *stop,
-                shaper::ShaperState::at_configuration(pins),
-            )
-        };
-        Self {
-            build: Arc::new(build.clone()),
-            clock: 0,
-            time_slots: false,
-            armed: None,
-            stop: Stop::default(),
-            misplaced: false,
-            reset: Reset::default(),
-            supervisor: Supervisor::new(),
-            rest: 2,
-            axis_models: build
-                .pins
-                .iter()
-                .copied()
-                .zip(&build.guard.stop)
-                .map(axis_model)
-                .collect(),
-            pins: vec![false; build.axes()],
-        }
+        Self { motion: Motion::new(build), readout: Readout::new(build) }
+    }
+
+    /// The registers of its motion.
+    pub const fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// The registers of its readout.
+    pub const fn readout(&self) -> &Readout {
+        &self.readout
     }
 
     /// P of an axis, in 2^-64 step. Panics if the axis does not exist.
     pub fn fraction(&self, axis: usize) -> u64 {
-        self.axis_models[axis].p
+        self.motion.fraction(axis)
     }
 
     /// The registers of an axis' step shaper. Panics if the axis does not exist.
     pub fn shaper(&self, axis: usize) -> &shaper::ShaperState {
-        &self.axis_models[axis].shaper
+        self.motion.shaper(axis)
     }
 
     /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
-        let free = self.stop.fault.is_none();
-        let (strobe, guard) = (self.strobe(), &self.build.guard);
-        let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
-        EngineOutputs {
-            put_ready: free && self.takes(put_axis),
-            start_ready: free
-                && strobe
-                && self.armed.is_none()
-                && inputs.enable
-                && self.supervisor.is_warm(guard),
-            step: bits(&self.axis_models, |axis_model| axis_model.shaper.step),
-            dir: bits(&self.axis_models, |axis_model| axis_model.shaper.dir),
-            enabled: self.supervisor.enabled,
-            idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
-            fault: self.stop.fault,
-            halted: self.stop.halted,
-            resetting: self.reset.is_resetting(),
-            armed: self.armed.is_some(),
-            ready: inputs.enable && self.supervisor.is_warm(guard),
-            homing: bits(&self.axis_models, |axis_model| axis_model.homing.waits),
-            latch: self
-                .time_slot_at(LATCH_BEAT)
-                .filter(|axis| self.axis_models[*axis].homing.waits)
-                .map(|axis| axis as u8),
-            room: self
-                .time_slot_at(PUT_BEAT)
-                .filter(|axis| *axis == put_axis)
-                .map(|axis| self.axis_models[axis].room()),
-            started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
-        }
+        self.readout.outputs(&self.motion, inputs)
     }
 
     /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &EngineInputs) {
-        let outputs = self.outputs(inputs);
-        let (strobe, before, reset) = (self.strobe(), self.stop, self.reset);
-        let build = Arc::clone(&self.build);
-        let guard = &build.guard;
-        // The order of these calls is the priority of the causes: the first one is latched. It is
-        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, stop.
-        let mut stop = before;
-        let busy = self.pins_busy();
-        let late = self.shape();
-        if late != 0 {
-            stop.call(Cause::Overrun, late, guard);
-        }
-        if strobe && self.supervisor.pressed() {
-            stop.call(Cause::EStop, 0, guard);
-        }
-        let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        if (nobody || inputs.broken || self.misplaced) && before.fault.is_none() {
-            stop.call(Cause::Protocol, 0, guard);
-        }
-        self.sample(inputs);
-        let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
-        self.misplaced = taken.is_some_and(|put| !self.put(put));
-        // While the engine is at rest, a silent host calls no stop.
-        let waits = self.rest == 2;
-        if strobe {
-            stop = self.end_tick(inputs, &outputs, stop, busy);
-        }
-        if strobe && self.supervisor.misses_the_host(guard) && !waits {
-            stop.call(Cause::Watchdog, 0, guard);
-        }
-        if inputs.stop || reset.ending {
-            stop.call(Cause::Stop, 0, guard);
-            stop.frozen |= reset.ending;
-        }
-        if before.fault.is_some() {
-            self.armed = None;
-        }
-        self.meet();
-        if let Some(mask) = inputs.home {
-            for (axis, axis_model) in self.axis_models.iter_mut().enumerate() {
-                axis_model.homing.waits = mask >> axis & 1 == 1;
-            }
-        }
-        self.supervisor.clock(guard, inputs, strobe, outputs.idle);
-        self.stop = stop;
-        if strobe && before.clearing {
-            self.stop = Stop::default();
-            self.empty();
-        }
-        self.clock_reset(reset, inputs.reset);
-        if strobe {
-            let free = before.settled && !before.clearing && !busy;
-            self.strobe_reset(reset, inputs.reset, free);
-        }
-        self.clock = (self.clock + 1) % self.build.timebase.clocks_per_tick();
+        let ending = self.readout.observe(&self.motion);
+        self.motion.clock(inputs);
+        self.readout.clock(&self.motion, inputs, ending);
     }
-
-    fn strobe(&self) -> bool {
-        self.clock + 1 == self.build.timebase.clocks_per_tick()
-    }
-
-    fn pins_busy(&self) -> bool {
-        self.axis_models
-            .iter()
-            .any(|axis_model| axis_model.shaper.held_back.is_some() || axis_model.shaper.step)
-    }
-
-    /// Executes one clock of all shapers; returns the axes for which a second step arrived while
-    /// one was held back, one bit each.
-    fn shape(&mut self) -> u8 {
-        let per_phase = self.build.timebase.clocks_per_phase();
-        let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
-        for (axis_model, pins) in self.axis_models.iter_mut().zip(&self.build.pins) {
-            let request = axis_model
-                .emitted
-                .step
-                .filter(|step| sub == 0 && step.phase == phase)
-                .map(|step| step.backward);
-            let input = shaper::ShaperInput {
-                request,
-                sign: axis_model.emitted.sign,
-                frozen: self.stop.frozen,
-            };
-            axis_model.shaper = shaper::clock(
-                shaper::ShaperState { overrun: false, ..axis_model.shaper },
-                input,
-                *pins,
-            );
-        }
-        bits(&self.axis_models, |axis_model| axis_model.shaper.overrun)
-    }
-
-    /// True if a word for this axis is accepted in this clock. The axis accepts it in its time slot
-    /// if its queue has room. A word for an axis that does not exist is accepted at once (and is a
-    /// protocol fault).
-    fn takes(&self, axis: usize) -> bool {
-        self.axis_models.get(axis).is_none_or(|axis_model| {
-            self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
-        })
-    }
-
-    /// The axis whose time slot it is, if this clock is the given beat of the time slot.
-    fn time_slot_at(&self, beat: u32) -> Option<usize> {
-        let axis = (self.clock / TIME_SLOT_CLOCKS) as usize;
-        (self.time_slots && self.clock % TIME_SLOT_CLOCKS == beat && axis < self.axis_models.len())
-            .then_some(axis)
-    }
-
-    /// Takes a word. Returns false if it is not the next word of its axis' segment.
-    fn put(&mut self, put: Put) -> bool {
-        let axis_model = &mut self.axis_models[usize::from(put.axis)];
-        self.rest = 0;
-        if put.word != axis_model.next_word {
-            return false;
-        }
-        if put.word == COMMIT {
-            axis_model.fresh = Some(Queued::of_words(axis_model.words, put.data & 1 == 1));
-            axis_model.next_word = 0;
-        } else {
-            axis_model.words[usize::from(put.word)] = put.data;
-            axis_model.next_word += 1;
-        }
-        true
-    }
-
-    /// Samples the limit pin of the axis whose time slot it is.
-    fn sample(&mut self, inputs: &EngineInputs) {
-        let (axis, beat) =
-            ((self.clock / TIME_SLOT_CLOCKS) as usize, self.clock % TIME_SLOT_CLOCKS);
-        if axis < self.axis_models.len() && beat == SAMPLE_BEAT {
-            self.pins[axis] = self.pin(inputs, axis, self.supervisor.tick_of_round);
-        }
-    }
-
-    /// The limit input that an axis samples in this tick of the round; true is active.
-    fn pin(&self, inputs: &EngineInputs, axis: usize, tick_of_round: u32) -> bool {
-        let guard = &self.build.guard;
-        let pins = if tick_of_round == 1 { inputs.limit_max } else { inputs.limit_min };
-        let bit = if guard.limits == LimitWiring::One { 0 } else { axis };
-        (pins >> bit & 1 == 1) != guard.limits_low
-    }
-
-    fn tick(&self) -> Tick<'_> {
-        Tick {
-            guard: &self.build.guard,
-            phase_bits: self.build.timebase.phase_bits(),
-            halted: self.stop.halted,
-            ramp: self.stop.ramp,
-        }
-    }
-
-    /// The limit input that an axis evaluates in this tick, if it evaluates one.
-    fn sample_of(&self, axis: usize) -> Option<LimitSample> {
-        let max =
-            self.supervisor.tick_of_round == 1 && self.build.guard.limits == LimitWiring::Pair;
-        let samples = self.time_slots && (self.supervisor.tick_of_round == 0 || max);
-        samples.then_some(LimitSample { max, pin: self.pins[axis] })
-    }
-
-    /// In the last beat of its time slot, an axis that waits for its limit may find it active.
-    fn meet(&mut self) {
-        let Some(axis) = self
-            .time_slot_at(TIME_SLOT_CLOCKS - 1)
-            .filter(|axis| self.axis_models[*axis].homing.waits)
-        else {
-            return;
-        };
-        if self
-            .sample_of(axis)
-            .is_some_and(|sample| self.axis_models[axis].hits(self.tick(), sample))
-        {
-            self.axis_models[axis].homing.waits = false;
-            self.axis_models[axis].homing.meets = true;
-        }
-    }
-
-    /// The axes after this tick, and the causes of stops that they found, in the order of the axes.
-    fn ticked(&self) -> (Vec<AxisModel>, Vec<(Cause, usize)>) {
-        let tick = self.tick();
-        let mut found = Vec::new();
-        let axis_models = self.axis_models.iter().enumerate().map(|(axis, axis_model)| {
-            let (next, cause) = axis_model.tick(tick, self.sample_of(axis));
-            found.extend(cause.map(|cause| (cause, axis)));
-            next
-        });
-        (axis_models.collect(), found)
-    }
-
-    /// Decides at this strobe about the armed start. The start waits while an axis of its mask runs
-    /// on after this tick, or was slowing down for its limit (`slows`) when this tick began. A
-    /// limit that an axis meets in this very tick sets `slows` only for the next tick, so it does
-    /// not delay the start by itself.
-    fn decision(&self, (ticked, found): &(Vec<AxisModel>, Vec<(Cause, usize)>)) -> Decision {
-        let free = self.stop.fault.is_none() && found.is_empty();
-        let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };
-        // A start needs a segment that was in the queue before this tick.
-        if mask & bits(&self.axis_models, |axis_model| axis_model.queue.is_empty()) != 0 {
-            Decision::Unfed
-        } else if mask
-            & (bits(ticked, |axis_model| axis_model.running.is_some())
-                | bits(&self.axis_models, |axis_model| axis_model.homing.slows))
-            != 0
-        {
-            Decision::Wait
-        } else {
-            Decision::Go(mask)
-        }
-    }
-
-    /// Executes the strobe: commits the results of the tick, and returns the state of the stop
-    /// after it.
-    fn end_tick(
-        &mut self,
-        inputs: &EngineInputs,
-        outputs: &EngineOutputs,
-        mut stop: Stop,
-        busy: bool,
-    ) -> Stop {
-        let before = self.stop;
-        let build = Arc::clone(&self.build);
-        let guard = &build.guard;
-        let ticked = self.ticked();
-        let decision = self.decision(&ticked);
-        let (mut axis_models, found) = ticked;
-        let ran = self.axis_models.iter().any(|axis_model| axis_model.running.is_some())
-            && !before.halted;
-        let active = ran || self.axis_models.iter().any(|axis_model| !axis_model.queue.is_empty());
-        self.rest = if active { 0 } else { (self.rest + 1).min(2) };
-        for axis_model in &mut axis_models {
-            axis_model.queue.extend(axis_model.fresh.take());
-        }
-        match decision {
-            Decision::Wait => {}
-            Decision::Unfed => stop.call(Cause::Protocol, 0, guard),
-            Decision::Go(mask) => {
-                self.armed = None;
-                for (axis, axis_model) in
-                    axis_models.iter_mut().enumerate().filter(|(axis, _)| mask >> axis & 1 == 1)
-                {
-                    debug_assert!(axis_model.running.is_none(), "axis {axis} runs");
-                    axis_model.running = axis_model.queue.pop_front();
-                }
-            }
-        }
-        // The decision above was about the start that was armed before. The start that is accepted
-        // now is decided about at the next strobe at the earliest.
-        if outputs.start_ready {
-            self.armed = inputs.start;
-        }
-        for (cause, axis) in &found {
-            stop.call(*cause, 1 << axis, guard);
-        }
-        self.axis_models = axis_models;
-        self.time_slots = true;
-        let freezes = found.iter().any(|(cause, _)| cause.freezes(guard.limit_freezes));
-        // The engine is halted: after a freeze, from the first strobe before which `frozen` was
-        // set; for a freezing cause found in a tick, from the strobe that ends this tick; in a
-        // ramp, from the first strobe at which the ramp was in force and no axis ran in the tick.
-        // At the next strobe the stop is settled. From the strobe after that one a clear is
-        // accepted (`clearing`), and takes effect one strobe later.
-        Stop {
-            ramp: before.fault.is_some() || !found.is_empty(),
-            halted: before.frozen || freezes || (before.ramp && !ran),
-            settled: before.halted,
-            clearing: inputs.clear
-                && before.settled
-                && !before.clearing
-                && !self.reset.ending
-                && !busy
-                && !self.supervisor.pressed(),
-            ..stop
-        }
-    }
-
-    /// Sets P of every axis to its start value, and removes all queued segments and the words of
-    /// segments that are not committed. Positions, discarded steps, pins and debounced limits stay
-    /// as they are.
-    fn empty(&mut self) {
-        for axis_model in &mut self.axis_models {
-            axis_model.p = self.build.phase.start_value();
-            axis_model.queue.clear();
-            axis_model.next_word = 0;
-        }
-    }
-}
-
-/// The decision about an armed start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Decision {
-    Wait,
-    /// A masked axis has no segment in its queue: a protocol fault.
-    Unfed,
-    Go(u8),
-}
-
-fn bits(axis_models: &[AxisModel], of: impl Fn(&AxisModel) -> bool) -> u8 {
-    axis_models
-        .iter()
-        .enumerate()
-        .fold(0, |bits, (axis, axis_model)| bits | u8::from(of(axis_model)) << axis)
 }

@@ -1,5 +1,6 @@
 //! Both cores without visiting every clock. States, outputs and faults are exactly those of
 //! [`ParallelCore`] and [`Engine`](crate::Engine); only the way to compute them may change here.
+//! [`FastEngine`] leaves out the words of state that only a host reads; [`HostedEngine`] has them.
 //!
 //! Between two loads of a segment, the position of an axis is a cubic with integer coefficients. A
 //! *window* is a run of clocks in which the axes only repeat their additions, so that on the pins
@@ -22,12 +23,14 @@
 mod crossings;
 mod edges;
 mod engine;
+mod hosted;
 mod one_axis;
 mod passage;
 mod pins;
 
 pub use edges::{Change, Edge, Edges};
 pub use engine::FastEngine;
+pub use hosted::HostedEngine;
 
 use crate::ParallelCore;
 use carrystep_core::Build;
@@ -91,7 +94,7 @@ impl Fast {
             (clocks, strobes) = self.passages.pass(
                 &mut axis_models,
                 from,
-                clocks,
+                |longest| longest.min(clocks),
                 &build.timebase,
                 &build.pins,
                 to,

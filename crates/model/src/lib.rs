@@ -17,6 +17,6 @@ pub mod parallel;
 pub mod parts;
 
 pub use engine::Engine;
-pub use fast::{Fast, FastEngine};
+pub use fast::{Fast, FastEngine, HostedEngine};
 pub use link::Link;
 pub use parallel::ParallelCore;

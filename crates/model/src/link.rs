@@ -3,13 +3,13 @@
 //! clock.
 //!
 //! ```text
-//!          .---------. bytes  .---------. put, start, home, control
-//!  rx ---->| Receiver |------>|         |--------------------------------> engine
-//!          '---------'        |processor| state, room, culprits, homing
-//!          .-------------. A  |         |<-------------------------------- engine
-//!  tx <----| Transmitter |<---|         | facts  .-------. get, latch
-//!          '-------------'    '---------'<-------| Facts |<--------------- engine
-//!                                                '-------'
+//!          .----------. bytes  .-----------. put, start, home, control, snapshot
+//!  rx ---->| Receiver |------->|           |------------------------------------> engine
+//!          '----------'        | processor | state of stops, room, homing, refreshed
+//!          .-------------. A   |           |<------------------------------------ engine
+//!  tx <----| Transmitter |<----|           | word   .--------. words of state
+//!          '-------------'     '-----------'<-------| mirror |<------------------ engine
+//!                                                   '--------'
 //! ```
 //!
 //! The instruction set is defined in `carrystep_core::link::processor`; the program is its
@@ -23,7 +23,7 @@ mod spi;
 mod uart;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, Put};
+use carrystep_core::engine::{EngineInputs, Put, StateWord};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, image};
 use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
@@ -54,8 +54,7 @@ impl Link {
     /// The outputs in this clock. All of them come from registers.
     pub fn outputs(&self) -> LinkOutputs {
         let processor = self.processor.outputs();
-        let (get_axis, get_item) = self.register_mirror.asks();
-        let (axis, word) = (processor.a >> 3 & 7, processor.x >> 2 & 7);
+        let (axis, word) = (self.room_of(), processor.x >> 2 & 7);
         let mask = processor.a & self.axes;
         let engine = EngineInputs {
             put: processor.puts.then_some(Put { axis, word, data: processor.word }),
@@ -65,11 +64,12 @@ impl Link {
             stop: processor.stop,
             broken: processor.broken,
             home: processor.homes.then_some(mask),
+            snapshot: processor.snapshot,
             kick: processor.kicks,
             enable: processor.enable,
             ..EngineInputs::default()
         };
-        LinkOutputs { tx: self.line.level(), engine, get_axis, get_item }
+        LinkOutputs { tx: self.line.level(), engine }
     }
 
     /// The level of the line to the host (TX or MISO) in this clock.
@@ -85,10 +85,9 @@ impl Link {
             received: self.line.byte(),
             taken,
             fact: self.register_mirror.data(),
-            scanned: self.register_mirror.scanned(inputs),
             engine: &inputs.engine,
         });
-        self.register_mirror.clock(processor.x, inputs);
+        self.register_mirror.clock(processor.x, inputs.engine.state);
         self.line.clock(inputs, taken.then_some(processor.a));
     }
 
@@ -104,7 +103,9 @@ impl Link {
     }
 
     /// True if this clock does not depend on the engine's outputs and the link's outputs to the
-    /// engine stay the same.
+    /// engine stay the same, but for [`Link::room_of`]. What the engine has output in such clocks
+    /// must be delivered before the next clock that is not alone, by [`Link::store`] and
+    /// [`Link::keep_room`].
     pub fn is_alone(&self) -> bool {
         !self.processor.minds_the_engine()
     }
@@ -120,16 +121,25 @@ impl Link {
         self.line.pass(clocks, rx);
     }
 
-    /// Updates the memory of facts after `time_slots` time slots of axes that were skipped; `said`
-    /// returns the engine's current answer for an axis and an item. The order in time does not
-    /// matter: the program waits for a complete new scan before it reads any of these words.
-    pub fn catch_up(&mut self, time_slots: u64, said: impl Fn(u8, u8) -> u32) {
-        self.register_mirror.pass(time_slots, said);
+    /// Stores a word of state that the engine has output in a clock that the link has skipped, or
+    /// has executed alone. Of several words of one address, the last one is enough.
+    pub fn store(&mut self, word: StateWord) {
+        self.register_mirror.store(word);
     }
 
-    /// Stores the latched position (in steps) that the engine output in a skipped clock for an axis
-    /// that waits for its limit.
-    pub fn latch(&mut self, axis: u8, position: u32) {
-        self.register_mirror.latch(axis, position);
+    /// The axis whose room the link requests in this clock, unless it offers a word.
+    pub fn room_of(&self) -> u8 {
+        self.processor.room_of()
+    }
+
+    /// Stores the room (in segments) that the engine has output in such a clock for the axis that
+    /// the link requested in it. Of several reports, the last one is enough.
+    pub const fn keep_room(&mut self, room: u8) {
+        self.processor.keep_room(room);
+    }
+
+    /// The word that a host reads at this address.
+    pub fn register(&self, address: u8) -> u32 {
+        self.register_mirror.word(address)
     }
 }

@@ -84,7 +84,7 @@ pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits)
 
 /// V in the first and last tick, and on both sides of the zero of A if that lies between them. The
 /// extremes of V are among these values.
-pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+pub fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
     let last = u64::from(segment.ticks) - 1;
     let (a, j) = (i128::from(segment.a), i128::from(segment.j));
     let turns = (a < 0) != (a + i128::from(last) * j < 0);

@@ -20,7 +20,7 @@ pub(crate) fn triples(n: u64) -> i128 {
 }
 
 /// Units travelled in the first `n` ticks of a segment, at most all of them.
-pub(crate) fn travel(segment: &Segment, n: u64) -> i128 {
+pub fn travel(segment: &Segment, n: u64) -> i128 {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     // The product is skipped where J is 0, because for a long segment it may not fit into an i128.
     let by_jerk = if j == 0 { 0 } else { triples(n) * j };

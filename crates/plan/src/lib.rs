@@ -5,7 +5,8 @@
 //! is spread over its ticks, never how long the distance is.
 //!
 //! The public items are the entrances [`plan`], for a file that is held in memory, and [`Survey`],
-//! for one of any length, with their results and errors; the modules are private and may change.
+//! for one of any length, with their results and errors, and [`exact`], the integer arithmetic that
+//! other planners share; the other modules are private and may change.
 
 mod asked;
 mod bend;
@@ -41,6 +42,7 @@ mod stream;
 mod totals;
 mod units;
 
+pub mod exact;
 pub use error::{Broken, PlanError};
 pub use peaks::Peaks;
 pub use plan::{Plan, PlannedAxis, PlannedMove};

@@ -15,11 +15,14 @@ pub(crate) const MOST_SEGMENTS: usize = 1 << 17;
 
 /// Limits in 2^-64 step per tick, per tick^2 and per tick^3, rounded down from the file's decimals.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ExactLimits {
+pub struct ExactLimits {
+    /// Start speed, 2^-64 step per tick.
     pub start_speed: i128,
+    /// Speed, 2^-64 step per tick.
     pub speed: i128,
+    /// Acceleration, 2^-64 step per tick^2.
     pub acceleration: i128,
-    /// `None` if the axis has no jerk limit.
+    /// Jerk, 2^-64 step per tick^3; `None` if the axis has no jerk limit.
     pub jerk: Option<i128>,
     /// By how much a speed may exceed its limit because floats are rounded, 2^-64 step per tick:
     /// 10^-9 of the speed limit in f64, 64 epsilon of it in f32, plus one unit.

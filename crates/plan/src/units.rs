@@ -6,7 +6,7 @@ use carrystep_profile::Real;
 
 /// Converts `steps` to units of 2^-64 step, rounded to the nearest, halves away from zero. Returns
 /// `None` if the value is not finite or does not fit into an i128.
-pub(crate) fn nearest<F: Real>(steps: F) -> Option<i128> {
+pub fn nearest<F: Real>(steps: F) -> Option<i128> {
     scaled(steps, true)
 }
 

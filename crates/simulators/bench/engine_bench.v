@@ -1,9 +1,10 @@
 // Replays the recorded inputs of a host to carrystep_engine in Icarus, and prints every cycle in
-// which any output changed. Then reads the contents of the engine through the get port. Arguments:
-// +stimuli=FILE, -Pengine_bench.AXES=n.
+// which any output changed, with the checksum of all words of state before. The last line is `S`
+// and the checksum of all of them. Arguments: +stimuli=FILE, -Pengine_bench.AXES=n.
 //
 // A template: `ports` is the table of the engine's ports; `inputs` and `outputs` are its recorded
-// ports, in the order of the stimuli and of the printed bits.
+// ports, in the order of the stimuli and of the printed bits; `status` is the item whose word has
+// `status_bits` bits only.
 `timescale 1ns / 1ps
 module engine_bench;
     parameter AXES = 6;
@@ -24,8 +25,10 @@ module engine_bench;
 {% endfor %}
     };
     reg [BITS-1:0] before;
-    integer file, fields, axis, item;
-    reg [63:0] cycle, count;
+    integer file, fields;
+    reg [63:0] cycle, count, sum;
+    wire [31:0] meant = state_item == {{ status }} ? state & {{ "{" }}{{ 32 - status_bits }}'b0, {{ "{" }}{{ status_bits }}{1'b1{{ "}}}" }} : state;
+    wire [39:0] said = state_valid ? {state_page, state_item, state_axis, meant} : 40'b0;
     reg [8*256-1:0] name;
 
     task tick;
@@ -41,8 +44,7 @@ module engine_bench;
         file = $fopen(name, "r");
         before = {BITS{1'bx}};
         cycle = 0;
-        get_axis = 0;
-        get_item = 0;
+        sum = 0;
         #1 clock = 0;
         #1;
         fields = {{ inputs | length + 1 }};
@@ -51,24 +53,15 @@ module engine_bench;
 {%- for port in inputs %}, {{ port.name }}{% endfor %});
             if (fields == {{ inputs | length + 1 }}) while (count != 0) begin
                 #1;
-                if (outputs !== before) $display("%0d %h", cycle, outputs);
+                if (outputs !== before) $display("%0d %h %h", cycle, outputs, sum);
                 before = outputs;
+                if (state_valid | refreshed) sum = {sum[56:0], sum[63:57]} ^ {23'b0, refreshed, said};
                 tick;
                 cycle = cycle + 1;
                 count = count - 1;
             end
         end
-{% for port in inputs if port.released %}
-        {{ port.name }} = 0;
-{% endfor %}
-        for (axis = 0; axis < AXES; axis = axis + 1)
-            for (item = 0; item < 4; item = item + 1) begin
-                get_axis = axis;
-                get_item = item;
-                tick;
-                while (!get_valid) tick;
-                $display("K %h", get_data);
-            end
+        $display("S %h", sum);
         $finish;
     end
 endmodule

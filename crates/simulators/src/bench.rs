@@ -1,7 +1,7 @@
 //! The benches of the engine's Verilog, alone and on a board, made from the tables of their ports.
 
 use crate::LevelError;
-use carrystep_core::engine::{ENGINE_PORTS, recorded_ports};
+use carrystep_core::engine::{ENGINE_PORTS, STATUS_BITS, StateItem, is_recorded, ports_of};
 use carrystep_core::link::BYTE_PORTS;
 use carrystep_core::ports::{Direction, Peer, Port, Width};
 use minijinja::syntax::SyntaxConfig;
@@ -42,16 +42,19 @@ fn rendered(template: &str) -> Result<String, LevelError> {
             .build()
             .unwrap_or_default(),
     );
-    let rows = |direction| recorded_ports(direction).map(row).collect::<Vec<_>>();
+    let recorded = |direction| ports_of(direction).filter(|port| is_recorded(port));
+    let rows = |direction| recorded(direction).map(row).collect::<Vec<_>>();
     let values = context! {
         ports => ENGINE_PORTS.iter().map(row).collect::<Vec<_>>(),
         bytes => BYTE_PORTS.iter().map(row).collect::<Vec<_>>(),
         inputs => rows(Direction::Input),
-        pins => recorded_ports(Direction::Input)
+        pins => ports_of(Direction::Input)
             .filter(|port| port.peer == Peer::Pins)
             .map(row)
             .collect::<Vec<_>>(),
         outputs => rows(Direction::Output),
+        status => StateItem::Status as u8,
+        status_bits => STATUS_BITS,
     };
     environment
         .render_str(template, values)
@@ -66,9 +69,6 @@ fn row(port: &Port) -> Value {
         Width::Bits(1) => ("1".to_owned(), String::new()),
         Width::Bits(bits) => (bits.to_string(), format!("[{}:0] ", bits - 1)),
     };
-    // Before the contents are read, the host takes back what it offers; the drivers keep their
-    // power.
-    let flag = port.peer != Peer::Pins && port.width == Width::Bits(1);
     context! {
         name => port.name,
         input => port.direction == Direction::Input,
@@ -76,6 +76,5 @@ fn row(port: &Port) -> Value {
         range,
         valid_with => port.valid_with,
         shown => port.peer != Peer::Host || port.direction == Direction::Output,
-        released => flag && port.name != "enable",
     }
 }

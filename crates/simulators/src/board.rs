@@ -5,7 +5,7 @@ use crate::tool::{self, VERILATOR};
 use crate::verilator::Simulation;
 use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{Cause, EngineInputs, recorded_ports};
+use carrystep_core::engine::{Cause, EngineInputs, ports_of};
 use carrystep_core::link::LineKind;
 use carrystep_core::ports::{Direction, Peer};
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
@@ -109,7 +109,7 @@ impl BoardProcess {
             let bits =
                 [select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
             let mut line = format!("{count} {bits:x}");
-            let levels = recorded_ports(Direction::Input).zip(pins.at_ports());
+            let levels = ports_of(Direction::Input).zip(pins.at_ports());
             for (_, (_, level)) in levels.filter(|(port, _)| port.peer == Peer::Pins) {
                 line += &format!(" {:x}", level.unwrap_or(0));
             }

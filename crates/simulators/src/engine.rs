@@ -89,6 +89,8 @@ pub enum Event {
     Kick,
     /// Mask of the axes that wait for their limit from this cycle on.
     Home(u8),
+    /// The host requests a snapshot in this cycle.
+    Snapshot,
     /// The host violates the segment protocol in this cycle.
     Broken,
     /// The `reset` input is asserted, or released.
@@ -170,7 +172,8 @@ impl<'a> EngineHost<'a> {
 
     /// Applies the events of this cycle.
     fn happen(&mut self) {
-        self.around = EngineInputs { kick: self.awake, broken: false, home: None, ..self.around };
+        let (kick, broken, home, snapshot) = (self.awake, false, None, false);
+        self.around = EngineInputs { kick, broken, home, snapshot, ..self.around };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
             match event {
                 Event::EStop(active) => self.around.estop = active,
@@ -180,6 +183,7 @@ impl<'a> EngineHost<'a> {
                 Event::Enable(wanted) => self.around.enable = wanted,
                 Event::Kick => self.around.kick = true,
                 Event::Home(axes) => self.around.home = Some(axes),
+                Event::Snapshot => self.around.snapshot = true,
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
                 Event::WordError(mask) => self.word_error = mask,
@@ -257,8 +261,8 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let lasting =
-            self.around.kick == self.awake && !self.around.broken && self.around.home.is_none();
+        let EngineInputs { kick, broken, home, snapshot, .. } = self.around;
+        let lasting = kick == self.awake && !broken && home.is_none() && !snapshot;
         // The cycle before an event must be simulated by `advance`.
         let eventless = self
             .events

@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 35] = [
+const PURPOSES: [(&str, &str); 36] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -91,6 +91,10 @@ const PURPOSES: [(&str, &str); 35] = [
         "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
     ),
     (
+        "carrystep_readout",
+        "Outputs the state of every axis in its time slot, and takes snapshots of all axes.",
+    ),
+    (
         "carrystep_stops",
         "Latches the first cause of a stop, and controls the stop until the host clears it.",
     ),
@@ -113,11 +117,11 @@ const PURPOSES: [(&str, &str); 35] = [
     ("carrystep_instructions", "Program memory of the processor carrystep_processor."),
     (
         "carrystep_register_mirror",
-        "What the host can read: constants of the build, and the last known state of each axis.",
+        "What the host can read: constants of the build, and the last words of state of each axis.",
     ),
     (
         "carrystep_known",
-        "Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.",
+        "Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.",
     ),
     (
         "carrystep_data",

@@ -3,7 +3,7 @@
 
 use crate::ExportError;
 use carrystep_core::engine::{CAUSES, Cause};
-use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
+use carrystep_core::link::registers::{self, REGISTERS};
 use carrystep_core::link::{self, ANSWER, ANSWER_DATA, Field, LinkConstant, WRITE};
 use minijinja::{Environment, Value, context};
 
@@ -33,7 +33,6 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
         causes => CAUSES.map(Cause::name),
         data => ANSWER_DATA,
         write => format!("`{WRITE:#04x}`"),
-        per_axis => PER_AXIS,
     };
     let render = |(path, template)| Ok((path, environment.render_str(template, &values)? + "\n"));
     FILES.into_iter().map(render).collect()

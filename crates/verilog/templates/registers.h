@@ -13,7 +13,7 @@
 {%- endfor %}
 
 /* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
-#define CARRYSTEP_OF_AXIS(register, axis) ((register) + CARRYSTEP_PER_AXIS * (axis))
+#define CARRYSTEP_OF_AXIS(register, axis) ((register) + (axis))
 {% for row in registers %}
 /* {{ row.what }} ({{ row.access }}{{ ", axis 0" if row.per_axis }}) */
 #define CARRYSTEP_{{ row.name }} {{ row.address }}u

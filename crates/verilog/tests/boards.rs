@@ -166,7 +166,7 @@ fn impossible_request_is_refused_with_an_alternative() {
             "icestick",
             "tick_ns = 2000",
             "tick_ns = 1000",
-            "6 axes need 13 clocks each and one to close the tick",
+            "6 axes need 13 clocks each and two to close the tick",
         ),
         (
             "s3board",

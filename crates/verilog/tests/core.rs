@@ -170,7 +170,7 @@ fn engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic() {
     let error = write_engine(folder.path(), &engine, &Prefix::default(), "a test").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
+        "6 axes need 13 clocks each and two to close the tick, 80 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
          a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do"
     );
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);

@@ -1,11 +1,16 @@
 //! The virtual board: the models of engine and link on one clock, with the line to the host.
 
+mod room;
+#[cfg(test)]
+mod tests;
+
 use crate::wire::{Driven, SPI_RESTS, Wire};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard, MAX_AXES};
+use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_model::fast::Edges;
-use carrystep_model::{FastEngine, Link};
+use carrystep_model::{HostedEngine, Link};
+use room::Reported;
 
 /// State of the switches at the board's inputs. `true`, or a bit that is set, means active,
 /// regardless of the level of the pin.
@@ -30,11 +35,13 @@ impl Switches {
 /// A board of models: fast engine, link and line.
 #[derive(Debug, Clone)]
 pub struct ModelBoard {
-    engine: FastEngine,
+    engine: HostedEngine,
     link: Link,
     wire: Wire,
     /// Levels of the switch inputs, with the polarity of their pins.
     pins: EngineInputs,
+    /// The last room that the link requested while it ran alone.
+    reported: Option<Reported>,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
 }
@@ -52,10 +59,11 @@ impl ModelBoard {
 
     fn with(build: &EngineBuild, line: LineKind, wire: Wire) -> Self {
         let mut board = Self {
-            engine: FastEngine::new(build),
+            engine: HostedEngine::new(build),
             link: Link::new(build, line),
             wire,
             pins: EngineInputs::default(),
+            reported: None,
             loads: Vec::new(),
             stops: Vec::new(),
         };
@@ -69,7 +77,7 @@ impl ModelBoard {
     }
 
     /// The model of the engine.
-    pub fn engine(&self) -> &FastEngine {
+    pub fn engine(&self) -> &HostedEngine {
         &self.engine
     }
 
@@ -140,6 +148,9 @@ impl ModelBoard {
             let Driven { rx, spi, stays } = self.wire.drive(cycle);
             let quiet =
                 if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
+            let build = self.engine.core().build();
+            let reported = Reported::among(build, self.link.room_of(), cycle, quiet.max(1));
+            self.reported = reported.or(self.reported);
             if quiet == 0 {
                 self.link.clock_alone(rx, spi);
             } else {
@@ -151,34 +162,31 @@ impl ModelBoard {
         cycle
     }
 
-    /// Runs the engine up to the cycle that the link has reached.
+    /// Runs the engine up to the cycle that the link has reached, and delivers what it has output
+    /// meanwhile to the link.
     fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
-        let clocks = end - self.cycle();
-        let begun = self.engine.core().has_time_slots();
         while self.cycle() < end {
-            let says = self.engine.outputs(inputs);
-            let latched = says.latch.map_or(0, |axis| 1 << axis);
-            let leapt = self.engine.leap(inputs, end - self.cycle(), to);
-            let latched = if leapt > 0 { says.homing } else { latched };
-            for axis in (0..MAX_AXES as u8).filter(|axis| latched >> axis & 1 == 1) {
-                self.link.latch(axis, self.engine.core().item(axis, POSITION));
-            }
-            if leapt == 0 {
+            // A leap changes no queue, so an axis reports the same room in all cycles of a leap.
+            let room = self.reported.map(|reported| reported.room(self.engine.core()));
+            let Self { engine, link, .. } = self;
+            if engine.leap(inputs, end - engine.cycle(), to, |word| link.store(word)) == 0 {
+                let says = engine.outputs(inputs);
+                says.state.into_iter().for_each(|word| link.store(word));
                 self.clock_engine(inputs, &says, to);
             }
+            if self.reported.is_some_and(|reported| reported.cycle < self.cycle()) {
+                room.into_iter().for_each(|room| self.link.keep_room(room));
+                self.reported = None;
+            }
         }
-        let core = self.engine.core();
-        let time_slots = if begun { core.answers_before(clocks) } else { 0 };
-        self.link.catch_up(time_slots, |axis, item| core.item(axis, item));
     }
 
     /// Runs link and engine for one clock.
     fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
-        let asks = self.link.outputs();
-        let says = self.engine.outputs(inputs);
+        let engine = self.engine.outputs(inputs);
         let Driven { rx, spi, .. } = self.wire.drive(self.cycle());
-        self.link.clock(&LinkInputs { rx, spi, ..self.told(&asks, &says) });
-        self.clock_engine(inputs, &says, to);
+        self.link.clock(&LinkInputs { rx, spi, engine });
+        self.clock_engine(inputs, &engine, to);
         self.wire.hear(self.cycle(), self.link.tx());
     }
 
@@ -197,19 +205,4 @@ impl ModelBoard {
     fn inputs(&self, asks: &LinkOutputs) -> EngineInputs {
         asks.engine.with_pins(&self.pins)
     }
-
-    fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
-        let core = self.engine.core();
-        let (axis, item) =
-            says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
-        LinkInputs {
-            engine: *says,
-            get_data: core.item(axis, item),
-            get_valid: core.answers(),
-            ..LinkInputs::default()
-        }
-    }
 }
-
-/// Number of the item of an axis that holds its position.
-const POSITION: u8 = 2;

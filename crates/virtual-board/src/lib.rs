@@ -2,7 +2,7 @@
 //! host.
 //!
 //! ```text
-//! bytes -> LineSender --rx--> Link --------> FastEngine -> edges of STEP and DIR
+//! bytes -> LineSender --rx--> Link ------> HostedEngine -> edges of STEP and DIR
 //! bytes <- LineReceiver <---tx----- Link <--------     ^------- e-stop and limits
 //! ```
 //!

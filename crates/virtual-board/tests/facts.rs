@@ -5,87 +5,17 @@
 mod support;
 
 use carrystep_core::engine::Cause;
-use carrystep_core::link::{END, Uart};
+use carrystep_core::link::END;
+use carrystep_core::link::registers::{REGISTERS, RegisterAccess};
 use carrystep_link::registers::{
-    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW,
-    POSITION, SEGMENT, START, WATCHDOG_TICKS, WRITE,
+    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, HOME, MOST_AXES, POSITION, SEGMENT, SNAPSHOT,
+    START, WRITE,
 };
-use carrystep_link::{Answer, Patience, frame};
+use carrystep_link::{Patience, frame};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
-use support::{CLOCK_HZ, Kind, MS};
-
-/// Time limit for an answer, clocks.
-const PATIENCE: u64 = 30_000;
-
-/// A host that sends one request at a time.
-struct Talk<B> {
-    board: B,
-    next: u8,
-}
-
-impl<B: Kind> Talk<B> {
-    fn new() -> Self {
-        Self { board: B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()), next: 0 }
-    }
-
-    fn powered() -> Self {
-        let mut talk = Self::new();
-        talk.write(CONTROL, 1);
-        while !talk.read(POSITION).ready {}
-        talk
-    }
-
-    fn rest(&mut self, clocks: u64) {
-        self.board.reach(self.board.cycle() + clocks, &mut ());
-    }
-
-    fn send(&mut self, content: &[u8]) {
-        on_the_line(content).iter().for_each(|&byte| self.board.say(byte));
-    }
-
-    /// The next answer, if one arrives.
-    fn answer(&mut self) -> Option<Answer> {
-        let end = self.board.cycle() + PATIENCE;
-        let mut line = Vec::new();
-        while self.board.cycle() < end {
-            match self.board.next_byte() {
-                None => self.rest(200),
-                Some(END) if line.is_empty() => {}
-                Some(END) => return Some(Answer::from_bytes(&support::unescaped(&line)).unwrap()),
-                Some(byte) => line.push(byte),
-            }
-        }
-        None
-    }
-
-    fn ask(&mut self, content: &[u8]) -> Answer {
-        self.send(content);
-        self.answer().unwrap_or_else(|| panic!("no answer to {content:02x?}"))
-    }
-
-    fn read(&mut self, address: u8) -> Answer {
-        self.ask(&[0, address])
-    }
-
-    fn write(&mut self, address: u8, word: u32) -> Answer {
-        self.words(WRITE | address, &[word])
-    }
-
-    fn segment(&mut self, axis: u8, words: [u32; 8]) -> Answer {
-        self.words(WRITE | frame::of_axis(SEGMENT, axis), &words)
-    }
-
-    fn words(&mut self, address: u8, words: &[u32]) -> Answer {
-        let head = [self.next, address];
-        let content: Vec<u8> =
-            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
-        let answer = self.ask(&content);
-        self.next = self.next.wrapping_add(1);
-        assert_eq!(answer.next, self.next, "{answer:?}");
-        answer
-    }
-}
+use support::requests::Talk;
+use support::{Kind, MS};
 
 /// A segment with V = a quarter of a step per tick.
 const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {
@@ -101,27 +31,32 @@ fn filled<B: Kind>() -> Talk<B> {
     talk
 }
 
-/// The table of the page: `free` belongs to the axis in bits 3 to 5 of the address, also below
-/// 0x40.
+/// A read of any address is answered. `free` belongs to the axis in bits 0 to 2 of the address. An
+/// address without a register gives 0.
 fn reads<B: Kind>() {
     let mut talk = filled::<B>();
     let next = talk.next;
-    for address in 0..0x80_u8 {
+    let is_register = |address: u8| {
+        REGISTERS.iter().filter(|register| register.access == RegisterAccess::Read).any(
+            |register| {
+                let axes = if register.per_axis { 6 } else { 1 };
+                (0..axes).any(|axis| register.address + axis == address)
+            },
+        )
+    };
+    for address in 0..=0xff_u8 {
         let answer = talk.read(address);
-        let axis = address >> 3 & 7;
+        let axis = address & (MOST_AXES - 1);
         if axis < 6 {
             assert_eq!(answer.free, 7 - axis, "{address:02x}");
         }
+        assert_eq!(answer.axis(), (address >= AXES_AT).then_some(axis), "{address:02x}");
         assert_eq!(
-            (answer.next, answer.fault, answer.refused),
-            (next, false, false),
+            (answer.next, answer.fault, answer.refused, answer.written),
+            (next, false, false, false),
             "{address:02x}"
         );
-        let global = IDENTITY..=WATCHDOG_TICKS;
-        let of_axis = address >= 0x40
-            && axis < 6
-            && [P_LOW, P_HIGH, POSITION, DISCARDED, LATCHED].contains(&(0x40 | address & 7));
-        if !global.contains(&address) && !of_axis {
+        if !is_register(address) {
             assert_eq!(answer.data, 0, "{address:02x} is no register");
         }
     }
@@ -131,7 +66,8 @@ fn reads<B: Kind>() {
 /// is not answered.
 fn writes<B: Kind>() {
     let mut talk = filled::<B>();
-    for address in (0..0x40_u8).filter(|address| ![CONTROL, START, CLEAR, HOME].contains(address)) {
+    let known = [CONTROL, START, CLEAR, HOME, SNAPSHOT];
+    for address in (0..0x40_u8).filter(|address| !known.contains(address)) {
         let answer = talk.write(address, 0xffff_ffff);
         let state = (
             answer.free,
@@ -153,9 +89,11 @@ fn writes<B: Kind>() {
         let answer = talk.read(frame::of_axis(POSITION, axis));
         assert_eq!((answer.next, answer.free), (next, 7 - axis));
     }
-    // The low three bits of a segment's address are ignored.
-    let answer = talk.words(WRITE | frame::of_axis(SEGMENT, 1) | 5, &cruise(99, true));
-    assert_eq!((answer.free, answer.fault), (5, false));
+    // Words at an address that only reads have.
+    talk.send(&[&[next, POSITION][..], &[0; 4]].concat());
+    assert_eq!(talk.answer(), None, "a word for a register that is only read");
+    let answer = talk.segment(1, cruise(99, true));
+    assert_eq!((answer.free, answer.fault, answer.written), (5, false, true));
     // An axis that the build does not have.
     let answer = talk.segment(7, cruise(99, true));
     assert_eq!((answer.fault, answer.cause), (true, Cause::Protocol as u8));

@@ -44,6 +44,7 @@ struct Answer {
     cause: u8,
     free: usize,
     refused: bool,
+    written: bool,
     data: u32,
 }
 
@@ -73,6 +74,7 @@ impl Answer {
             ready: frame[3] & 8 != 0,
             cause: frame[3] >> 5,
             free: usize::from(frame[4] & 7),
+            written: frame[4] & 0x80 != 0,
             refused: frame[4] & 8 != 0,
             data: word(7)?,
         })
@@ -220,15 +222,16 @@ impl Stranger {
         if executed > 0 {
             self.progress = self.board.cycle();
         }
-        if answer.address & 0x80 == 0 {
+        if !answer.written {
             self.asked = None;
         }
-        let axis = usize::from(answer.address >> 3 & 7);
-        if answer.address & 0x40 != 0 {
+        let axis = usize::from(answer.address & 7);
+        let least = if answer.written { 0xc0 } else { 0x18 };
+        if answer.address >= least {
             let uncounted =
                 self.under_way.iter().filter(|written| written.axis == Some(axis)).count();
             self.room[axis] = (answer.free, uncounted);
-            if answer.address & 7 == 2 || answer.address & 0x80 != 0 {
+            if answer.written || answer.address & 0xf8 == 0x70 {
                 self.positions[axis] = answer.data.cast_signed();
             }
         }
@@ -243,7 +246,7 @@ impl Stranger {
                 return;
             }
             if turn % 50 == 0 {
-                self.read(0x42 + 8 * (turn / 50 % 6) as u8);
+                self.read(0x70 + (turn / 50 % 6) as u8);
             }
             self.pass();
             assert!(turn < 200_000, "{:?}", self.last);
@@ -269,7 +272,7 @@ fn segments(stranger: &mut Stranger, axis: usize, ticks: u64) -> Vec<(u32, i64)>
 /// number of segments.
 fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8>, usize) {
     let mut stranger = Stranger::new(lost, credits);
-    for (address, wanted) in [(0, u32::from_le_bytes(*b"CSTP")), (1, 1), (4, AXES as u32)] {
+    for (address, wanted) in [(0, u32::from_le_bytes(*b"CSTP")), (1, 2), (4, AXES as u32)] {
         stranger.last = None;
         while stranger.last.is_none_or(|answer| answer.address != address) {
             stranger.read(address);
@@ -302,7 +305,7 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
                 sent[axis] += u64::from(ticks);
                 let last = u32::from(queues[axis].is_empty());
                 let words = [ticks - 1, v as u32, (v >> 32) as u32, 0, 0, 0, 0, last];
-                stranger.write(0xc0 + 8 * axis as u8, &words, Some(axis));
+                stranger.write(0xc0 + axis as u8, &words, Some(axis));
                 continue;
             }
             if !started && sent.iter().all(|&ticks| ticks > 0) {
@@ -313,7 +316,7 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
             let full =
                 (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) == 0);
             if let Some(axis) = full.min_by_key(|&axis| sent[axis]) {
-                stranger.read(0x42 + 8 * axis as u8);
+                stranger.read(0x70 + axis as u8);
             }
             stranger.pass();
             if let Some(answer) = stranger.last.filter(|answer| answer.fault) {
@@ -329,8 +332,8 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
     // V.
     for (axis, sum) in sums.into_iter().enumerate() {
         stranger.last = None;
-        while stranger.last.is_none_or(|answer| answer.address != 0x42 + 8 * axis as u8) {
-            stranger.read(0x42 + 8 * axis as u8);
+        while stranger.last.is_none_or(|answer| answer.address != 0x70 + axis as u8) {
+            stranger.read(0x70 + axis as u8);
             (0..20).for_each(|_| stranger.pass());
         }
         let steps = ((1_i128 << 63) + sum) >> 64;

@@ -171,7 +171,7 @@ fn said(at_once: u64) -> (Vec<u8>, String) {
     let mut board = end.0.borrow().0.clone();
     let mut said = Vec::new();
     let identity = [0xc0, 0x00, 0x00, 0xff, 0x12, 0xd9, 0x41, 0xc0];
-    let position = [0xc0, 0x01, 0x4a, 0x30, 0x8b, 0xcb, 0xce, 0xc0];
+    let position = [0xc0, 0x02, 0x71, 0xd7, 0x31, 0xed, 0x54, 0xc0];
     for request in [identity, position] {
         request.iter().for_each(|&byte| board.say(byte));
         let until = board.cycle() + 10_000;

@@ -29,7 +29,8 @@ enum Chore {
     Test,
     /// Prove the promises on the exported Verilog, and print what is proved and how.
     Prove,
-    /// Install what the tests need, by apt: simulators, yosys, z3, Slurm, GNU parallel.
+    /// Install what the tests need, by apt: simulators, yosys, z3, Slurm, GNU parallel,
+    /// LinuxCNC.
     Tools,
     /// All longer runs, or those that are named, each with its row in `docs/long-runs.md`:
     /// lockstep, rust-hdl, proofs, mutants, resources.

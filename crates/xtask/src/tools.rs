@@ -5,7 +5,7 @@ use crate::shell::{self, TaskResult};
 use std::path::Path;
 
 /// Each program, and the Debian package that contains it.
-const NEEDED: [(&str, &str); 20] = [
+const NEEDED: [(&str, &str); 21] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -26,6 +26,7 @@ const NEEDED: [(&str, &str); 20] = [
     ("munged", "munge"),
     ("parallel", "parallel"),
     ("hostname", "hostname"),
+    ("rs274", "linuxcnc-uspace"),
 ];
 
 /// The folder of daemons, which is not on every user's path.

@@ -49,14 +49,8 @@ impl Both {
             ("answer", offered.map(u64::from)),
             ("answer_take", Some(line.take.into())),
         ];
-        let get = [
-            ("get_axis", Some(shown.get_axis.into())),
-            ("get_item", Some(shown.get_item.into())),
-            ("get_data", Some(seen.get_data.into())),
-            ("get_valid", Some(seen.get_valid.into())),
-        ];
         let (told, said) = (shown.engine.at_ports(), seen.engine.at_ports());
-        let link: Vec<Value> = bytes.into_iter().chain(get).chain(told).chain(said).collect();
+        let link: Vec<Value> = bytes.into_iter().chain(told).chain(said).collect();
         let level = |&(name, level): &(&'static str, bool)| (name, Some(u64::from(level)));
         let line: Vec<Value> = bytes.into_iter().chain(pins.iter().map(level)).collect();
         let ports: Vec<Port> = link_ports().collect();

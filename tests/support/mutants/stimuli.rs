@@ -1,6 +1,8 @@
 //! The stimuli of the mutants: the model's recordings of the shipped machine in normal work and in
 //! all kinds of stops.
 
+mod coincidences;
+mod cruise;
 mod resets;
 mod stops;
 mod work;

@@ -17,8 +17,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_p_plus_v",
-        text: "beat[8] | beat[10]) begin\n            a <= word;",
-        becomes: "beat[8]) begin\n            a <= word;",
+        text: "beat[8] | beat[10] | beat[13]) begin\n            a <= word;",
+        becomes: "beat[8] | beat[13]) begin\n            a <= word;",
     },
     Bug { breaks: "promise_6_wiped", text: "(beat[5] | beat[11])", becomes: "beat[5]" },
     Bug {
@@ -52,6 +52,17 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_11_phase_stays", text: "bisects | beat[16]", becomes: "1'b1" },
     Bug { breaks: "promise_13_inactive", text: "bits = 4'd0;", becomes: "bits = 4'd1;" },
     Bug {
+        breaks: "promise_15_tick_is_counted",
+        text: "adds_tick = beat[15] & !beat[2];",
+        becomes: "adds_tick = beat[15] & beat[2];",
+    },
+    Bug {
+        breaks: "promise_15_tick_is_counted",
+        text: "carry_due = adds_tick | (",
+        becomes: "carry_due = (",
+    },
+    Bug { breaks: "promise_15_tick_is_counted", text: " | beat[13]) begin", becomes: ") begin" },
+    Bug {
         breaks: "promise_6_ticks_and_discarded",
         text: "(forgets & beat[6])",
         becomes: "(forgets & beat[5])",
@@ -73,7 +84,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         },
         cases: vec![case],
         depth: 13,
-        reach: 16,
+        reach: 20,
         bugs: BUGS,
     }
 }

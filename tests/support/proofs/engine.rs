@@ -82,6 +82,11 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
     Bug {
+        breaks: "promise_15_a_tick_is_live_or_a_snapshot",
+        text: ".met(queue_met),\n        .word",
+        becomes: ".met(queue_running),\n        .word",
+    },
+    Bug {
         breaks: "promise_14_start_only_warm",
         text: "enable & supervisor_warm",
         becomes: "enable",

@@ -22,8 +22,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_12_slows_after_its_own_hit",
-        text: "caught = hit & mine;",
-        becomes: "caught = hit;",
+        text: "found = hit & mine;",
+        becomes: "found = hit;",
     },
     Bug {
         breaks: "promise_12_slows_after_its_own_hit",
@@ -34,6 +34,11 @@ const BUGS: &[Bug] = &[
         breaks: "promise_12_slows_after_its_own_hit",
         text: "(slowing & axis_one_hot_next)",
         becomes: "(slowing & axis_one_hot)",
+    },
+    Bug {
+        breaks: "promise_12_told_of_its_own_hit",
+        text: "caught = found;",
+        becomes: "caught = hit;",
     },
     Bug {
         breaks: "promise_13_inactive",

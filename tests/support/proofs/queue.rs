@@ -31,8 +31,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_full",
-        text: "full = fresh_now == live_now",
-        becomes: "full = newest == live_now",
+        text: "filled <= fresh_now == live_now",
+        becomes: "filled <= newest == live_now",
     },
     Bug {
         breaks: "promise_6_words_in_order",
@@ -82,6 +82,22 @@ const BUGS: &[Bug] = &[
         breaks: "promise_12_no_word_used_that_was_written",
         text: "if (beat[12]) begin",
         becomes: "if (beat[11]) begin",
+    },
+    Bug { breaks: "promise_15_on_way", text: "gain = TWO_LESS;", becomes: "gain = ONE_LESS;" },
+    Bug {
+        breaks: "promise_15_on_way",
+        text: "behind = moves & crosses & back;",
+        becomes: "behind = moves & back;",
+    },
+    Bug {
+        breaks: "promise_15_on_way",
+        text: "next_on_way = NONE_ON_WAY;",
+        becomes: "next_on_way = ONE_MORE;",
+    },
+    Bug {
+        breaks: "promise_15_met_in_the_tick_before",
+        text: "next_met = MET_BIT;",
+        becomes: "next_met = NO;",
     },
     Bug { breaks: "promise_13_inactive", text: "forward = 1'b0;", becomes: "forward = 1'b1;" },
 ];

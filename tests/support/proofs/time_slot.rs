@@ -30,6 +30,16 @@ const BUGS: &[Bug] = &[
         text: "axis_next = axis_to_come;",
         becomes: "axis_next = number;",
     },
+    Bug {
+        breaks: "promise_15_last",
+        text: "is_last = ends;",
+        becomes: "is_last = axis_one_hot[0];",
+    },
+    Bug {
+        breaks: "promise_15_two_clocks_to_count_the_tick",
+        text: "beats[12] & !ends",
+        becomes: "beats[13] & !ends",
+    },
     Bug { breaks: "promise_13_inactive", text: "beats = 17'd0;", becomes: "beats = 17'd1;" },
 ];
 

@@ -96,7 +96,7 @@ fn clock_that_a_board_does_not_reach_is_refused_with_the_proposed_clock() {
     let measured = include_str!("../../../boards/data/measured.toml");
     let (_, icebreaker) = measured.split_once("[icebreaker]").unwrap();
     let (_, mhz) = icebreaker.split_once("nextpnr_mhz = ").unwrap();
-    let mhz = mhz.lines().next().unwrap();
+    let mhz: f64 = mhz.lines().next().unwrap().parse().unwrap();
     ran.refuses(&format!(
         "machine.toml: icebreaker: nextpnr reaches {mhz} MHz with the shipped gateware, far less than the machine's 48 MHz"
     ));

@@ -169,7 +169,7 @@ fn a_schedule_that_does_not_fit_is_refused_with_the_arithmetic() {
     let text = format!("{MACHINE}{six}").replace("80_000_000", "48_000_000");
     let folder = with_machine(&text);
     folder.run(WRITE).refuses(
-        "m.toml: 6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has \
+        "m.toml: 6 axes need 13 clocks each and two to close the tick, 80 in all, but a tick of 1000 ns at 48000000 Hz has \
          48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do; the parallel core holds it as it is: \
          `--core parallel`",
     );
@@ -265,7 +265,7 @@ fn nine_axes_are_too_many_for_any_core_and_seven_for_the_parallel_one() {
     folder.run(parallel).refuses("m.toml: 7 axes: the parallel gateware drives at most 6");
     // Seven time slots do not fit into 80 clocks, and no other core is offered for them.
     let engine = folder.run("verilog --machine m.toml --out out");
-    engine.refuses("m.toml: 7 axes need 13 clocks each and one to close the tick, 92 in all");
+    engine.refuses("m.toml: 7 axes need 13 clocks each and two to close the tick, 93 in all");
     engine.refuses("a tick of 1200 ns, a clock of 96000000 Hz or fewer axes would do");
     assert!(!engine.stderr.contains("--core"), "{}", engine.stderr);
     folder

@@ -4,16 +4,16 @@
 use crate::command::{Folder, GOOD, Ran};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// A sweep of 24 cases that take about 0.1 s each on one core. Moves that are too fast are refused,
+/// A sweep of 24 cases that take up to 0.2 s each on one core. Moves that are too fast are refused,
 /// and a driver of an unknown name fails.
 fn sweep() -> Folder {
     let folder = Folder::new();
     let (head, _) = GOOD.split_once("[[move]]").unwrap();
     let head = head.replace("\"a4988\"", "\"{{ driver }}\"");
     let moves = "[[move]]\nprofile = \"constant\"\ntime = {{ time }}\nto = { x = {{ to }} }\n";
-    let vary = "driver = [\"a4988\", \"tmc2209\", \"none\"]\ntime = [6000, 7000]\nto = [170_000, 180_000, 190_000, 10_000_000]\n";
+    let vary = "driver = [\"a4988\", \"tmc2209\", \"none\"]\ntime = [12_000, 14_000]\nto = [170_000, 180_000, 190_000, 10_000_000]\n";
     folder.write("sweep.toml", format!("move_file = '''\n{head}{moves}'''\n[vary]\n{vary}"));
     folder
 }
@@ -29,19 +29,30 @@ fn run(folder: &Folder, arguments: &str) -> Ran {
     folder.output(&mut command(folder, arguments))
 }
 
-/// Starts the command, sends it a signal after some time, and waits for its end.
-fn ended(folder: &Folder, arguments: &str, signal: &str, after: Duration) -> std::process::Output {
+/// Starts the command, sends it a signal when `now`, and waits for its end.
+fn ended(
+    folder: &Folder,
+    arguments: &str,
+    signal: &str,
+    now: impl Fn() -> bool,
+) -> std::process::Output {
     let mut command = command(folder, arguments);
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(after);
-    // The process may have ended before; it is not reaped yet, so its number is not used again.
-    Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while child.try_wait().unwrap().is_none() {
+        if now() {
+            // The process may end before the signal; it is not reaped yet, so its number is not
+            // used again.
+            Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
     child.wait_with_output().unwrap()
 }
 
-/// The number of judged cases in a kept file.
+/// The number of judged cases in a kept file; null while there is none.
 fn done(path: &Path) -> u64 {
-    let text = std::fs::read_to_string(path).unwrap();
+    let Ok(text) = std::fs::read_to_string(path) else { return 0 };
     let (_, body) = text.split_once('\n').unwrap();
     let body: serde_json::Value = serde_json::from_str(body).unwrap();
     let ranges = body["done"].as_array().unwrap();
@@ -57,14 +68,14 @@ fn killed_shard_continues_and_its_report_has_the_same_bytes() {
     let mut kept = vec![0];
     for millis in (0..).map(|n: u64| 40 + n * 277 % 611) {
         let arguments = "sweep sweep.toml --json --keep out/a.kept";
-        let output = ended(&folder, arguments, "-KILL", Duration::from_millis(millis));
+        let begun = Instant::now();
+        let passed = || Duration::from_millis(millis) <= begun.elapsed();
+        let output = ended(&folder, arguments, "-KILL", passed);
         if output.status.code().is_some() {
             assert_eq!(String::from_utf8(output.stdout).unwrap(), whole.stdout);
             break;
         }
-        if path.exists() {
-            kept.push(done(&path));
-        }
+        kept.push(done(&path));
     }
     assert!(kept.is_sorted(), "a restart loses nothing: {kept:?}");
     assert!(kept.iter().any(|&done| 0 < done && done < 24), "never killed in between: {kept:?}");
@@ -80,11 +91,12 @@ fn killed_shard_continues_and_its_report_has_the_same_bytes() {
 #[test]
 fn interrupted_shard_keeps_its_progress_and_says_so() {
     let folder = sweep();
+    let path = folder.path("a.kept");
+    let whole = run(&folder, "sweep sweep.toml --json");
     for signal in ["-INT", "-TERM"] {
         let arguments = "sweep sweep.toml --keep a.kept";
-        let output = ended(&folder, arguments, signal, Duration::from_millis(700));
-        let (cases, text) =
-            (done(&folder.path("a.kept")), String::from_utf8(output.stderr).unwrap());
+        let output = ended(&folder, arguments, signal, || 0 < done(&path));
+        let (cases, text) = (done(&path), String::from_utf8(output.stderr).unwrap());
         assert!(0 < cases && cases < 24, "{text}");
         assert_eq!(
             text,
@@ -95,9 +107,8 @@ fn interrupted_shard_keeps_its_progress_and_says_so() {
         assert_eq!((output.status.code(), output.stdout), (Some(1), Vec::new()));
         let merged = folder.run("sweep --merge a.kept");
         merged.refuses(&format!("1/1 has {cases} of 24 cases in a.kept"));
-        let whole = run(&folder, "sweep sweep.toml --json");
         assert_eq!(run(&folder, &format!("{arguments} --json")).stdout, whole.stdout);
-        std::fs::remove_file(folder.path("a.kept")).unwrap();
+        std::fs::remove_file(&path).unwrap();
     }
 }
 

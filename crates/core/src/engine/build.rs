@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_axes_need_a_tick_of_105_clocks() {
+    fn eight_axes_need_a_tick_of_106_clocks() {
         let seven = |build: &mut EngineBuild| {
             build.pins = vec![PinTiming::SHORTEST; 8];
             build.guard.stop = vec![1; 8];
@@ -188,7 +188,7 @@ mod tests {
         };
         let said = refusal(seven);
         assert!(
-            said.starts_with("8 axes need 13 clocks each and one to close the tick, 105 in all"),
+            said.starts_with("8 axes need 13 clocks each and two to close the tick, 106 in all"),
             "{said}"
         );
     }

@@ -18,7 +18,7 @@ pub enum EngineError {
     Axes(usize),
     /// A tick has too few clocks for the time slots of all axes.
     #[error(
-        "{axes} axes need {TIME_SLOT_CLOCKS} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
+        "{axes} axes need {TIME_SLOT_CLOCKS} clocks each and two to close the tick, {needed} in all, but a tick of {tick_ns} ns \
          at {clock_hz} Hz has {clocks}: {}, {} or fewer axes would do", tick_said(.least_tick_ns), clock_said(.least_hz)
     )]
     Schedule {

@@ -1,6 +1,6 @@
 //! The ports of the engine, and which field of [`EngineInputs`] or [`EngineOutputs`] is at each.
 
-use super::{CAUSE_BITS, EngineInputs, EngineOutputs};
+use super::{CAUSE_BITS, EngineInputs, EngineOutputs, STATE_ITEM_BITS};
 use crate::ports::{CLOCK, Direction, Peer, Port, Width, input, output};
 
 const BIT: Width = Width::Bits(1);
@@ -24,17 +24,31 @@ pub const ENGINE_PORTS: &[Port] = &[
     input("broken", BIT, Peer::Host, "the host has broken the segment protocol"),
     input("home_valid", BIT, Peer::Host, "the host replaces the mask of the axes that home"),
     input("home_mask", Width::Axes, Peer::Host, "the axes that wait for their limit from now on"),
+    input("snapshot", BIT, Peer::Host, "the host requests a snapshot of the state of all axes"),
     input("kick", BIT, Peer::Host, "a valid request has arrived: the watchdog restarts"),
     input("enable", BIT, Peer::Host, "the host requests power for the drivers"),
     input("estop", BIT, Peer::Pins, "the e-stop pin, asynchronous"),
     input("limit_min", Width::Axes, Peer::Pins, "the limit pins at the low ends, asynchronous"),
     input("limit_max", Width::Axes, Peer::Pins, "the limit pins at the high ends, asynchronous"),
-    input("get_axis", AXIS, Peer::Host, "the axis that the host reads"),
-    input("get_item", Width::Bits(2), Peer::Host, "0 1 P, low and high; 2 position; 3 discarded"),
-    output("get_data", WORD, Peer::Host, "the item requested in the clock before"),
-    output("get_valid", BIT, Peer::Host, "`get_data` is that item"),
-    output("latch", BIT, Peer::Host, "`get_data` is the position at which an axis met its limit"),
-    output("latch_axis", AXIS, Peer::Host, "that axis").valid_with("latch"),
+    output("state_valid", BIT, Peer::Host, "the engine outputs a word of state in this clock"),
+    output(
+        "state_page",
+        Width::Bits(2),
+        Peer::Host,
+        "its page: 0 at the limit, 1 live, 2 snapshot",
+    )
+    .valid_with("state_valid"),
+    output("state_axis", AXIS, Peer::Host, "its axis").valid_with("state_valid"),
+    output(
+        "state_item",
+        Width::Bits(STATE_ITEM_BITS),
+        Peer::Host,
+        "0 discarded, 1 left, 3 ticks, 4 5 P, 6 position, 7 status",
+    )
+    .valid_with("state_valid"),
+    output("state", WORD, Peer::Host, "the word; of the status bits 15 to 0 only")
+        .valid_with("state_valid"),
+    output("refreshed", BIT, Peer::Host, "all live words of this tick have been output"),
     output(
         "room",
         Width::Bits(3),
@@ -60,17 +74,21 @@ pub const ENGINE_PORTS: &[Port] = &[
 ];
 
 /// The ports of this direction that [`EngineInputs::at_ports`] and [`EngineOutputs::at_ports`]
-/// list, in their order: all but the clock and those by which a host reads one item (`get`).
-pub fn recorded_ports(direction: Direction) -> impl Iterator<Item = &'static Port> {
-    ENGINE_PORTS.iter().filter(move |port| {
-        port.direction == direction && port.peer != Peer::Clock && !port.name.starts_with("get_")
-    })
+/// list, in their order: all but the clock.
+pub fn ports_of(direction: Direction) -> impl Iterator<Item = &'static Port> {
+    ENGINE_PORTS.iter().filter(move |port| port.direction == direction && port.peer != Peer::Clock)
+}
+
+/// True if benches print the value of this port when it changes. Words of state change in most
+/// clocks: of them the benches print a checksum ([`EngineOutputs::state_sum`]).
+pub fn is_recorded(port: &Port) -> bool {
+    port.name != "refreshed" && !port.name.starts_with("state")
 }
 
 impl EngineInputs {
-    /// Name and value of each input in the order of [`recorded_ports`]. `None` is a value that is
+    /// Name and value of each input in the order of [`ports_of`]. `None` is a value that is
     /// not offered and has no effect; it is driven as 0.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 17] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 18] {
         let Self {
             put,
             room_of,
@@ -80,6 +98,7 @@ impl EngineInputs {
             stop,
             broken,
             home,
+            snapshot,
             kick,
             enable,
             estop,
@@ -99,6 +118,7 @@ impl EngineInputs {
             ("broken", Some(broken.into())),
             ("home_valid", Some(home.is_some().into())),
             ("home_mask", home.map(u64::from)),
+            ("snapshot", Some(snapshot.into())),
             ("kick", Some(kick.into())),
             ("enable", Some(enable.into())),
             ("estop", Some(estop.into())),
@@ -109,9 +129,9 @@ impl EngineInputs {
 }
 
 impl EngineOutputs {
-    /// Name and value of each output in the order of [`recorded_ports`]. `None` is a value that is
+    /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
     /// not valid in this cycle.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 19] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 23] {
         let Self {
             put_ready,
             start_ready,
@@ -125,15 +145,20 @@ impl EngineOutputs {
             armed,
             ready,
             homing,
-            latch,
+            state,
+            refreshed,
             room,
             started,
         } = *self;
         [
             ("put_ready", Some(put_ready.into())),
             ("start_ready", Some(start_ready.into())),
-            ("latch", Some(latch.is_some().into())),
-            ("latch_axis", latch.map(u64::from)),
+            ("state_valid", Some(state.is_some().into())),
+            ("state_page", state.map(|state| state.page as u64)),
+            ("state_axis", state.map(|state| state.axis.into())),
+            ("state_item", state.map(|state| state.item as u64)),
+            ("state", state.map(|state| state.word.into())),
+            ("refreshed", Some(refreshed.into())),
             ("room", room.map(u64::from)),
             ("room_valid", Some(room.is_some().into())),
             ("step", Some(step.into())),
@@ -153,14 +178,37 @@ impl EngineOutputs {
     }
 }
 
+impl EngineOutputs {
+    /// These outputs as benches print them: without the words of state.
+    #[must_use]
+    pub const fn recorded(self) -> Self {
+        Self { state: None, refreshed: false, ..self }
+    }
+
+    /// The checksum of all words of state up to this cycle, `sum` being that of the cycles before.
+    /// A cycle without a word and without `refreshed` does not change it.
+    ///
+    /// ```text
+    /// sum <= rotate_left(sum, 7) ^ (refreshed 1 | page 2 | item 3 | axis 3 | word 32)
+    /// ```
+    pub fn state_sum(&self, sum: u64) -> u64 {
+        if self.state.is_none() && !self.refreshed {
+            return sum;
+        }
+        let word =
+            self.state.map_or(0, |state| u64::from(state.address()) << 32 | u64::from(state.word));
+        sum.rotate_left(7) ^ (u64::from(self.refreshed) << 40 | word)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{CAUSES, MAX_AXES, SEGMENT_WORDS};
+    use crate::engine::{CAUSES, MAX_AXES, SEGMENT_WORDS, StateItem};
     use alloc::vec::Vec;
 
     fn names(direction: Direction) -> Vec<&'static str> {
-        recorded_ports(direction).map(|port| port.name).collect()
+        ports_of(direction).map(|port| port.name).collect()
     }
 
     #[test]
@@ -169,8 +217,9 @@ mod tests {
         let outputs = EngineOutputs::default().at_ports();
         assert_eq!(inputs.map(|(name, _)| name).to_vec(), names(Direction::Input));
         assert_eq!(outputs.map(|(name, _)| name).to_vec(), names(Direction::Output));
-        // Without a fault, a latch or room, exactly those outputs are not valid that say so.
-        for (port, (name, value)) in recorded_ports(Direction::Output).zip(outputs) {
+        // Without a fault, a word of state or room, exactly those outputs are not valid that say
+        // so.
+        for (port, (name, value)) in ports_of(Direction::Output).zip(outputs) {
             assert_eq!(port.valid_with.is_some(), value.is_none(), "{name}");
         }
     }
@@ -182,7 +231,8 @@ mod tests {
             (1_usize << port.width.of(1)) - 1
         };
         assert!(most("cause") >= CAUSES.len() - 1);
-        assert!(most("put_axis") >= MAX_AXES - 1 && most("latch_axis") >= MAX_AXES - 1);
+        assert!(most("put_axis") >= MAX_AXES - 1 && most("state_axis") >= MAX_AXES - 1);
         assert!(most("put_word") >= SEGMENT_WORDS.into());
+        assert!(most("state_item") >= StateItem::Status as usize);
     }
 }

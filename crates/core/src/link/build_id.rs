@@ -1,7 +1,7 @@
 //! The build id: a hash by which a driver recognises the gateware that it was made for.
 
 use super::registers::{MappedRegister, PROTOCOL_VERSION, REGISTERS};
-use super::{ANSWER, Field, registers};
+use super::{ANSWER, Field};
 use crate::EngineBuild;
 use alloc::borrow::ToOwned;
 use alloc::format;
@@ -47,7 +47,7 @@ fn protocol() -> String {
     let answer = ANSWER.iter().map(|Field { name, byte, bit, bits, top, .. }| {
         format!("{name} {byte} {bit} {bits} {top:?}\n")
     });
-    let version = format!("protocol {PROTOCOL_VERSION}, {} words\n", registers::PER_AXIS);
+    let version = format!("protocol {PROTOCOL_VERSION}\n");
     [version].into_iter().chain(registers).chain(answer).collect()
 }
 

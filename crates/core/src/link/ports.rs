@@ -59,10 +59,6 @@ pub struct LinkInputs {
     pub spi: [bool; 2],
     /// Outputs of the engine.
     pub engine: EngineOutputs,
-    /// Value at the engine's `get` port.
-    pub get_data: u32,
-    /// Whether that value answers the current request.
-    pub get_valid: bool,
 }
 
 /// Output values of the link in one clock cycle.
@@ -72,8 +68,4 @@ pub struct LinkOutputs {
     pub tx: bool,
     /// Inputs of the engine that the link drives. The engine's pin inputs are not the link's.
     pub engine: EngineInputs,
-    /// Axis that the `get` port asks for.
-    pub get_axis: u8,
-    /// Item of that axis that the `get` port asks for.
-    pub get_item: u8,
 }

@@ -100,17 +100,17 @@ pub const CRC_FEED: Code = 1 << 3;
 /// X.
 pub const CRC_BEGIN: Code = 1 << 4;
 /// The instruction lasts until the engine accepts what it offers, or has a fault. If it offers
-/// nothing, it lasts until the scan of all axes' items ends ([`SCAN`] time slots).
+/// nothing, it lasts until all live words of a tick have been output (`refreshed`).
 pub const WAIT: Code = 1 << 5;
 /// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
-/// or the scan ends.
+/// or with `refreshed`.
 pub const FOR_ROOM: Code = 1 << 3;
 /// A is written to the control register. With [`KICK`] it is written to the mask of the axes that
-/// wait for their limit instead.
+/// wait for their limit instead; with [`BROKEN`] it is written nowhere.
 pub const CONTROL: Code = 1 << 6;
 /// The host has sent a valid request; this restarts the watchdog.
 pub const KICK: Code = 1 << 7;
-/// The host has violated the segment protocol.
+/// The host has violated the segment protocol. With [`CONTROL`]: requests a snapshot instead.
 pub const BROKEN: Code = 1 << 8;
 /// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
 pub const CLEARING: Code = 1 << 9;
@@ -118,12 +118,9 @@ pub const CLEARING: Code = 1 << 9;
 pub const GOES: Code = 1 << 9;
 /// Offers a start of the axes in A.
 pub const STARTS: Code = 1 << 10;
-/// Offers the CRC register as a word of a segment. Bits 5..3 of A are the axis, bits 4..2 of X the
+/// Offers the CRC register as a word of a segment. Bits 2..0 of A are the axis, bits 4..2 of X the
 /// number of the word.
 pub const PUTS: Code = 1 << 11;
-
-/// Number of time slots in which every item of every axis is read once.
-pub const SCAN: u32 = 32;
 
 /// Address of a request in the data memory: its sequence number, followed by its address byte.
 pub const REQUEST: u8 = 0x1e;

@@ -18,7 +18,7 @@ use super::processor::{
     KICK, PUTS, REQUEST, REQUEST_END, ROOM, STARTS, STATE, TAX, ValueSource, WAIT, WORDS,
 };
 use super::registers::{
-    AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START,
+    CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, SNAPSHOT, START,
 };
 use super::{
     ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
@@ -39,11 +39,17 @@ const CHECKED: u8 = REQUEST_END - CRC_BYTES as u8;
 const BYTE: u8 = 0x80; // a byte under examination
 const LENGTH: u8 = 0x81; // the address behind the request's last byte
 const NEXT: u8 = 0x82; // the sequence number that the next write must have
-const REFUSED: u8 = 0x83;
+const FLAGS: u8 = 0x83; // WRITTEN_BIT and REFUSED_BIT; 0 for a read
 const CONTROLS: u8 = 0x84; // the control register without the clear bit
 
-/// Bit 3 of the answer's byte `free`: the write was refused.
+/// Bit 3 of the answer's byte 4: the write was refused.
 const REFUSED_BIT: u8 = 1 << 3;
+/// Bit 7 of the answer's byte 4: the request was a write.
+const WRITTEN_BIT: u8 = 1 << 7;
+
+/// Number of waits during which a clear is asserted. Each of them but the first contains a strobe;
+/// the engine accepts a clear at one strobe and ends the stop at the next.
+const CLEAR_WAITS: usize = 6;
 
 /// The contents of the machine's memories after configuration.
 pub fn image() -> Image {
@@ -108,22 +114,26 @@ fn receive(a: &mut Assembler) {
     }
 }
 
-/// Checks the length and the CRC of the request.
+/// Checks the length and the CRC of the request. A request without words is a read.
 fn check(a: &mut Assembler) {
     let end = |words: usize| REQUEST + (REQUEST_HEAD + 4 * words + CRC_BYTES) as u8;
     a.label("ended");
     a.load_x();
     a.store(LENGTH);
+    a.xor_number(end(0));
+    a.jump_if(Zero, "length known");
     a.load(ADDRESS);
     a.acts(TAX);
-    a.load_number(end(0));
-    a.jump_unless(X7, "length");
+    a.jump_unless(X7, "begin");
     a.load_number(end(SEGMENT_FRAME_WORDS));
     a.jump_if(X6, "length");
     a.load_number(end(1));
     a.label("length");
     a.xor(LENGTH);
     a.jump_unless(Zero, "begin");
+    a.load_number(WRITTEN_BIT);
+    a.label("length known");
+    a.store(FLAGS);
     a.index_table(CRC_RESIDUE.to_le_bytes());
     a.label("residue");
     a.load_from(ValueSource::Crc, 0);
@@ -137,11 +147,8 @@ fn check(a: &mut Assembler) {
 /// Decides what to do with a write: execute it if its number is `next`, answer it again if it was
 /// executed before, refuse it if a write before it is missing.
 fn order(a: &mut Assembler) {
-    a.load_number(0);
-    a.store(REFUSED);
-    a.load(ADDRESS);
-    a.acts(TAX);
-    a.jump_unless(X7, "answer");
+    a.load(FLAGS);
+    a.jump_if(Zero, "answer");
     a.load(SEQUENCE);
     a.acts(TAX);
     a.xor(NEXT);
@@ -159,15 +166,15 @@ fn order(a: &mut Assembler) {
     a.jump_unless(Zero, "count");
     a.jump("answer");
     a.label("refuse");
-    a.load_number(REFUSED_BIT);
-    a.store(REFUSED);
+    a.load_number(WRITTEN_BIT | REFUSED_BIT);
+    a.store(FLAGS);
     a.jump("answer");
 }
 
-/// Waits until every item of every axis has been read again, which takes longer than a time slot of
-/// any axis. A and X are unchanged.
+/// Waits until all live words of a whole tick have been output, which takes longer than a time slot
+/// of any axis. A and X are unchanged.
 fn wait_for_all(a: &mut Assembler) {
-    // The first wait may end at once, because it starts within a scan.
+    // The first wait may end at once, because it begins within a tick.
     a.acts(WAIT);
     a.acts(WAIT);
 }
@@ -178,9 +185,13 @@ fn execute(a: &mut Assembler) {
     a.load(ADDRESS);
     a.acts(TAX);
     a.jump_if(X6, "segment");
-    for (register, label) in
-        [(CONTROL_REGISTER, "control"), (START, "start"), (CLEAR, "clear"), (HOME, "home")]
-    {
+    for (register, label) in [
+        (CONTROL_REGISTER, "control"),
+        (START, "start"),
+        (CLEAR, "clear"),
+        (HOME, "home"),
+        (SNAPSHOT, "snapshot"),
+    ] {
         a.load(ADDRESS);
         a.xor_number(WRITE | register);
         a.jump_if(Zero, label);
@@ -198,11 +209,18 @@ fn execute(a: &mut Assembler) {
     a.acts(CONTROL | KICK);
     a.jump("done");
 
+    a.label("snapshot");
+    // The engine takes the snapshot in one of the next ticks, whose live words are not output; the
+    // wait of the answer lasts longer.
+    a.acts(CONTROL | BROKEN);
+    a.jump("done");
+
     a.label("clear");
-    // The clear stays asserted during both waits, for more than two ticks.
     a.load(CONTROLS);
     a.acts(CONTROL | CLEARING);
-    wait_for_all(a);
+    for _ in 0..CLEAR_WAITS {
+        a.acts(WAIT);
+    }
     a.acts(CONTROL);
     a.jump("done");
 
@@ -215,8 +233,8 @@ fn execute(a: &mut Assembler) {
 
     a.label("segment");
     a.jump_if(Fault, "done");
-    // The first wait may end with the scan before the axis of A has reported; the room would then
-    // be another axis'. An axis that does not exist never reports.
+    // The first wait may end with `refreshed` before the axis of A has reported; the room would
+    // then be another axis'. An axis that does not exist never reports.
     a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
     // If a fault has come since, this item can have the highest bit of its cause. The segment is
@@ -266,22 +284,24 @@ fn answer(a: &mut Assembler) {
     // its axis.
     a.load(ADDRESS);
     a.acts(TAX);
-    a.jump_unless(X7, "place");
-    a.xor_number((WRITE | SEGMENT) ^ POSITION);
-    a.jump_if(X6, "of its axis");
+    a.load(FLAGS);
+    a.jump_if(Zero, "place");
     a.load_number(POSITION);
+    a.jump_unless(X6, "of its axis");
+    a.load(ADDRESS);
+    a.xor_number((WRITE | SEGMENT) ^ POSITION);
     a.label("of its axis");
     a.acts(TAX);
     a.label("place");
     a.load_from(ValueSource::Engine, STATE);
     a.store(ANSWER + 3);
-    // The state byte is sampled before this wait, and every fact is read again during it. The
-    // position of an axis that the state reports at rest is therefore its final one. The axis of A
-    // has also reported its room.
+    // The state byte is sampled before this wait, and every live word is stored again during it.
+    // The position of an axis that the state reports at rest is therefore its final one. The axis
+    // of A has also reported its room.
     a.load_x();
     wait_for_all(a);
     a.load_from(ValueSource::Engine, ROOM);
-    a.xor(REFUSED);
+    a.xor(FLAGS);
     a.store(ANSWER + 4);
     a.load_from(ValueSource::Engine, CULPRITS);
     a.store(ANSWER + 5);
@@ -343,8 +363,7 @@ fn send(a: &mut Assembler) {
     a.jump("begin");
 }
 
-const _: () =
-    assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
+const _: () = assert!(SEGMENT == 0x40, "bit 6 of a write's address says that it is a segment");
 const _: () = assert!(
     WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40,
     "bit 6 of X says that a segment's words are over"

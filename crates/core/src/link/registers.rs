@@ -2,12 +2,18 @@
 //! docs/registers.md are generated from this table: run `cargo xtask generate` after a change.
 //!
 //! ```text
-//! 0x00 .. 0x1f   facts of the build, read only; the identity comes first in every version
-//! 0x20 .. 0x3f   commands of the host
-//! 0x40 .. 0x7f   eight words for each axis: 0x40 + 8 axis + word
+//! reads     0x00 .. 0x17   facts of the build; the identity comes first in every version
+//!           0x18 .. 0xff   the state of the axes: page 2 | item 3 | axis 3 (engine/state.rs)
+//! writes    0xa0 .. 0xbf   commands of the host, one word each
+//!           0xc0 .. 0xc7   segments: 0xc0 + axis, eight words
 //! ```
+//!
+//! A request without words reads, a request with words writes, so that the same address can be a
+//! register of either kind.
 
-use crate::engine::{MAX_AXES, QUEUE};
+use crate::engine::StateItem::{Discarded, Left, PHigh, PLow, Position, Status, Ticks};
+use crate::engine::StatePage::{Limit, Live, Snapshot};
+use crate::engine::{MAX_AXES, QUEUE, state_address};
 use strum::Display;
 
 /// Access to a register. It is displayed as in the documentation.
@@ -28,7 +34,7 @@ pub enum RegisterAccess {
 pub struct MappedRegister {
     /// Name of the register; the name of its constant in Rust and C.
     pub name: &'static str,
-    /// Address. For a register of an axis, the address for axis 0; each further axis adds eight.
+    /// Address. For a register of an axis, the address for axis 0; each further axis adds one.
     pub address: u8,
     /// Access.
     pub access: RegisterAccess,
@@ -40,56 +46,90 @@ pub struct MappedRegister {
 
 /// Declares each register once: a constant with its address, and its row of the map.
 macro_rules! registers {
-    ($($name:ident = $address:literal $access:ident $what:literal;)*) => {
+    ($($name:ident = $address:expr, $access:ident $per_axis:literal $what:literal;)*) => {
         $(#[doc = $what] pub const $name: u8 = $address;)*
 
-        /// The register map, in the order of addresses.
+        /// The register map: what is read, then what is written, in the order of addresses.
         pub const REGISTERS: &[MappedRegister] = &[$(MappedRegister {
             name: stringify!($name),
             address: $address,
             access: RegisterAccess::$access,
-            per_axis: $address >= AXES_AT,
+            per_axis: $per_axis,
             what: $what,
         }),*];
     };
 }
 
 registers! {
-    IDENTITY     = 0x00 Read "The bytes of \"CSTP\", low byte first, which identify carrystep";
-    PROTOCOL     = 0x01 Read "Version of the protocol";
-    BUILD_LOW    = 0x02 Read
+    IDENTITY     = 0x00, Read false
+        "The bytes of \"CSTP\", low byte first, which identify carrystep";
+    PROTOCOL     = 0x01, Read false "Version of the protocol";
+    BUILD_LOW    = 0x02, Read false
         "Build id, low half: a hash of register map and build parameters, for hosts to compare";
-    BUILD_HIGH   = 0x03 Read "Build id, high half";
-    AXIS_COUNT   = 0x04 Read "Number of axes";
-    CLOCK_HZ     = 0x05 Read "Frequency of the clock in Hz";
-    TICK_NS      = 0x06 Read "Length of a tick in ns";
-    PHASES       = 0x07 Read "Number of phases in a tick";
-    WATCHDOG_TICKS = 0x08 Read
+    BUILD_HIGH   = 0x03, Read false "Build id, high half";
+    AXIS_COUNT   = 0x04, Read false "Number of axes";
+    CLOCK_HZ     = 0x05, Read false "Frequency of the clock in Hz";
+    TICK_NS      = 0x06, Read false "Length of a tick in ns";
+    PHASES       = 0x07, Read false "Number of phases in a tick";
+    WATCHDOG_TICKS = 0x08, Read false
         "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
-    CONTROL      = 0x20 Write "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
-    START        = 0x21 Write
+    LIMIT_TICKS  = state_address(Limit, Ticks), Read true
+        "TICKS of the other words at the limit";
+    LIMIT_P_LOW  = state_address(Limit, PLow), Read true
+        "P in the tick after the one in which homing found the limit, low half";
+    LIMIT_P_HIGH = state_address(Limit, PHigh), Read true "P at the limit, high half";
+    LIMIT_POSITION = state_address(Limit, Position), Read true "Position at the limit in steps";
+    LIMIT_STATUS = state_address(Limit, Status), Read true "STATUS at the limit";
+    DISCARDED    = state_address(Live, Discarded), Read true
+        "Number of steps that freezes have discarded since configuration";
+    LEFT         = state_address(Live, Left), Read true
+        "Ticks of the running segment after the next one; no meaning while the axis does not run";
+    TICKS        = state_address(Live, Ticks), Read true
+        "Number of ticks since configuration, modulo 2^32; the same for all axes";
+    P_LOW        = state_address(Live, PLow), Read true
+        "P, the fraction of a step in units of 2^-64 step, low half";
+    P_HIGH       = state_address(Live, PHigh), Read true "P, high half";
+    POSITION     = state_address(Live, Position), Read true
+        "Position: steps forward minus steps backward, two's complement";
+    STATUS       = state_address(Live, Status), Read true
+        "Bits 4..0: slot of the running segment; 5: runs; 10..6: segments that wait; 15..12: steps \
+         on their way, two's complement; the other bits have no meaning";
+    SNAPSHOT_DISCARDED = state_address(Snapshot, Discarded), Read true
+        "DISCARDED in the tick of the snapshot; no meaning if the axis ran";
+    SNAPSHOT_LEFT = state_address(Snapshot, Left), Read true
+        "LEFT in the tick of the snapshot; no meaning if the axis did not run";
+    SNAPSHOT_TICKS = state_address(Snapshot, Ticks), Read true
+        "TICKS of the snapshot; the same for all axes";
+    SNAPSHOT_P_LOW = state_address(Snapshot, PLow), Read true "P in that tick, low half";
+    SNAPSHOT_P_HIGH = state_address(Snapshot, PHigh), Read true "P in that tick, high half";
+    SNAPSHOT_POSITION = state_address(Snapshot, Position), Read true "POSITION in that tick";
+    SNAPSHOT_STATUS = state_address(Snapshot, Status), Read true "STATUS in that tick";
+    CONTROL      = 0x20, Write false
+        "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
+    START        = 0x21, Write false
         "Axes, one bit each, to start together once all rest; an empty queue: fault (protocol)";
-    CLEAR        = 0x22 Write
+    CLEAR        = 0x22, Write false
         "Any value ends a complete stop: queues empty, P at its start value, position kept";
-    HOME         = 0x23 Write
-        "Axes, one bit each: the next limit latches the position and ramps down this axis only";
-    P_LOW        = 0x40 Read "P, the fraction of a step in units of 2^-64 step, low half";
-    P_HIGH       = 0x41 Read "P, high half";
-    POSITION     = 0x42 Read "Position: steps forward minus steps backward, two's complement";
-    DISCARDED    = 0x43 Read "Number of steps that freezes have discarded since configuration";
-    LATCHED      = 0x44 Read "Position in steps at which the limit was reached in homing";
-    SEGMENT      = 0x40 WriteSegment
+    HOME         = 0x23, Write false
+        "Axes, one bit each: the next limit latches the state and ramps down this axis only";
+    SNAPSHOT     = 0x24, Write false
+        "Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick";
+    SEGMENT      = 0x40, WriteSegment true
         "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \
          its move, else 0";
 }
 
 super::constants! {
     IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "Value of the register IDENTITY.";
-    PROTOCOL_VERSION: u32 = 1, "Version of the protocol to which this register map belongs.";
+    PROTOCOL_VERSION: u32 = 2, "Version of the protocol to which this register map belongs.";
     CONTROL_ENABLE: u32 = 1 << 0, "Bit of CONTROL: power the drivers.";
     CONTROL_STOP: u32 = 1 << 1, "Bit of CONTROL: stop all axes.";
-    AXES_AT: u8 = 0x40, "First address of the axes' registers.";
-    PER_AXIS: u8 = 8, "Number of addresses of each axis.";
+    AXES_AT: u8 = LIMIT_TICKS, "Lowest address at which a register of an axis is read.";
+    STATUS_SLOT: u32 = 0x1f, "Bits of STATUS: the slot of the running segment.";
+    STATUS_RUNS: u32 = 1 << 5, "Bit of STATUS: the axis runs a segment.";
+    STATUS_WAITING: u32 = 0x1f << 6, "Bits of STATUS: the number of segments that wait.";
+    STATUS_ON_WAY: u32 = 0xf << 12,
+        "Bits of STATUS: the number of steps on their way, two's complement.";
     MOST_AXES: u8 = MAX_AXES as u8, "Greatest number of axes of a build.";
     QUEUE_SEGMENTS: u8 = QUEUE as u8,
         "Number of segments that can wait for an axis, in addition to the one that runs.";
@@ -99,15 +139,16 @@ super::constants! {
 ///
 /// ```
 /// use carrystep_core::link::registers::{POSITION, of_axis};
-/// assert_eq!(of_axis(POSITION, 3), 0x5a);
+/// assert_eq!(of_axis(POSITION, 3), 0x73);
 /// ```
 pub const fn of_axis(register: u8, axis: u8) -> u8 {
-    register + PER_AXIS * axis
+    register + axis
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::AxisStatus;
 
     #[test]
     fn addresses_are_unique_per_access() {
@@ -125,9 +166,29 @@ mod tests {
     }
 
     #[test]
-    fn registers_of_all_axes_have_addresses() {
-        let last = REGISTERS.iter().map(|register| register.address).max().unwrap();
-        assert!(last < AXES_AT + PER_AXIS);
-        assert!(of_axis(last, MAX_AXES as u8 - 1) < super::super::WRITE);
+    fn bits_of_status_are_those_of_the_engine() {
+        let status = AxisStatus { slot: 31, ..AxisStatus::default() };
+        assert_eq!(status.word(), STATUS_SLOT);
+        let status = AxisStatus { running: true, ..AxisStatus::default() };
+        assert_eq!(status.word(), STATUS_RUNS);
+        let status = AxisStatus { waiting: 31, ..AxisStatus::default() };
+        assert_eq!(status.word(), STATUS_WAITING);
+        let status = AxisStatus { on_way: -1, ..AxisStatus::default() };
+        assert_eq!(status.word(), STATUS_ON_WAY);
+    }
+
+    #[test]
+    fn registers_of_all_axes_have_addresses_of_their_own() {
+        let reads = REGISTERS.iter().filter(|register| register.access == RegisterAccess::Read);
+        let mut addresses: alloc::vec::Vec<u8> = reads
+            .flat_map(|register| {
+                let axes = if register.per_axis { MAX_AXES as u8 } else { 1 };
+                (0..axes).map(|axis| of_axis(register.address, axis))
+            })
+            .collect();
+        let count = addresses.len();
+        addresses.sort_unstable();
+        addresses.dedup();
+        assert_eq!(addresses.len(), count);
     }
 }

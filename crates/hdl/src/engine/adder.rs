@@ -9,6 +9,7 @@
 //!           '-------------+        6     ticks - 1          12     bisection: P + V / 2
 //!   memory -----> B ------'        7     position           13-15  bisection: +- V / 4, / 8, / 16
 //!                 '-> B / 2        8     (a host's word)           of the slot before
+//!                                                         16     the number of the tick + 1, once
 //! ```
 //!
 //! The 64-bit sums are computed as two halves. The carries of the three low halves wait in
@@ -28,10 +29,10 @@
 use super::layout::{
     BEAT_BISECT_1, BEAT_BISECT_2, BEAT_BISECT_3, BEAT_LOAD_A_HIGH, BEAT_LOAD_A_LOW,
     BEAT_LOAD_J_HIGH, BEAT_LOAD_J_LOW, BEAT_LOAD_P_HIGH, BEAT_LOAD_P_LOW, BEAT_LOAD_POSITION,
-    BEAT_LOAD_TICKS, BEAT_LOAD_V_HIGH, BEAT_LOAD_V_LOW, BEAT_PHASE, BEAT_PUT, BEAT_SUM_P_HIGH,
-    BEAT_SUM_P_LOW, BEAT_SUM_PUT, BEAT_SUM_TICKS, BEAT_WRITE_A_LOW, BEAT_WRITE_P_LOW,
-    BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW, WIDE_SUM, WIDE_TOP, WORD_LOWEST,
-    WORD_SIGN,
+    BEAT_LOAD_TICK, BEAT_LOAD_TICK_STEP, BEAT_LOAD_TICKS, BEAT_LOAD_V_HIGH, BEAT_LOAD_V_LOW,
+    BEAT_OVER_LOAD_TICK_STEP, BEAT_PHASE, BEAT_PUT, BEAT_SUM_P_HIGH, BEAT_SUM_P_LOW, BEAT_SUM_PUT,
+    BEAT_SUM_TICKS, BEAT_WRITE_A_LOW, BEAT_WRITE_P_LOW, BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH,
+    BEAT_WRITE_V_LOW, WIDE_SUM, WIDE_TOP, WORD_LOWEST, WORD_SIGN,
 };
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
@@ -107,6 +108,7 @@ pub struct Adder {
     half: Signal<Local, Word<32>>,
     ones_in: Signal<Local, Bit>,
     counting: Signal<Local, Bit>,
+    adds_tick: Signal<Local, Bit>, // in the next clock the sum is the number of the tick + 1
     load: Signal<Local, Bit>,
     halve: Signal<Local, Bit>,
     halves_on: Signal<Local, Bit>,
@@ -157,6 +159,7 @@ impl Logic for Adder {
             | self.beat.val().get_bit(BEAT_LOAD_POSITION)
             | self.beat.val().get_bit(BEAT_LOAD_A_HIGH)
             | self.beat.val().get_bit(BEAT_LOAD_P_HIGH)
+            | self.beat.val().get_bit(BEAT_LOAD_TICK)
         {
             self.a.d.next = self.word.val();
         }
@@ -166,8 +169,11 @@ impl Logic for Adder {
 
         // Operand B is loaded from memory, set to -1 or 0 for counting, or halved for the
         // bisection.
-        self.counting.next =
-            self.beat.val().get_bit(BEAT_LOAD_TICKS) | self.beat.val().get_bit(BEAT_LOAD_POSITION);
+        self.adds_tick.next = self.beat.val().get_bit(BEAT_LOAD_TICK_STEP)
+            & !self.beat.val().get_bit(BEAT_OVER_LOAD_TICK_STEP);
+        self.counting.next = self.beat.val().get_bit(BEAT_LOAD_TICKS)
+            | self.beat.val().get_bit(BEAT_LOAD_POSITION)
+            | self.adds_tick.val();
         self.ones_in.next = (self.beat.val().get_bit(BEAT_LOAD_TICKS) & self.counts.val())
             | (self.beat.val().get_bit(BEAT_LOAD_POSITION) & !self.up.val());
         self.load.next = self.beat.val().get_bit(BEAT_LOAD_J_LOW)
@@ -205,7 +211,8 @@ impl Logic for Adder {
         }
 
         // The sum. A carry enters as 1 + 1 in an additional bit below the lowest.
-        self.carry_due.next = (self.beat.val().get_bit(BEAT_LOAD_TICKS) & self.lost.val())
+        self.carry_due.next = self.adds_tick.val()
+            | (self.beat.val().get_bit(BEAT_LOAD_TICKS) & self.lost.val())
             | (self.beat.val().get_bit(BEAT_LOAD_POSITION) & !self.down.val())
             | ((self.beat.val().get_bit(BEAT_LOAD_A_HIGH)
                 | self.beat.val().get_bit(BEAT_LOAD_V_HIGH)

@@ -46,13 +46,15 @@ pub struct HomingControl<const N: usize> {
     pub waits: Signal<Out, Bit>,
     /// The axis of the slot has reached its limit in an earlier tick and ramps down.
     pub slows: Signal<Out, Bit>,
+    /// In the last beat of a slot: its axis has waited for its limit and has reached it.
+    pub caught: Signal<Out, Bit>,
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,
     mine: Signal<Local, Bit>,
     axis_one_hot_next: Signal<Local, Word<N>>,
     // Registered, because the whole ramp depends on it from the first beat of the slot.
     mine_slows: Register<Bit>,
-    caught: Signal<Local, Bit>,
+    found: Signal<Local, Bit>, // `caught`
     slower: Signal<Local, Word<N>>,
     none: Literal<N, 0>,
     by_one: Literal<1, 1>,
@@ -77,9 +79,9 @@ impl<const N: usize> Logic for HomingControl<N> {
                 | (self.axis_one_hot.val() >> self.to_top.val());
         }
         self.mine_slows.d.next = (self.slowing.q.val() & self.axis_one_hot_next.val()).any();
-        self.caught.next = self.hit.val() & self.mine.val();
+        self.found.next = self.hit.val() & self.mine.val();
 
-        if self.caught.val() {
+        if self.found.val() {
             self.waiting.d.next = self.waiting.q.val() & !self.axis_one_hot.val();
         }
         if self.set.val() {
@@ -90,7 +92,7 @@ impl<const N: usize> Logic for HomingControl<N> {
         }
         // The ramp of an axis is over when the axis does not run in the next tick.
         self.slower.next = self.none.val();
-        if self.caught.val() {
+        if self.found.val() {
             self.slower.next = self.axis_one_hot.val();
         }
         if self.time_slot_ends.val() {
@@ -104,6 +106,7 @@ impl<const N: usize> Logic for HomingControl<N> {
         self.axes.next = self.waiting.q.val();
         self.waits.next = self.mine.val();
         self.slows.next = self.mine_slows.q.val();
+        self.caught.next = self.found.val();
     }
 }
 

@@ -3,16 +3,19 @@
 //!
 //! ```text
 //! beat        0    1    2    3    4    5    6    7    8    9    10   11   12   13-15   16
-//! READ        A    J    V    P    n    pos  J'   A'   V'   P'   get
-//! LOAD             A    J    V    P    n    pos  J'   A'   V'   P'
-//! SUM                        A    V    P    n    pos  put  A'   V'   P'   bisection    phase
+//! READ        A    J    V    P    n    pos  J'   A'   V'   P'   tick      tick
+//! LOAD             A    J    V    P    n    pos  J'   A'   V'   P'             tick
+//! SUM                        A    V    P    n    pos  put  A'   V'   P'   bisection    phase, tick
 //! WRITE                           A    V    P    n    pos  put  A'   V'   P'
+//! STATE                           P    n    pos                 P'   tick stat
 //!             ': high halves      n: remaining ticks, or at rest the discarded steps
 //! ```
 //!
 //! A word is read in its `READ` beat and is loaded into an operand of the adder in the next one.
-//! The sum that replaces it is computed in its `SUM` beat and written in the next one. A beat that
-//! has a role of another kind has another name too.
+//! The sum that replaces it is computed in its `SUM` beat and written in the next one. In its
+//! `STATE` beat a word is output to the host. A beat that has a role of another kind has another
+//! name too. The number of the tick is added to only in the tail of the last time slot, which no
+//! other time slot overlaps.
 //!
 //! Kernels name these constants as indices of bits: `beat.val().get_bit(BEAT_READ_V_LOW)`. Rust-HDL
 //! passes such a name on as text. [`index`] gives its value, so that the Verilog contains the
@@ -55,8 +58,10 @@ indices! {
     BEAT_READ_V_HIGH = 8;
     /// P is read, high half.
     BEAT_READ_P_HIGH = 9;
-    /// The word that the host asks for is read.
-    BEAT_READ_GET = 10;
+    /// The number of the tick is read, for the host.
+    BEAT_READ_TICK = 10;
+    /// The number of the tick is read, for the adder.
+    BEAT_READ_TICK_AGAIN = 12;
 
     /// A is loaded into operand A, low half.
     BEAT_LOAD_A_LOW = BEAT_READ_A_LOW + 1;
@@ -78,6 +83,12 @@ indices! {
     BEAT_LOAD_V_HIGH = BEAT_READ_V_HIGH + 1;
     /// P is loaded into operand A, high half.
     BEAT_LOAD_P_HIGH = BEAT_READ_P_HIGH + 1;
+    /// The number of the tick is loaded into operand A.
+    BEAT_LOAD_TICK = BEAT_READ_TICK_AGAIN + 1;
+    /// In the tail of the last time slot: 0 is loaded into operand B.
+    BEAT_LOAD_TICK_STEP = 15;
+    /// The beat of the next time slot that overlaps [`BEAT_LOAD_TICK_STEP`], if there is one.
+    BEAT_OVER_LOAD_TICK_STEP = BEAT_LOAD_TICK_STEP - TIME_SLOT_CLOCKS as usize;
 
     /// The sum is P + V, low half.
     BEAT_SUM_P_LOW = 5;
@@ -95,6 +106,10 @@ indices! {
     BEAT_BISECT_3 = 14;
     /// The last bit of the phase is found; the phase is valid from the next clock on.
     BEAT_PHASE = 16;
+    /// In the tail of the last time slot: the sum is the number of the tick + 1.
+    BEAT_SUM_TICK = BEAT_LOAD_TICK_STEP + 1;
+    /// The beat of the next time slot that overlaps [`BEAT_SUM_TICK`], if there is one.
+    BEAT_OVER_SUM_TICK = BEAT_SUM_TICK - TIME_SLOT_CLOCKS as usize;
 
     /// A + J is written, low half.
     BEAT_WRITE_A_LOW = 4;
@@ -117,12 +132,21 @@ indices! {
 
     /// The queue compares the counts of the pulser with those in memory.
     BEAT_COMPARE = 4;
-    /// The position of the axis is on `get_data`, for an axis that homes.
-    BEAT_LATCH = BEAT_READ_POSITION + 1;
     /// A word of the host for this axis is accepted.
     BEAT_PUT = PUT_BEAT as usize;
-    /// The word that the host asked for is on `get_data`.
-    BEAT_GOT = BEAT_READ_GET + 1;
+
+    /// P is output, low half.
+    BEAT_STATE_P_LOW = BEAT_READ_P_LOW + 1;
+    /// The remaining ticks are output, or at rest the discarded steps.
+    BEAT_STATE_LEFT = BEAT_READ_TICKS + 1;
+    /// The position is output.
+    BEAT_STATE_POSITION = BEAT_READ_POSITION + 1;
+    /// P is output, high half.
+    BEAT_STATE_P_HIGH = BEAT_READ_P_HIGH + 1;
+    /// The number of the tick is output.
+    BEAT_STATE_TICK = BEAT_READ_TICK + 1;
+    /// The status is output.
+    BEAT_STATE_STATUS = 12;
 
     /// Sign of a high half.
     WORD_SIGN = 31;
@@ -151,6 +175,10 @@ indices! {
     CONTROL_KNOWN = 15;
     /// The number of the word that the host must put next, 3 bits.
     CONTROL_DUE = 16;
+    /// The limit of the axis, which waited for it, was found in the tick before.
+    CONTROL_MET = 19;
+    /// Carries less counted steps, modulo 16, 4 bits.
+    CONTROL_ON_WAY = 20;
     /// Sign of the difference between the pulser's count and the control word's.
     MISSING_SIGN = 2;
 
@@ -210,6 +238,10 @@ pub const SLOT_DOWN_HIGH: u64 = 5;
 pub const SLOT_UP_LOW: u64 = 6;
 /// Slot of [`WORD_STATE`]: s, high half.
 pub const SLOT_UP_HIGH: u64 = 7;
+
+/// Address of the number of the tick. With up to seven axes the memory has 512 words, and the lower
+/// nine bits are an address of the axis 7, which does not exist.
+pub const TICK_ADDRESS: u64 = 0x3ff;
 
 /// Address of a word of the state of an axis.
 pub const fn state_address(axis: usize, slot: u64) -> usize {

@@ -1,4 +1,4 @@
-// Proves promises 5, 6, 8, 12, 13 and 14 on the ports of the engine, and what the proofs of its
+// Proves promises 5, 6, 8, 12, 13, 14 and 15 on the ports of the engine, and what the proofs of its
 // modules assume, without a bound on time.
 //
 //   parameters   AXES: number of axes
@@ -27,17 +27,17 @@ module promises (
     input wire estop,
     input wire [`AXES-1:0] limit_min,
     input wire [`AXES-1:0] limit_max,
-    input wire [2:0] get_axis,
-    input wire [1:0] get_item
+    input wire snapshot
 );
     localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * `AXES;
     localparam [3:0] `CAUSES;
     (* anyconst *) reg [2:0] who;
 
-    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
-    wire [31:0] get_data;
+    wire put_ready, start_ready, state_valid, refreshed, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
+    wire [31:0] state;
+    wire [1:0] state_page;
     wire [`AXES-1:0] step, dir, culprits, homing;
-    wire [2:0] latch_axis, room;
+    wire [2:0] state_axis, state_item, room;
     wire [3:0] cause;
     `DUT dut (.*);
 
@@ -93,6 +93,7 @@ module promises (
 
     // ---- Values of the clock before.
 
+    reg found_before = 0;            // in the tick before an axis found the limit for which it waited
     reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
@@ -106,6 +107,7 @@ module promises (
         {was_strobe, was_start, was_armed, was_started} <= {strobe, start, armed, started};
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_tick_0, was_tick_1} <= {tick_0, tick_1};
+        found_before <= strobe ? found_now : found_before;
         if (start) asked <= (start_mask >> who) & 1;
         was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
         was_cleared <= strobe & clearing;
@@ -148,6 +150,12 @@ module promises (
         promise_14_nothing_moves_unasked: assert (!armed || was_armed || was_start);
     end
 
+    always_comb begin
+        promise_15_words_of_the_axis_of_the_time_slot: assert (!state_valid || state_axis == axis && beat[12:0] != 0);
+        promise_15_a_snapshot_is_of_all_axes: assert (!(mine && takes && word_read[19]));
+        promise_15_a_tick_is_live_or_a_snapshot: assert (!state_valid || state_page != 0 || word_read[19]);
+    end
+
     // ---- What the proofs of the modules assume about the engine.
 
     always_comb begin
@@ -161,6 +169,7 @@ module promises (
         assumed_by_limits: assert ((!tick_0 || !tick_1)
             && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
         assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);
+        assumed_by_readout: assert (!(mine && word_read[19]) || found_before);
     end
 
     // ---- The invariants that make the promises inductive. They are about the beats, about the
@@ -176,9 +185,9 @@ module promises (
     wire in_time_slot = turning & at < ALL_TIME_SLOTS;
     wire had_time_slot = turning & at >= TIME_SLOT_CLOCKS * ({5'd0, who} + 1);
 
-    wire [18:0] word;
-    memory_probe #("\\dut.queue.control.words", 3, 19) at_control (1'b0, 1'b1, who, word);
-    (* inside = "dut.queue.word" *) wire [18:0] word_read;
+    wire [23:0] word;
+    memory_probe #("\\dut.queue.control.words", 3, 24) at_control (1'b0, 1'b1, who, word);
+    (* inside = "dut.queue.word" *) wire [23:0] word_read;
     (* inside = "dut.queue.took" *) wire took;
     wire committed = took && word_read[18:16] == 7;
     (* inside = "dut.event_wheel.tick.sub" *) wire [15:0] sub;
@@ -197,6 +206,8 @@ module promises (
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
     (* inside = "dut.homing_control.slowing" *) wire [`AXES-1:0] slowing;
     (* inside = "dut.supervisor.round" *) wire [9:0] round;
+    (* inside = "dut.readout.takes" *) wire takes;
+    (* inside = "dut.readout.found" *) wire found_now;
     wire quiet = !word[6] & word[5:3] == word[2:0];
     // The engine rotates the mask with the time slots: bit `round_by` of it belongs to `who` now.
     wire [3:0] round_by = who >= axis ? who - axis : who + `AXES - axis;
@@ -232,7 +243,10 @@ module promises (
             && !(stage_1 && stage_2));
         invariant_24: assert (!(stage_2 && had_time_slot) || quiet);
         invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
-        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
+        invariant_28: assert (!mine || beat[0] || full == (word[5:3] + 3'd1 == word[2:0] + {2'd0, starts}));
+        invariant_26: assert (!(takes && found_before));
+        invariant_27: assert (!word[19] || (had_time_slot ? found_now : found_before));
+        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, word[19]} && quiet);
     end
 `endif
 
@@ -242,6 +256,7 @@ module promises (
         cover_6_started: cover (started);
         cover_14_enabled: cover (enabled && idle);
         cover_13_reset: cover (stage_2 && completes);
+        cover_15_snapshot: cover (takes && refreshed == 0 && beat[12]);
         cover_12_protocol: cover (fault && was_fault && cause == PROTOCOL);
     end
 endmodule

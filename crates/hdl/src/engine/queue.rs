@@ -16,19 +16,23 @@
 //! ```text
 //! bits     0-2    3-5      6         7       8-10             11-13             14     15      16-18
 //! field    live   newest   running   unfit   position mod 8   discarded mod 8   back   known   due
+//! bits     19     20-23
+//! field    met    on_way
 //! ```
 //!
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
 //! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
-//! the host must put next: the words of a segment come in order, and word 7 commits it.
+//! the host must put next: the words of a segment come in order, and word 7 commits it. `met` means
+//! that the axis found its limit in the tick before, while it waited for it. `on_way` is the number
+//! of carries since the last clear less the steps that the position has counted since then.
 //!
-//! Cost: a memory of 8 words of 19 bits for the control words and one of 64 bits for the marks of
+//! Cost: a memory of 8 words of 24 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
 use super::layout::{
     BEAT_COMPARE, BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_DISCARDED, CONTROL_DUE,
-    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_NEWEST, CONTROL_POSITION, CONTROL_RUNNING, CONTROL_UNFIT,
-    MISSING_SIGN,
+    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_MET, CONTROL_NEWEST, CONTROL_ON_WAY, CONTROL_POSITION,
+    CONTROL_RUNNING, CONTROL_UNFIT, MISSING_SIGN,
 };
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
@@ -73,6 +77,10 @@ pub struct Queue {
     pub turned: Input<Bit>,
     /// V < 0.
     pub back: Input<Bit>,
+    /// In beat 12: P + V crosses a step, if the axis moves.
+    pub crosses: Input<Bit>,
+    /// In beat 12: the axis, which waits for its limit, has found it.
+    pub caught: Input<Bit>,
     /// The low bits of the position, from the pulser.
     pub pulses: Input<Word<3>>,
     /// The low bits of the discarded steps, from the pulser.
@@ -83,7 +91,7 @@ pub struct Queue {
     pub fresh: Signal<Out, Word<3>>,
     /// Fault: the word accepted in the clock before was not the one that was due.
     pub misplaced: Signal<Out, Bit>,
-    /// No slot is free for the host.
+    /// From beat 1: no slot is free for the host.
     pub full: Signal<Out, Bit>,
     /// The number of segments for which the queue has space, 0 to 7.
     pub room: Signal<Out, Word<3>>,
@@ -113,9 +121,13 @@ pub struct Queue {
     pub down: Signal<Out, Bit>,
     /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     pub lost: Signal<Out, Bit>,
-    control: Memory<3, 19>,
+    /// The axis found its limit in the tick before, while it waited for it.
+    pub met: Signal<Out, Bit>,
+    /// Carries since the last clear less counted steps, modulo 16.
+    pub on_way: Signal<Out, Word<4>>,
+    control: Memory<3, 24>,
     lasts: Memory<6, 1>,
-    word: Signal<Local, Word<19>>,
+    word: Signal<Local, Word<24>>,
     old_live: Signal<Local, Word<3>>,
     live_now: Signal<Local, Word<3>>,
     newest: Signal<Local, Word<3>>,
@@ -130,6 +142,7 @@ pub struct Queue {
     stays: Signal<Local, Bit>,
     due: Signal<Local, Word<3>>,
     fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
+    filled: Register<Bit>,       // `full`, a clock later, so that no long path begins at the memory
     took: Register<Bit>,         // the word that is due was accepted in this time slot
     wrong: Register<Bit>,        // `misplaced`
     missing: Signal<Local, Word<3>>,
@@ -139,22 +152,33 @@ pub struct Queue {
     gone: Register<Bit>,     // `lost`
     next_live: Signal<Local, Word<3>>,
     next_newest: Signal<Local, Word<3>>,
-    next_running: Signal<Local, Word<19>>,
-    next_unfit: Signal<Local, Word<19>>,
-    next_known: Signal<Local, Word<19>>,
-    next_back: Signal<Local, Word<19>>,
+    next_running: Signal<Local, Word<24>>,
+    next_unfit: Signal<Local, Word<24>>,
+    next_known: Signal<Local, Word<24>>,
+    next_back: Signal<Local, Word<24>>,
     next_due: Signal<Local, Word<3>>,
     next_seen: Signal<Local, Word<3>>,
     next_lost: Signal<Local, Word<3>>,
+    next_met: Signal<Local, Word<24>>,
+    ahead: Signal<Local, Bit>,  // the tick contains a step forward
+    behind: Signal<Local, Bit>, // the tick contains a step backward
+    gain: Signal<Local, Word<4>>,
+    next_on_way: Signal<Local, Word<4>>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
-    no: Literal<19, 0>,
-    running_bit: Literal<19, { 1 << CONTROL_RUNNING }>,
-    unfit_bit: Literal<19, { 1 << CONTROL_UNFIT }>,
-    back_bit: Literal<19, { 1 << CONTROL_BACK }>,
-    known_bit: Literal<19, { 1 << CONTROL_KNOWN }>,
-    all: Literal<19, 0x7_ffff>,
+    no: Literal<24, 0>,
+    running_bit: Literal<24, { 1 << CONTROL_RUNNING }>,
+    unfit_bit: Literal<24, { 1 << CONTROL_UNFIT }>,
+    back_bit: Literal<24, { 1 << CONTROL_BACK }>,
+    known_bit: Literal<24, { 1 << CONTROL_KNOWN }>,
+    all: Literal<24, 0xff_ffff>,
+    met_bit: Literal<24, { 1 << CONTROL_MET }>,
+    none_on_way: Literal<4, 0>,
+    one_more: Literal<4, 1>,
+    two_more: Literal<4, 2>,
+    one_less: Literal<4, 15>,
+    two_less: Literal<4, 14>,
     commit: Literal<3, 7>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
@@ -162,12 +186,13 @@ pub struct Queue {
     at_8: Literal<4, 8>,
     at_11: Literal<4, 11>,
     at_16: Literal<5, 16>,
+    at_20: Literal<5, 20>,
 }
 
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, took, wrong, forward, backward, gone);
+        dff_setup!(self, clock, filled, took, wrong, forward, backward, gone);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot.
@@ -292,17 +317,54 @@ impl Logic for Queue {
         if self.gone.q.val() {
             self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
         }
+        self.next_met.next = self.no.val();
+        if self.caught.val() {
+            self.next_met.next = self.met_bit.val();
+        }
+        self.ahead.next = self.moves.val() & self.crosses.val() & !self.back.val();
+        self.behind.next = self.moves.val() & self.crosses.val() & self.back.val();
+        self.gain.next = self.none_on_way.val();
+        if self.forward.q.val() {
+            self.gain.next = self.one_less.val();
+        }
+        if self.backward.q.val() {
+            self.gain.next = self.one_more.val();
+        }
+        if self.ahead.val() {
+            self.gain.next = self.one_more.val();
+            if self.forward.q.val() {
+                self.gain.next = self.none_on_way.val();
+            }
+            if self.backward.q.val() {
+                self.gain.next = self.two_more.val();
+            }
+        }
+        if self.behind.val() {
+            self.gain.next = self.one_less.val();
+            if self.forward.q.val() {
+                self.gain.next = self.two_less.val();
+            }
+            if self.backward.q.val() {
+                self.gain.next = self.none_on_way.val();
+            }
+        }
+        self.next_on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY) + self.gain.val();
+        if self.clear.val() {
+            self.next_on_way.next = self.none_on_way.val();
+        }
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
-        self.control.write_data.next = bit_cast::<19, 3>(self.next_live.val())
-            | (bit_cast::<19, 3>(self.next_newest.val()) << self.at_3.val())
+        self.control.write_data.next = bit_cast::<24, 3>(self.next_live.val())
+            | (bit_cast::<24, 3>(self.next_newest.val()) << self.at_3.val())
             | self.next_running.val()
             | self.next_unfit.val()
             | self.next_known.val()
             | self.next_back.val()
-            | (bit_cast::<19, 3>(self.next_seen.val()) << self.at_8.val())
-            | (bit_cast::<19, 3>(self.next_lost.val()) << self.at_11.val())
-            | (bit_cast::<19, 3>(self.next_due.val()) << self.at_16.val());
+            | (bit_cast::<24, 3>(self.next_seen.val()) << self.at_8.val())
+            | (bit_cast::<24, 3>(self.next_lost.val()) << self.at_11.val())
+            | (bit_cast::<24, 3>(self.next_due.val()) << self.at_16.val())
+            | self.next_met.val()
+            | (bit_cast::<24, 4>(self.next_on_way.val()) << self.at_20.val());
         self.control.write_bits.next = self.no.val();
         if self.beat.val().get_bit(BEAT_LAST) {
             self.control.write_bits.next = self.all.val();
@@ -310,7 +372,8 @@ impl Logic for Queue {
 
         self.live.next = self.live_now.val();
         self.fresh.next = self.fresh_now.val();
-        self.full.next = self.fresh_now.val() == self.live_now.val();
+        self.filled.d.next = self.fresh_now.val() == self.live_now.val();
+        self.full.next = self.filled.q.val();
         self.room.next = self.live_now.val() + !self.newest.val();
         self.empty.next = self.none.val();
         self.running.next = self.runs.val();
@@ -321,6 +384,8 @@ impl Logic for Queue {
         self.up.next = self.forward.q.val();
         self.down.next = self.backward.q.val();
         self.lost.next = self.gone.q.val();
+        self.met.next = self.word.val().get_bit(CONTROL_MET);
+        self.on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY);
     }
 }
 

@@ -5,7 +5,10 @@ use crate::HdlError;
 use crate::primitives::word::Word;
 use crate::sim::{mask, rising_edge, settle};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{CAUSES, EngineError, EngineInputs, EngineOutputs, Put};
+use carrystep_core::engine::{
+    CAUSES, EngineError, EngineInputs, EngineOutputs, Put, STATUS_BITS, StateItem, StatePage,
+    StateWord,
+};
 use rust_hdl::prelude::{Block, check_all};
 
 /// An engine whose number of axes is not part of its type.
@@ -14,11 +17,6 @@ pub trait AnyEngine: Block {
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs;
     /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     fn clock(&mut self);
-    /// Requests an item at the `get` port. Returns `get_data` of the present cycle if `get_valid`
-    /// is asserted.
-    fn get(&mut self, axis: usize, item: usize) -> Option<u32>;
-    /// The present value of `get_data`, whether valid or not.
-    fn said(&self) -> u32;
     /// Reads an item of an axis directly from the simulated memory.
     fn kept(&self, axis: usize, item: usize) -> u32;
 }
@@ -59,6 +57,7 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.broken.next = inputs.broken;
         self.home_valid.next = inputs.home.is_some();
         self.home_mask.next = Word::from(u64::from(inputs.home.unwrap_or(0)));
+        self.snapshot.next = inputs.snapshot;
         self.kick.next = inputs.kick;
         self.enable.next = inputs.enable;
         self.estop.next = inputs.estop;
@@ -79,7 +78,8 @@ impl<const N: usize> AnyEngine for Engine<N> {
             armed: self.armed.val(),
             ready: self.ready.val(),
             homing: self.homing.val().value() as u8,
-            latch: self.latch.val().then(|| self.latch_axis.val().value() as u8),
+            state: self.state_valid.val().then(|| self.word_of_state()),
+            refreshed: self.refreshed.val(),
             room: self.room_valid.val().then(|| self.room.val().value() as u8),
             started: self.started.val(),
         }
@@ -90,18 +90,31 @@ impl<const N: usize> AnyEngine for Engine<N> {
         rising_edge(self);
     }
 
-    fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
-        self.get_axis.next = Word::from(axis as u64);
-        self.get_item.next = Word::from(item as u64);
-        self.get_valid.val().then(|| self.said())
-    }
-
-    fn said(&self) -> u32 {
-        self.get_data.val().value() as u32
-    }
-
     fn kept(&self, axis: usize, item: usize) -> u32 {
         self.store.segments.word(axis << 6 | item << 3 | 7).value() as u32
+    }
+}
+
+impl<const N: usize> Engine<N> {
+    /// The word of state that is output in this clock. Bits without a meaning are 0.
+    fn word_of_state(&self) -> StateWord {
+        let page = match self.state_page.val().value() {
+            0 => StatePage::Limit,
+            1 => StatePage::Live,
+            _ => StatePage::Snapshot,
+        };
+        let item = match self.state_item.val().value() {
+            0 => StateItem::Discarded,
+            1 => StateItem::Left,
+            3 => StateItem::Ticks,
+            4 => StateItem::PLow,
+            5 => StateItem::PHigh,
+            6 => StateItem::Position,
+            _ => StateItem::Status,
+        };
+        let word = self.state.val().value() as u32;
+        let bits = if item == StateItem::Status { (1 << STATUS_BITS) - 1 } else { u32::MAX };
+        StateWord { page, axis: self.state_axis.val().value() as u8, item, word: word & bits }
     }
 }
 
@@ -133,20 +146,8 @@ impl EngineSim {
         self.core.clock();
     }
 
-    /// Requests an item of an axis at the `get` port; `item` is numbered as in
-    /// [`Engine::get_item`]. Returns `get_data` of the present cycle if `get_valid` is asserted; it
-    /// answers the request of the cycle before.
-    pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
-        self.core.get(axis, item)
-    }
-
-    /// The position of the axis `latch_axis`, valid in a cycle in which `latch` is asserted.
-    pub fn latched(&self) -> u32 {
-        self.core.said()
-    }
-
-    /// Reads an item of an axis directly from the simulated memory; `item` is numbered as in
-    /// [`Engine::get_item`].
+    /// Reads a word of the state of an axis directly from the simulated memory; `item` is its slot:
+    /// 0 and 1 P (low and high half), 2 position, 3 discarded steps.
     pub fn kept(&self, axis: usize, item: usize) -> u32 {
         self.core.kept(axis, item)
     }

@@ -7,33 +7,35 @@
 //! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s    s: stop acceleration
 //!
 //! beat      0    1    2    3    4    5    6    7    8    9    10   11   12
-//! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get
+//! reads     A    J    V    P    n    pos  J'   A'   V'   P'   tick      tick
 //! writes                        A    V    P    n    pos  put  A'   V'   P'
 //!           ': high halves      n: ticks - 1, or at rest the discarded steps
 //! ```
 //!
 //! A word that is read in beat k is added in beat k + 2, and the sum is written in beat k + 3. For
 //! A + J both words come from this memory, so one of them (A, then J') is read a beat earlier. Beat
-//! 9 writes the word that the host has put. In a ramp the memory returns -s or s in place of A, so
-//! that a ramp needs no additional adder.
+//! 9 writes the word that the host has put. The number of the tick has a word of its own; it is
+//! written after the last time slot, in the clock after its beat 16. In a ramp the memory returns
+//! -s or s in place of A, so that a ramp needs no additional adder.
 //!
-//! Cost: one memory of 512 words of 32 bits.
+//! Cost: one memory of 512 words of 32 bits; with eight axes, 1024 words, of which 513 are used.
 
 use super::layout::{
-    BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_GET, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
-    BEAT_READ_P_HIGH, BEAT_READ_P_LOW, BEAT_READ_POSITION, BEAT_READ_TICKS, BEAT_READ_V_HIGH,
-    BEAT_READ_V_LOW, BEAT_WRITE_A_HIGH, BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW,
-    BEAT_WRITE_POSITION, BEAT_WRITE_PUT, BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW,
-    SLOT_DISCARDED, SLOT_DOWN_HIGH, SLOT_DOWN_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION,
-    SLOT_UP_HIGH, SLOT_UP_LOW, WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE,
-    WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
+    BEAT_OVER_SUM_TICK, BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
+    BEAT_READ_P_HIGH, BEAT_READ_P_LOW, BEAT_READ_POSITION, BEAT_READ_TICK, BEAT_READ_TICK_AGAIN,
+    BEAT_READ_TICKS, BEAT_READ_V_HIGH, BEAT_READ_V_LOW, BEAT_SUM_TICK, BEAT_WRITE_A_HIGH,
+    BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW, BEAT_WRITE_POSITION, BEAT_WRITE_PUT,
+    BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW, SLOT_DISCARDED, SLOT_DOWN_HIGH,
+    SLOT_DOWN_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION, SLOT_UP_HIGH, SLOT_UP_LOW, TICK_ADDRESS,
+    WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE, WORD_TICKS, WORD_V_HIGH,
+    WORD_V_LOW, state_address,
 };
 use crate::parameters::{START_HALF, STOP_ACCEL};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
 use crate::primitives::per_axis::PerAxis;
-use crate::primitives::register::Input;
+use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
 use carrystep_core::engine::MAX_AXES;
@@ -71,16 +73,12 @@ pub struct Store {
     pub put: Input<Bit>,
     /// The number of that word in its segment.
     pub put_word: Input<Word<3>>,
-    /// The axis that the host reads.
-    pub get_axis: Input<Word<3>>,
-    /// The item that the host reads; it is the slot of word 7.
-    pub get_item: Input<Word<2>>,
     /// The sum to write.
     pub sum: Input<Word<32>>,
     /// The word that was read.
     pub word: Signal<Out, Word<32>>,
-    pub(crate) segments: Memory<9, 32>,
-    read_axis: Signal<Local, Word<3>>,
+    pub(crate) segments: Memory<10, 32>,
+    counted: Register<Bit>, // the sum is the number of the next tick
     read_slot: Signal<Local, Word<3>>,
     read_word: Signal<Local, Word<3>>,
     write_slot: Signal<Local, Word<3>>,
@@ -104,6 +102,7 @@ pub struct Store {
     up_high: Literal<3, SLOT_UP_HIGH>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
+    tick_address: Literal<10, TICK_ADDRESS>,
     start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
@@ -113,7 +112,8 @@ pub struct Store {
 
 impl Store {
     /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
-    /// axes in 2^-64 step per tick^2.
+    /// axes in 2^-64 step per tick^2. The first tick has no time slots, so the first number of a
+    /// tick that is read is 1.
     pub fn new(start: StartPhase, stops: &[u64]) -> Self {
         let half = START_HALF.of::<32>(start == StartPhase::Half);
         let high = |start: StartPhase| Formula::number(start.start_value() >> 32);
@@ -140,8 +140,10 @@ impl Store {
             store.stop_accel_out_of_range[axis] =
                 ParameterRefusal::of(&stop.is_outside(1, 1 << 62));
         }
+        let bits = if stops.len() < MAX_AXES { 9 } else { 10 };
+        kept.push((TICK_ADDRESS as usize & ((1 << bits) - 1), Formula::number(1)));
         Self {
-            segments: Memory::of_formulas(&kept),
+            segments: Memory::of_few_formulas(bits, &kept),
             start_high: Parameter::of(&start_high),
             start_half_out_of_range: ParameterRefusal::of(&half.is_outside(0, 1)),
             ..store
@@ -152,10 +154,10 @@ impl Store {
 impl Logic for Store {
     #[hdl_gen]
     fn update(&mut self) {
+        dff_setup!(self, clock, counted);
         clock!(self, clock, segments);
 
         // The read address.
-        self.read_axis.next = self.axis.val();
         self.read_slot.next = self.live.val();
         self.read_word.next = self.kept.val();
         if self.beat.val().get_bit(BEAT_READ_A_LOW) {
@@ -206,14 +208,12 @@ impl Logic for Store {
         if self.beat.val().get_bit(BEAT_READ_P_HIGH) {
             self.read_slot.next = self.p_high.val();
         }
-        if self.beat.val().get_bit(BEAT_READ_GET) {
-            self.read_axis.next = self.get_axis.val();
-            self.read_slot.next = bit_cast::<3, 2>(self.get_item.val());
+        self.segments.read_address.next = (bit_cast::<10, 3>(self.axis.val()) << self.at_6.val())
+            | (bit_cast::<10, 3>(self.read_slot.val()) << self.at_3.val())
+            | bit_cast::<10, 3>(self.read_word.val());
+        if self.beat.val().get_bit(BEAT_READ_TICK) | self.beat.val().get_bit(BEAT_READ_TICK_AGAIN) {
+            self.segments.read_address.next = self.tick_address.val();
         }
-        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val())
-            << self.at_6.val())
-            | (bit_cast::<9, 3>(self.read_slot.val()) << self.at_3.val())
-            | bit_cast::<9, 3>(self.read_word.val());
         self.word.next = self.segments.read_data.val();
 
         // The write address and the written word.
@@ -261,9 +261,16 @@ impl Logic for Store {
             self.write_slot.next = self.p_high.val();
             self.writes.next = self.moves.val() | self.wipe.val();
         }
-        self.segments.write_address.next = (bit_cast::<9, 3>(self.axis.val()) << self.at_6.val())
-            | (bit_cast::<9, 3>(self.write_slot.val()) << self.at_3.val())
-            | bit_cast::<9, 3>(self.write_word.val());
+        self.segments.write_address.next = (bit_cast::<10, 3>(self.axis.val()) << self.at_6.val())
+            | (bit_cast::<10, 3>(self.write_slot.val()) << self.at_3.val())
+            | bit_cast::<10, 3>(self.write_word.val());
+        // The tail of the last time slot, which no other one overlaps.
+        self.counted.d.next =
+            self.beat.val().get_bit(BEAT_SUM_TICK) & !self.beat.val().get_bit(BEAT_OVER_SUM_TICK);
+        if self.counted.q.val() {
+            self.segments.write_address.next = self.tick_address.val();
+            self.writes.next = true;
+        }
         self.segments.write_data.next = self.sum.val();
         if self.wipe.val() & self.beat.val().get_bit(BEAT_WRITE_P_HIGH) {
             self.segments.write_data.next = self.sum.val() | self.start_high.val();

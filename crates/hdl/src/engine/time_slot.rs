@@ -44,6 +44,8 @@ pub struct TimeSlot<const N: usize> {
     pub axis_next: Signal<Out, Word<3>>,
     /// The axis of the slot, one-hot. After the last slot it is the first axis.
     pub axis_one_hot: Signal<Out, Word<N>>,
+    /// The time slot is that of the last axis.
+    pub is_last: Signal<Out, Bit>,
     beats: Register<Word<17>>,
     number: Register<Word<3>>,
     one_hot: Register<Word<N>>,
@@ -103,6 +105,7 @@ impl<const N: usize> Logic for TimeSlot<N> {
         self.axis.next = self.number.q.val();
         self.axis_next.next = self.axis_to_come.val();
         self.axis_one_hot.next = self.one_hot.q.val();
+        self.is_last.next = self.ends.val();
     }
 }
 

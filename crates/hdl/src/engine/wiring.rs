@@ -14,8 +14,8 @@
 
 use super::Engine;
 use super::layout::{
-    BEAT_GOT, BEAT_LAST, BEAT_LATCH, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST,
-    COUNTS_LOSSES, COUNTS_PULSES, MASK_OF_SLOT,
+    BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
+    MASK_OF_SLOT,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -37,6 +37,7 @@ impl<const N: usize> Logic for Engine<N> {
             limits,
             homing_control,
             stops,
+            readout,
             resets,
             supervisor
         );
@@ -160,6 +161,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.least.next = self.adder.least.val();
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
+        self.queue.crosses.next = self.adder.crosses.val();
+        self.queue.caught.next = self.homing_control.caught.val();
         self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
         self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
 
@@ -186,8 +189,6 @@ impl<const N: usize> Logic for Engine<N> {
         self.store.wipe.next = self.stops.clearing.val();
         self.store.put.next = self.taken.q.val();
         self.store.put_word.next = self.taken_word.q.val();
-        self.store.get_axis.next = self.get_axis.val();
-        self.store.get_item.next = self.get_item.val();
         self.store.sum.next = self.adder.sum.val();
 
         self.event_wheel.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
@@ -198,11 +199,24 @@ impl<const N: usize> Logic for Engine<N> {
         self.event_wheel.phase_known.next = self.time_slot.beat.val().get_bit(BEAT_PHASE);
         self.event_wheel.q.next = self.adder.q.val();
 
-        self.get_data.next = self.store.word.val();
-        self.get_valid.next = self.time_slot.beat.val().get_bit(BEAT_GOT);
-        self.latch.next =
-            self.time_slot.beat.val().get_bit(BEAT_LATCH) & self.homing_control.waits.val();
-        self.latch_axis.next = self.time_slot.axis.val();
+        self.readout.strobe.next = self.strobe.val();
+        self.readout.beat.next = self.time_slot.beat.val();
+        self.readout.is_last.next = self.time_slot.is_last.val();
+        self.readout.snapshot.next = self.snapshot.val();
+        self.readout.caught.next = self.homing_control.caught.val();
+        self.readout.met.next = self.queue.met.val();
+        self.readout.word.next = self.store.word.val();
+        self.readout.live.next = self.queue.live.val();
+        self.readout.running.next = self.queue.running.val();
+        self.readout.room.next = self.queue.room.val();
+        self.readout.on_way.next = self.queue.on_way.val();
+        self.state_valid.next = self.readout.valid.val();
+        self.state_page.next = self.readout.page.val();
+        self.state_axis.next = self.time_slot.axis.val();
+        self.state_item.next = self.readout.item.val();
+        self.state.next = self.readout.state.val();
+        self.refreshed.next = self.readout.refreshed.val();
+
         self.limits.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
         self.limits.axis.next = self.time_slot.axis.val();
         self.limits.axis_next.next = self.time_slot.axis_next.val();

@@ -61,14 +61,16 @@ pub struct LinkProcessor<const N: usize> {
     pub broken: Signal<Out, Bit>,
     /// A replaces the mask of the axes that wait for their limit.
     pub home_valid: Signal<Out, Bit>,
+    /// The host requests a snapshot.
+    pub snapshot: Signal<Out, Bit>,
     /// The host has sent a valid request.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers.
     pub enable: Signal<Out, Bit>,
     /// The host requests a controlled stop of all axes.
     pub stop: Signal<Out, Bit>,
-    /// A cycle through all items of all axes is complete.
-    pub scanned: Input<Bit>,
+    /// The engine has output all live words of a tick.
+    pub refreshed: Input<Bit>,
     /// The engine has latched a stop.
     pub fault: Input<Bit>,
     /// No axis moves any more after a stop.
@@ -213,7 +215,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             self.state.next = self.state.val() | self.bit_4.val();
         }
         self.waited.next =
-            self.scanned.val() | (self.code.val().get_bit(3) & self.room_valid.val());
+            self.refreshed.val() | (self.code.val().get_bit(3) & self.room_valid.val());
         if self.code.val().get_bit(11) {
             self.waited.next = self.put_ready.val() | self.fault.val();
         }
@@ -346,14 +348,21 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         if self.room_valid.val() {
             self.space.d.next = self.room.val();
         }
-        if self.does.val() & self.code.val().get_bit(6) & !self.code.val().get_bit(7) {
+        if self.does.val()
+            & self.code.val().get_bit(6)
+            & !self.code.val().get_bit(7)
+            & !self.code.val().get_bit(8)
+        {
             self.control.d.next = self.sum.q.val().get_bits::<2>(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
         self.home_valid.next =
             self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
         self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
-        self.broken.next = self.does.val() & self.code.val().get_bit(8);
+        self.broken.next =
+            self.does.val() & self.code.val().get_bit(8) & !self.code.val().get_bit(6);
+        self.snapshot.next =
+            self.does.val() & self.code.val().get_bit(8) & self.code.val().get_bit(6);
         self.clear.next = self.clears.q.val();
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);

@@ -1,21 +1,20 @@
-//! The memory that the host can read: the constants of the build, and the last known state of each
-//! axis.
+//! The memory that the host can read: the constants of the build, and the last words of state of
+//! every axis.
 //!
 //! ```text
-//! address   0 .. 31              constants of the build, part of the initial content of the memory
-//!           64 + 8 axis + item   0 1 P   2 position   3 discarded   4 the position at the limit
+//! address   0 .. 23                      constants of the build: initial content of the memory
+//!           page 2 | item 3 | axis 3     the words of state, as the engine outputs them
 //! ```
 //!
-//! The module requests items 0 to 3 of all axes from the engine in a continuous cycle, so that the
-//! stored values are at most a few ticks old. An axis that waits for its limit outputs its position
-//! in each of its time slots (`latch`); item 4 keeps the last of these positions.
+//! Each word of state is stored in the clock in which the engine outputs it. Of the status the
+//! engine outputs 16 bits only; the high half of its word stays 0.
 //!
-//! Cost: one memory of 128 words of 32 bits and a counter of 5 bits.
+//! Cost: one memory of 256 words of 32 bits, whose halves are written separately.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
-use crate::primitives::register::{Input, Register};
+use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
@@ -25,35 +24,29 @@ pub struct RegisterMirror {
     /// The clock.
     pub clock: Input<Clock>,
     /// The address to read.
-    pub address: Input<Word<7>>,
+    pub address: Input<Word<8>>,
     /// The word at the address of the clock before.
     pub data: Signal<Out, Word<32>>,
-    /// The axis that is requested from the engine.
-    pub get_axis: Signal<Out, Word<3>>,
-    /// The item that is requested from the engine.
-    pub get_item: Signal<Out, Word<2>>,
-    /// The value that the engine returns.
-    pub get_data: Input<Word<32>>,
-    /// `get_data` is the value of the requested item.
-    pub get_valid: Input<Bit>,
-    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
-    pub latch: Input<Bit>,
-    /// The axis of `latch`.
-    pub latch_axis: Input<Word<3>>,
-    /// The last item of the last axis arrives in this clock, so that one cycle through all items is
-    /// complete.
-    pub scanned: Signal<Out, Bit>,
-    known: Memory<7, 32>,
-    asked: Register<Word<5>>,
-    place: Signal<Local, Word<7>>,
-    bits: Signal<Local, Word<32>>,
-    one: Literal<5, 1>,
-    last_item: Literal<5, 31>,
+    /// The engine outputs a word of state in this clock.
+    pub state_valid: Input<Bit>,
+    /// Its page.
+    pub state_page: Input<Word<2>>,
+    /// Its axis.
+    pub state_axis: Input<Word<3>>,
+    /// Its item.
+    pub state_item: Input<Word<3>>,
+    /// The word.
+    pub state: Input<Word<32>>,
+    known: Memory<8, 32>,
+    low_written: Signal<Local, Word<32>>,
+    high_written: Signal<Local, Word<32>>,
+    place: Signal<Local, Word<8>>,
     at_3: Literal<3, 3>,
-    of_axes: Literal<7, 0x40>,
-    latched: Literal<7, 0x44>,
+    at_6: Literal<3, 6>,
+    status: Literal<3, 7>,
     none: Literal<32, 0>,
-    all: Literal<32, 0xffff_ffff>,
+    low_half: Literal<32, 0xffff>,
+    high_half: Literal<32, 0xffff_0000>,
 }
 
 impl RegisterMirror {
@@ -61,38 +54,31 @@ impl RegisterMirror {
     pub fn new(facts: &[(u8, Formula<32>)]) -> Self {
         let words: Vec<_> =
             facts.iter().map(|(address, fact)| (usize::from(*address), fact.clone())).collect();
-        Self { known: Memory::of_formulas(&words), ..Self::default() }
+        Self { known: Memory::of_halves(&words), ..Self::default() }
     }
 }
 
 impl Logic for RegisterMirror {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, asked);
         clock!(self, clock, known);
-        if self.get_valid.val() {
-            self.asked.d.next = self.asked.q.val() + self.one.val();
-        }
-        self.scanned.next = self.get_valid.val() & (self.asked.q.val() == self.last_item.val());
-        self.get_item.next = self.asked.q.val().get_bits::<2>(0);
-        self.get_axis.next = self.asked.q.val().get_bits::<3>(2);
-
         self.known.read_address.next = self.address.val();
         self.data.next = self.known.read_data.val();
-        self.place.next = self.of_axes.val()
-            | (bit_cast::<7, 3>(self.asked.q.val().get_bits::<3>(2)) << self.at_3.val())
-            | bit_cast::<7, 2>(self.asked.q.val().get_bits::<2>(0));
-        if self.latch.val() {
-            self.place.next =
-                self.latched.val() | (bit_cast::<7, 3>(self.latch_axis.val()) << self.at_3.val());
-        }
+
+        self.place.next = (bit_cast::<8, 2>(self.state_page.val()) << self.at_6.val())
+            | (bit_cast::<8, 3>(self.state_item.val()) << self.at_3.val())
+            | bit_cast::<8, 3>(self.state_axis.val());
         self.known.write_address.next = self.place.val();
-        self.known.write_data.next = self.get_data.val();
-        self.bits.next = self.none.val();
-        if self.latch.val() | self.get_valid.val() {
-            self.bits.next = self.all.val();
+        self.known.write_data.next = self.state.val();
+        self.low_written.next = self.none.val();
+        if self.state_valid.val() {
+            self.low_written.next = self.low_half.val();
         }
-        self.known.write_bits.next = self.bits.val();
+        self.high_written.next = self.none.val();
+        if self.state_valid.val() & (self.state_item.val() != self.status.val()) {
+            self.high_written.next = self.high_half.val();
+        }
+        self.known.write_bits.next = self.low_written.val() | self.high_written.val();
     }
 }
 
@@ -102,7 +88,7 @@ mod tests {
     use crate::sim::assert_synthesizes;
 
     #[test]
-    fn facts_synthesizes() {
+    fn register_mirror_synthesizes() {
         assert_synthesizes(
             RegisterMirror::new(&[(0, Formula::number(7))]),
             "carrystep_register_mirror",

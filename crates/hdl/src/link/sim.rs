@@ -6,7 +6,7 @@ use crate::line::{LineOutputs, UartSim};
 use crate::primitives::word::Word;
 use crate::sim::{rising_edge, settle};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineError, EngineInputs, Put};
+use carrystep_core::engine::{EngineError, EngineInputs, Put, STATUS_BITS, StateItem, StateWord};
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl::prelude::{Block, check_all};
 
@@ -45,8 +45,6 @@ impl<const N: usize> AnyLink for Link<N> {
         self.received.next = Word::from(u64::from(line.received.unwrap_or(0)));
         self.received_valid.next = line.received.is_some();
         self.answer_take.next = line.take;
-        self.get_data.next = Word::from(u64::from(inputs.get_data));
-        self.get_valid.next = inputs.get_valid;
         let engine = &inputs.engine;
         // Without a fault these two ports keep the values of the last stop. The simulation drives
         // all ones, so that a use of them without a fault shows.
@@ -56,8 +54,18 @@ impl<const N: usize> AnyLink for Link<N> {
         self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
         self.room_valid.next = engine.room.is_some();
         self.start_ready.next = engine.start_ready;
-        self.latch.next = engine.latch.is_some();
-        self.latch_axis.next = Word::from(u64::from(engine.latch.unwrap_or(0)));
+        // Bits without a meaning are ones, so that a use of them shows.
+        let no_meaning = |state: StateWord| match state.item {
+            StateItem::Status => state.word | u32::MAX << STATUS_BITS,
+            _ => state.word,
+        };
+        let of_state = |value: fn(StateWord) -> u64| engine.state.map_or(0, value);
+        self.state_valid.next = engine.state.is_some();
+        self.state_page.next = Word::from(of_state(|state| state.page as u64));
+        self.state_axis.next = Word::from(of_state(|state| state.axis.into()));
+        self.state_item.next = Word::from(of_state(|state| state.item as u64));
+        self.state.next = Word::from(u64::from(engine.state.map_or(u32::MAX, no_meaning)));
+        self.refreshed.next = engine.refreshed;
         self.fault.next = engine.fault.is_some();
         self.halted.next = engine.halted;
         self.idle.next = engine.idle;
@@ -80,12 +88,11 @@ impl<const N: usize> AnyLink for Link<N> {
                 stop: self.stop.val(),
                 broken: self.broken.val(),
                 home: self.home_valid.val().then(|| self.home_mask.val().value() as u8),
+                snapshot: self.snapshot.val(),
                 kick: self.kick.val(),
                 enable: self.enable.val(),
                 ..EngineInputs::default()
             },
-            get_axis: self.get_axis.val().value() as u8,
-            get_item: self.get_item.val().value() as u8,
         }
     }
 

@@ -28,7 +28,7 @@ fn style_check(style: &str) -> String {
     )
 }
 
-/// A memory of 2^A words of W bits.
+/// A memory of 2^A words of W bits, or of fewer ([`Memory::of_few_formulas`]).
 pub struct Memory<const A: usize, const W: usize> {
     /// The clock.
     pub clock: Input<Clock>,
@@ -47,6 +47,8 @@ pub struct Memory<const A: usize, const W: usize> {
     /// The parameter of the Verilog that places the memory; `None`: it is in block RAM, and its
     /// words are always written whole.
     placed_by: Option<&'static str>,
+    /// Number of equal parts of a word that are written separately, unless `placed_by` is given.
+    parts: usize,
     initial: Vec<(usize, Formula<W>)>,
     given: Vec<TextParameter>,
 }
@@ -78,6 +80,28 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         memory
     }
 
+    /// As [`Self::of_formulas`], with 2^`bits` words: only the lowest `bits` bits of an address
+    /// have an effect.
+    ///
+    /// # Panics
+    /// Panics if `bits` is 0 or greater than A, or if an address of `initial` is 2^`bits` or more.
+    pub fn of_few_formulas(bits: usize, initial: &[(usize, Formula<W>)]) -> Self {
+        assert!((1..=A).contains(&bits), "{bits} of {A} bits of an address");
+        let mut memory = Self::of_formulas(initial);
+        memory.words.truncate(1 << bits);
+        memory
+    }
+
+    /// As [`Self::of_formulas`], but the halves of a word are written separately: the parent drives
+    /// each half of `write_bits` with all ones or with zero.
+    ///
+    /// # Panics
+    /// Panics if W is odd, or if an address of `initial` is 2^A or more.
+    pub fn of_halves(initial: &[(usize, Formula<W>)]) -> Self {
+        assert!(W.is_multiple_of(2), "{W} bits have no halves");
+        Self { parts: 2, ..Self::of_formulas(initial) }
+    }
+
     /// Makes a memory with a write enable for each bit. All its words are initially zero. Not every
     /// FPGA has block RAM with such enables: the parameter `placed_by` of the Verilog places it.
     pub fn of_bits(placed_by: &'static str) -> Self {
@@ -98,6 +122,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             words: vec![Word::default(); 1 << A],
             rose: false,
             placed_by: None,
+            parts: 1,
             initial: Vec::new(),
             given: Vec::new(),
         }
@@ -111,16 +136,56 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         self.words[address]
     }
 
+    /// The bits of an address that have an effect, as Verilog.
+    fn index(&self, address: &str) -> String {
+        match self.words.len().ilog2() as usize {
+            bits if bits < A => format!("{address}[{}:0]", bits - 1),
+            _ => address.to_owned(),
+        }
+    }
+
+    /// The Verilog that names the bits of addresses without an effect, so that no tool reports
+    /// them.
+    fn unused_bits(&self) -> String {
+        let bits = self.words.len().ilog2() as usize;
+        if bits == A {
+            return String::new();
+        }
+        let top = A - 1;
+        format!("wire unused = &{{read_address[{top}:{bits}], write_address[{top}:{bits}]}};\n\n")
+    }
+
+    /// The Verilog that writes whole words, or each part of them.
+    fn write_text(&self, address: &str) -> String {
+        if W == 1 {
+            return format!("    if (write_bits) words[{address}] <= write_data;\nend");
+        }
+        if self.parts == 1 {
+            return format!("    if (write_bits[0]) words[{address}] <= write_data;\nend");
+        }
+        let bits = W / self.parts;
+        let mut text = String::new();
+        for low in (0..W).step_by(bits) {
+            let range = format!("{}:{low}", low + bits - 1);
+            text.push_str(&format!(
+                "    if (write_bits[{low}]) words[{address}][{range}] <= write_data[{range}];\n"
+            ));
+        }
+        text + "end"
+    }
+
     fn verilog_text(&self) -> String {
         let top = W - 1;
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
+        let [read, written] = ["read_address", "write_address"].map(|name| self.index(name));
+        let unused = self.unused_bits();
         let (style, check) = match self.placed_by {
             None => (BLOCK, String::new()),
             Some(style) => (style, style_check(style)),
         };
         let mut text = format!(
-            "{check}// No word that is read in the clock in which it is written is ever used: no bypass is needed.\n\
+            "{check}{unused}// No word that is read in the clock in which it is written is ever used: no bypass is needed.\n\
              (* no_rw_check, ram_style = {style} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
              assign read_data = value;\n\ninitial begin\n    for (i = 0; i < {words}; i = i + 1) words[i] = 0;\n",
             words - 1
@@ -134,16 +199,16 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             };
             text.push_str(&format!("    words[{address}] = {text_of_word};\n"));
         }
-        text.push_str("end\n\nalways @(posedge clock) begin\n    value <= words[read_address];\n");
-        text.push_str(match (self.placed_by, W) {
-            (_, 1) => "    if (write_bits) words[write_address] <= write_data;\nend",
-            (None, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
-            (Some(_), _) => "",
-        });
+        text.push_str(&format!(
+            "end\n\nalways @(posedge clock) begin\n    value <= words[{read}];\n"
+        ));
+        if self.placed_by.is_none() || W == 1 {
+            text.push_str(&self.write_text(&written));
+        }
         if self.placed_by.is_some() && W > 1 {
             text.push_str(&format!(
                 "    for (i = 0; i < {W}; i = i + 1) begin\n        \
-                 if (write_bits[i]) words[write_address][i] <= write_data[i];\n    end\nend"
+                 if (write_bits[i]) words[{written}][i] <= write_data[i];\n    end\nend"
             ));
         }
         text
@@ -161,10 +226,11 @@ impl<const A: usize, const W: usize> Logic for Memory<A, W> {
     fn update(&mut self) {
         let high = self.clock.val().clk;
         if high && !self.rose {
-            self.read_data.next = self.words[self.read_address.val().value() as usize];
+            let last = self.words.len() - 1;
+            self.read_data.next = self.words[self.read_address.val().value() as usize & last];
             let bits = self.write_bits.val();
             if bits.any() {
-                let word = &mut self.words[self.write_address.val().value() as usize];
+                let word = &mut self.words[self.write_address.val().value() as usize & last];
                 *word = (*word & !bits) | (self.write_data.val() & bits);
             }
         }
@@ -217,7 +283,7 @@ mod tests {
     use super::*;
     use crate::sim::{rising_edge, settle};
 
-    fn clock(memory: &mut Memory<4, 8>) -> u128 {
+    fn clock<const A: usize>(memory: &mut Memory<A, 8>) -> u128 {
         memory.clock.next = false.into();
         settle(memory);
         memory.clock.next = true.into();
@@ -248,5 +314,29 @@ mod tests {
         clock(&mut memory);
         memory.write_bits.next = Word::default();
         assert_eq!(clock(&mut memory), 0x5a);
+    }
+
+    #[test]
+    fn upper_bits_of_an_address_have_no_effect_in_a_memory_of_few_words() {
+        let mut memory = Memory::<4, 8>::of_few_formulas(3, &[(7, Formula::number(9))]);
+        memory.connect_all();
+        memory.read_address.next = Word::from(15_u64);
+        assert_eq!(clock(&mut memory), 9);
+        assert!(memory.verilog_text().contains("words [0:7]"));
+    }
+
+    #[test]
+    fn halves_of_a_word_are_written_separately() {
+        let mut memory = Memory::<4, 8>::of_halves(&[(1, Formula::number(0x34))]);
+        memory.connect_all();
+        memory.read_address.next = Word::from(1_u64);
+        memory.write_address.next = Word::from(1_u64);
+        memory.write_data.next = Word::from(0xff_u64);
+        memory.write_bits.next = Word::from(0xf_u64);
+        clock(&mut memory);
+        memory.write_bits.next = Word::default();
+        assert_eq!(clock(&mut memory), 0x3f);
+        let text = memory.verilog_text();
+        assert!(text.contains("if (write_bits[4]) words[write_address][7:4] <= write_data[7:4];"));
     }
 }

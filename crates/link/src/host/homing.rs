@@ -16,7 +16,7 @@ use crate::command::{ProgramError, Segment};
 use crate::feeder::SegmentSource;
 use crate::frame::of_axis;
 use crate::line::Line;
-use crate::registers::{HOME, LATCHED};
+use crate::registers::{HOME, LIMIT_POSITION};
 use crate::travel::Travel;
 
 mod request;
@@ -279,7 +279,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let met = axes & !waits;
         let mut latched = [0; AXES];
         for (axis, place) in (0..).zip(&mut latched).filter(|(axis, _)| met >> axis & 1 == 1) {
-            *place = self.register(of_axis(LATCHED, axis))?.cast_signed();
+            *place = self.register(of_axis(LIMIT_POSITION, axis))?.cast_signed();
         }
         if met != 0 {
             // An axis that has met its limit rests at any fraction of a step. A clear sets the

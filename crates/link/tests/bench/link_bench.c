@@ -71,9 +71,10 @@ static void put_bytes(const uint8_t *bytes, size_t length, bool first)
 static void put_answer(const carrystep_answer *a)
 {
     char text[80];
-    snprintf(text, sizeof text, "%02x:%02x:%02x:%c%c%c%c%c%c:%u:%u:%02x:%02x:%08" PRIx32, (unsigned)a->sequence,
+    snprintf(text, sizeof text, "%02x:%02x:%02x:%c%c%c%c%c%c%c:%u:%u:%02x:%02x:%08" PRIx32, (unsigned)a->sequence,
              (unsigned)a->address, (unsigned)a->next, a->fault ? 'f' : '.', a->halted ? 'h' : '.', a->idle ? 'i' : '.',
-             a->ready ? 'r' : '.', a->armed ? 'a' : '.', a->refused ? 'x' : '.', (unsigned)a->cause, (unsigned)a->free,
+             a->ready ? 'r' : '.', a->armed ? 'a' : '.', a->refused ? 'x' : '.',
+             a->written ? 'w' : '.', (unsigned)a->cause, (unsigned)a->free,
              (unsigned)a->culprits, (unsigned)a->homing, a->data);
     put(text);
 }

@@ -103,6 +103,7 @@ fn fields(answer: &Answer) -> String {
         (answer.ready, 'r'),
         (answer.armed, 'a'),
         (answer.refused, 'x'),
+        (answer.written, 'w'),
     ];
     let flags: String = flags.iter().map(|&(on, letter)| if on { letter } else { '.' }).collect();
     format!(

@@ -71,7 +71,7 @@ pub struct Device {
 impl Device {
     pub fn new(axes: u8, next: u8) -> Self {
         let facts =
-            [0x5054_5343, 1, 0x89ab_cdef, 0x0123_4567, axes.into(), 48_000_000, 2000, 16, 50_000];
+            [0x5054_5343, 2, 0x89ab_cdef, 0x0123_4567, axes.into(), 48_000_000, 2000, 16, 50_000];
         Self { axes, next, facts, ..Self::default() }
     }
 
@@ -110,14 +110,15 @@ impl Device {
     fn request(&mut self, content: &[u8]) -> Vec<u8> {
         let [sequence, address, words @ ..] = content else { return Vec::new() };
         let (sequence, address) = (*sequence, *address);
+        let written = !words.is_empty();
         let expected = [0, 0, 1, 8][usize::from(address >> 6)];
-        if words.len() != 4 * expected {
+        if written && words.len() != 4 * expected {
             self.damaged += 1;
             return Vec::new();
         }
         self.frames += 1;
         let mut refused = false;
-        if address >= 0x80 {
+        if written {
             let words: Vec<u32> =
                 words.chunks(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
             match self.next.wrapping_sub(sequence) {
@@ -134,12 +135,12 @@ impl Device {
             }
             self.out_of_turn += u64::from(refused);
         }
-        self.answer(sequence, address, refused)
+        self.answer(sequence, address, written, refused)
     }
 
     /// Executes a write; returns false if the device is busy.
     fn execute(&mut self, address: u8, words: &[u32]) -> bool {
-        let axis = usize::from(address >> 3 & 7);
+        let axis = usize::from(address & 7);
         if address == 0x21 && self.armed.is_some() {
             return false;
         }
@@ -195,11 +196,10 @@ impl Device {
         self.running = [None; 8];
     }
 
-    fn answer(&self, sequence: u8, address: u8, refused: bool) -> Vec<u8> {
-        let plain = address & 0x7f;
-        let axis = if plain >= 0x40 { usize::from(plain >> 3 & 7) } else { 0 };
+    fn answer(&self, sequence: u8, address: u8, written: bool, refused: bool) -> Vec<u8> {
+        let axis = if written && address < 0xc0 { 0 } else { usize::from(address & 7) };
         let data = match address {
-            0..0x20 => self.facts.get(usize::from(plain)).copied().unwrap_or(0),
+            0..0x18 if !written => self.facts.get(usize::from(address)).copied().unwrap_or(0),
             _ => self.position[axis] as u32,
         };
         let halted = self.fault.is_some();
@@ -207,8 +207,8 @@ impl Device {
         let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on))
             | self.fault.unwrap_or(0) << 5;
         let free = 7 - self.queues[axis].len() as u8;
-        let mut frame =
-            vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, 0];
+        let room = free | u8::from(refused) << 3 | u8::from(written) << 7;
+        let mut frame = vec![sequence, address, self.next, bits, room, 0, 0];
         frame.extend(data.to_le_bytes());
         on_the_line(&frame)
     }

@@ -1,126 +1,140 @@
-//! The engine's registers that can be read without visiting every clock, for the host link and the
-//! virtual board.
+//! What the engine outputs for a host: in each time slot the words of an axis' state, and at the
+//! end of the last one that all of them are fresh. It must stay equal to "What the host reads" in
+//! docs/clock-by-clock.md.
+//!
+//! ```text
+//! beat     4        5                  6          10       11      12
+//! word     P low    left, discarded    position   P high   ticks   status
+//!          compares position and discarded steps with the shaper
+//! ```
 
-use super::axis_model::AxisModel;
-use super::{Engine, bits};
-use carrystep_core::engine::{Cause, TIME_SLOT_CLOCKS};
+mod counts;
+mod leap;
 
-/// The beat of a time slot in which `get_data` is valid.
-const GET_BEAT: u32 = 11;
+pub(crate) use leap::Span;
 
-impl Engine {
-    /// The stop that was called: its first cause, and the axes that caused it (one bit each).
-    pub fn fault(&self) -> Option<(Cause, u8)> {
-        self.stop.fault
+use super::motion::{Ending, Motion};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{
+    AxisStatus, EngineInputs, EngineOutputs, StateItem, StatePage, StateWord, TIME_SLOT_CLOCKS,
+};
+use counts::{COMPARE_BEAT, Counts};
+
+/// The last beat of a time slot, which outputs the status.
+const LAST_BEAT: u32 = TIME_SLOT_CLOCKS - 1;
+
+/// The registers of the readout.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Readout {
+    counts: Vec<Counts>,
+    /// Number of strobes since configuration, modulo 2^32.
+    ticks: u32,
+    /// A snapshot was requested and is not being output yet.
+    asked: bool,
+    /// The words of this tick are those of a snapshot.
+    takes: bool,
+    /// The axes that found their limit in the tick before, one bit each.
+    met: u8,
+}
+
+impl Readout {
+    /// The readout at configuration.
+    pub(crate) fn new(build: &EngineBuild) -> Self {
+        let counts = vec![Counts::default(); build.axes()];
+        Self { counts, ticks: 0, asked: false, takes: false, met: 0 }
     }
 
-    /// True if axes have time slots in this tick, which they have in every tick but the first.
-    pub fn has_time_slots(&self) -> bool {
-        self.time_slots
+    /// The outputs of an engine with this motion in this cycle.
+    pub(crate) fn outputs(&self, motion: &Motion, inputs: &EngineInputs) -> EngineOutputs {
+        let slot = motion.time_slot();
+        EngineOutputs {
+            state: slot.and_then(|(axis, beat)| self.word(motion, axis, beat)),
+            refreshed: slot == Some((self.counts.len() - 1, LAST_BEAT)) && !self.takes,
+            ..motion.outputs(inputs)
+        }
     }
 
-    /// True if `get_data` is valid in this cycle.
-    pub fn answers(&self) -> bool {
-        self.time_slot_at(GET_BEAT).is_some()
+    /// True if this tick and the next one output live words, unless a snapshot is requested or a
+    /// limit is found in this tick.
+    pub(crate) const fn is_live(&self) -> bool {
+        !self.asked && !self.takes && self.met == 0
     }
 
-    /// The number of cycles with valid `get_data` among the `clocks` cycles before this one. All of
-    /// these cycles must be later than the first tick.
-    pub fn answers_before(&self, clocks: u64) -> u64 {
-        let per_tick = u64::from(self.build.timebase.clocks_per_tick());
-        let axes = self.axis_models.len() as u64;
-        // Valid cycles before cycle `clock`, counted from the beginning of a tick: those of its own
-        // tick and those of all ticks before it.
-        let before = |clock: u64| {
-            let time_slots = (clock % per_tick + u64::from(TIME_SLOT_CLOCKS - 1 - GET_BEAT))
-                / u64::from(TIME_SLOT_CLOCKS);
-            clock / per_tick * axes + time_slots.min(axes)
-        };
-        let now = u64::from(self.clock) + clocks.next_multiple_of(per_tick);
-        before(now) - before(now - clocks)
-    }
-
-    /// The number of ticks until one of the axes has only `kept` segments waiting beside the
-    /// running one; 0 if it has no more than that already. Only axes count whose queue does not
-    /// reach the end of their move. The result is `None` if no axis needs the host: every axis is
-    /// at rest, or has the end of its move in its queue, or a stop has been called. While a start
-    /// is armed, waiting moves count as started.
-    pub fn ticks_without_host(&self, kept: usize) -> Option<u64> {
-        let armed = self.armed.is_some();
-        let of_axis_model = |axis_model: &AxisModel| {
-            let all = || axis_model.running.iter().chain(&axis_model.queue);
-            let begun = armed || axis_model.running.is_some();
-            let ended =
-                if armed { all().next_back()?.last } else { all().any(|segment| segment.last) };
-            if !begun || ended {
-                return None;
+    /// The word of state that an axis outputs in this beat of its time slot of the present tick.
+    fn word(&self, motion: &Motion, axis: usize, beat: u32) -> Option<StateWord> {
+        let (counts, state) = (self.counts[axis], motion.axis_state(axis));
+        let page = self.page(axis);
+        let (item, word) = match beat {
+            COMPARE_BEAT => (StateItem::PLow, state.p as u32),
+            5 if page == StatePage::Limit => return None,
+            5 => match state.left {
+                Some(left) => (StateItem::Left, left),
+                None => (StateItem::Discarded, counts.discarded),
+            },
+            6 => (StateItem::Position, counts.position.cast_unsigned()),
+            10 => (StateItem::PHigh, (state.p >> 32) as u32),
+            11 => (StateItem::Ticks, self.ticks),
+            LAST_BEAT => {
+                let status = AxisStatus {
+                    slot: state.slot,
+                    running: state.left.is_some(),
+                    waiting: state.waiting,
+                    on_way: counts.on_way,
+                };
+                (StateItem::Status, status.word())
             }
-            let spare = axis_model.queue.len().saturating_sub(kept);
-            Some(all().take(spare).map(|segment| u64::from(segment.left) + 1).sum())
+            _ => return None,
         };
-        self.axis_models
-            .iter()
-            .filter_map(of_axis_model)
-            .min()
-            .filter(|_| self.stop.fault.is_none())
+        Some(StateWord { page, axis: axis as u8, item, word })
     }
 
-    /// Number of segments in the queue of an axis, beside the running one.
-    pub fn waiting(&self, axis: usize) -> usize {
-        self.axis_models[axis].queue.len()
+    const fn page(&self, axis: usize) -> StatePage {
+        if self.met >> axis & 1 == 1 {
+            StatePage::Limit
+        } else if self.takes {
+            StatePage::Snapshot
+        } else {
+            StatePage::Live
+        }
     }
 
-    /// The axes that run a segment which is not the last of its move, one bit each.
-    pub fn in_a_move(&self) -> u8 {
-        bits(&self.axis_models, |axis_model| {
-            axis_model.running.is_some_and(|segment| !segment.last)
+    /// All words of the present tick, each with the clock in which it is output.
+    pub(crate) fn words(&self, motion: &Motion) -> impl Iterator<Item = (u32, StateWord)> {
+        (0..self.counts.len()).flat_map(move |axis| {
+            (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {
+                let word = self.word(motion, axis, beat)?;
+                Some((axis as u32 * TIME_SLOT_CLOCKS + beat, word))
+            })
         })
     }
 
-    /// The axes that wait for their limit, one bit each.
-    pub fn homing(&self) -> u8 {
-        bits(&self.axis_models, |axis_model| axis_model.homing.waits)
-    }
-
-    /// The word that `get_item` selects for an axis: 0 and 1 are the low and the high half of P
-    /// (2^-64 step), 2 is the position (steps), 3 the number of discarded steps. The word of an
-    /// axis that does not exist is 0.
-    pub fn item(&self, axis: u8, item: u8) -> u32 {
-        let Some(axis_model) = self.axis_models.get(usize::from(axis)) else { return 0 };
-        match item {
-            0 => axis_model.p as u32,
-            1 => (axis_model.p >> 32) as u32,
-            2 => axis_model.shaper.position.cast_unsigned(),
-            _ => axis_model.shaper.discarded,
+    /// Observes the motion before a clock. The result is for [`Readout::clock`].
+    pub(crate) fn observe(&mut self, motion: &Motion) -> Option<Ending> {
+        if let Some((axis, COMPARE_BEAT)) = motion.time_slot() {
+            let runs = motion.axis_state(axis).left.is_some();
+            self.counts[axis].compare(motion.shaper(axis), runs);
         }
+        motion.ending()
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use carrystep_core::engine::EngineInputs;
-    use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-
-    #[test]
-    fn answers_before_counts_the_cycles_with_valid_get_data() {
-        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
-        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let mut engine = Engine::new(&EngineBuild::minimal(&build, 1));
-        let mut answers = Vec::new();
-        for _ in 0..500 {
-            answers.push(u64::from(engine.answers()));
-            engine.clock(&EngineInputs::default());
-            // The loop begins with the second tick; the first has no time slots.
-            for clocks in 0..answers.len() as u64 - 96.min(answers.len() as u64) {
-                let counted: u64 = answers.iter().rev().take(clocks as usize).sum();
-                assert_eq!(
-                    engine.answers_before(clocks),
-                    counted,
-                    "{clocks} before {}",
-                    answers.len()
-                );
+    /// Advances by one cycle; `motion` has already advanced.
+    pub(crate) fn clock(&mut self, motion: &Motion, inputs: &EngineInputs, ending: Option<Ending>) {
+        let asked = self.asked;
+        self.asked |= inputs.snapshot;
+        let Some(Ending { met, empties, forgets }) = ending else { return };
+        for (axis, counts) in self.counts.iter_mut().enumerate() {
+            counts.commit();
+            counts.carry(motion.carry(axis));
+            if empties {
+                counts.on_way = 0;
+            }
+            if forgets {
+                counts.discarded = 0;
             }
         }
+        self.ticks = self.ticks.wrapping_add(1);
+        self.met = met;
+        self.takes = asked && met == 0;
+        self.asked = inputs.snapshot || (asked && met != 0);
     }
 }

@@ -1,5 +1,5 @@
-//! The engine without visiting every clock. States, outputs and faults are exactly those of
-//! [`Engine`].
+//! The engine's motion without visiting every clock. States, outputs and faults are exactly those
+//! of [`Motion`].
 //!
 //! It leaps over clocks in which the axes only repeat their additions, ramps included. Accepted
 //! words, loads, starts, calls of stops, changes of debounced limits and clears are executed by the
@@ -7,18 +7,19 @@
 
 use super::edges::{self, Edges};
 use super::passage::{From, Passages};
-use crate::Engine;
+use crate::engine::Motion;
 use crate::parts::moving::Moving;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES};
 
-/// The engine, and the number of the clock cycle that it is in.
+/// The engine without the words of state that only a host reads, and the number of the clock cycle
+/// that it is in. [`HostedEngine`](super::HostedEngine) has these words too.
 ///
 /// Inputs are constant during a call. To change them in some cycle, the caller runs to that cycle
 /// and then continues with the new inputs.
 #[derive(Debug, Clone)]
 pub struct FastEngine {
-    core: Engine,
+    core: Motion,
     cycle: u64,
     passages: Passages,
     axes: Vec<Moving>,
@@ -27,11 +28,11 @@ pub struct FastEngine {
 impl FastEngine {
     /// The engine at configuration, in cycle 0.
     pub fn new(build: &EngineBuild) -> Self {
-        Self { core: Engine::new(build), cycle: 0, passages: Passages::default(), axes: Vec::new() }
+        Self { core: Motion::new(build), cycle: 0, passages: Passages::default(), axes: Vec::new() }
     }
 
-    /// The registers of the engine.
-    pub fn core(&self) -> &Engine {
+    /// The registers of its motion.
+    pub fn core(&self) -> &Motion {
         &self.core
     }
 
@@ -40,7 +41,7 @@ impl FastEngine {
         self.cycle
     }
 
-    /// The outputs in this cycle for these inputs.
+    /// The outputs in this cycle for these inputs, without words of state.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         self.core.outputs(inputs)
     }
@@ -87,10 +88,23 @@ impl FastEngine {
     }
 
     /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
-    /// cycles nothing changes but STEP, DIR, the positions, the three `ready` outputs, `latch` and
-    /// `room`, provided that the inputs stay the same; no word and no start is accepted. If the
+    /// cycles nothing changes but STEP, DIR, the positions, the three `ready` outputs and `room`,
+    /// provided that the inputs stay the same; no word and no start is accepted. If the
     /// result is 0, the caller must execute the next cycle with [`FastEngine::clock`].
+    #[inline]
     pub fn leap(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
+        self.leap_fitting(inputs, most, |clocks| clocks, to)
+    }
+
+    /// As [`FastEngine::leap`], but of the number of cycles that could be skipped, only `fit` of it
+    /// are skipped. `fit` must not return more than it is given.
+    pub(super) fn leap_fitting(
+        &mut self,
+        inputs: &EngineInputs,
+        most: u64,
+        fit: impl Fn(u64) -> u64,
+        to: &mut impl Edges,
+    ) -> u64 {
         let mut clocks = self.core.plain_clocks(inputs, most.min(LONGEST));
         if clocks > 0 && !self.core.is_still() {
             let clock_of_tick = self.core.clock_of_tick().into();
@@ -99,9 +113,12 @@ impl FastEngine {
             let build = self.core.build();
             let from = From { cycle: self.cycle, clock_of_tick };
             let strobes;
+            let fit = |longest: u64| fit(longest.min(clocks));
             (clocks, strobes) =
-                self.passages.pass(&mut self.axes, from, clocks, &build.timebase, &build.pins, to);
+                self.passages.pass(&mut self.axes, from, fit, &build.timebase, &build.pins, to);
             self.core.moved(&self.axes, strobes);
+        } else {
+            clocks = fit(clocks);
         }
         self.core.pass(inputs, clocks);
         self.cycle += clocks;

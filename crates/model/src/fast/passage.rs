@@ -35,13 +35,14 @@ pub(super) struct Passages {
 }
 
 impl Passages {
-    /// Passes axes through at most `most` cycles whose strobes only add, and stops before a cycle
-    /// that latches a fault. Returns the number of cycles and of strobes passed.
+    /// Passes axes through cycles whose strobes only add, and stops before a cycle that latches a
+    /// fault. Of the number of cycles that could be passed, `fit` of it are passed. Returns the
+    /// number of cycles and of strobes passed.
     pub fn pass(
         &mut self,
         axes: &mut [Moving],
         from: From,
-        most: u64,
+        fit: impl Fn(u64) -> u64,
         time: &Timebase,
         pins: &[PinTiming],
         to: &mut impl Edges,
@@ -49,12 +50,12 @@ impl Passages {
         let dense = axes.iter().any(|axis| axis.cubic.v.unsigned_abs() > DENSE_SPEED);
         let ticks = if dense { DENSE_TICKS } else { calm(axes).unwrap_or(MOST_TICKS) };
         let longest = u64::from(ticks) * u64::from(time.clocks_per_tick()) - 1 - from.clock_of_tick;
-        let mut clocks = most.min(longest);
+        let mut clocks = fit(longest);
         let mut before = [None; MAX_AXES];
         before.iter_mut().zip(&*axes).for_each(|(before, axis)| *before = Some(*axis));
         while let Err(FaultIn(cycle)) = self.pass_axes(axes, from, clocks, time, pins) {
             axes.iter_mut().zip(before.iter().flatten()).for_each(|(axis, before)| *axis = *before);
-            clocks = cycle - from.cycle;
+            clocks = fit(cycle - from.cycle);
         }
         self.edges.merge(to);
         // A window is short enough for the number of strobes to fit 32 bits.

@@ -4,6 +4,10 @@
 //! Its memories are synchronous: the word of an address is output one clock later. A word that is
 //! written in the same clock is output with its old value.
 
+mod alone;
+
+pub(super) use alone::Waits;
+
 use super::crc::{CrcUnit, Told};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::Image;
@@ -51,10 +55,8 @@ pub(super) struct Inputs<'a> {
     pub received: Option<u8>,
     /// The byte to the host is accepted.
     pub taken: bool,
-    /// The word of the facts memory at address X.
+    /// The word that a host reads at address X.
     pub fact: u32,
-    /// A complete scan of all items of all axes is over.
-    pub scanned: bool,
     pub engine: &'a EngineOutputs,
 }
 
@@ -71,20 +73,11 @@ pub(super) struct Outputs {
     pub homes: bool,
     pub kicks: bool,
     pub broken: bool,
+    /// A snapshot is requested.
+    pub snapshot: bool,
     pub clear: bool,
     pub stop: bool,
     pub enable: bool,
-}
-
-/// The reason for which the processor waits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Waits {
-    /// It does not wait, or it waits for the engine.
-    No,
-    /// It waits for a byte.
-    ForByte,
-    /// It waits for the transmitter.
-    ToSend,
 }
 
 impl LinkProcessor {
@@ -124,6 +117,11 @@ impl LinkProcessor {
         self.executes(ACTS) && self.code & (SETS | STORES) == 0 && self.code & bits == bits
     }
 
+    /// The axis whose room is requested.
+    pub(super) const fn room_of(&self) -> u8 {
+        self.a & 7
+    }
+
     pub(super) fn outputs(&self) -> Outputs {
         let Self { a, x, clear, control, .. } = *self;
         let control = u32::from(control);
@@ -136,7 +134,8 @@ impl LinkProcessor {
             goes: self.does(WAIT | GOES),
             homes: self.does(CONTROL | KICK),
             kicks: self.does(KICK) && !self.does(CONTROL),
-            broken: self.does(BROKEN),
+            broken: self.does(BROKEN) && !self.does(CONTROL),
+            snapshot: self.does(CONTROL | BROKEN),
             clear,
             stop: control & CONTROL_STOP != 0,
             enable: control & CONTROL_ENABLE != 0,
@@ -155,7 +154,7 @@ impl LinkProcessor {
         };
         let value = self.value(inputs.engine);
         let [sets, stores, acts] = [SETS, STORES, ACTS].map(|bit| self.executes(bit));
-        let controls = self.does(CONTROL) && code & KICK == 0;
+        let controls = self.does(CONTROL) && code & (KICK | BROKEN) == 0;
 
         // The memories are read before this clock writes to them.
         self.code = self.program[usize::from(self.pc)];
@@ -205,7 +204,7 @@ impl LinkProcessor {
         } else if self.code & PUTS != 0 {
             inputs.engine.put_ready || inputs.engine.fault.is_some()
         } else {
-            inputs.scanned || (self.code & FOR_ROOM != 0 && inputs.engine.room.is_some())
+            inputs.engine.refreshed || (self.code & FOR_ROOM != 0 && inputs.engine.room.is_some())
         };
         (!self.does(WAIT) || waited) && (!self.does(CRC_STEP) || self.crc.over())
     }
@@ -257,37 +256,6 @@ impl LinkProcessor {
                     bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
                 }
             },
-        }
-    }
-
-    /// True if this clock depends on the engine's outputs or changes an input of the engine.
-    pub(super) fn minds_the_engine(&self) -> bool {
-        const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
-        let acts = self.does(0) && self.code & TELLS != 0;
-        let waits = self.does(WAIT) && !self.does(GOES);
-        let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
-        let asks = self.executes(JUMPS)
-            && [Condition::Fault, Condition::Startable]
-                .iter()
-                .any(|&asked| self.code >> 8 & 7 == asked as Code);
-        acts || waits || reads || asks
-    }
-
-    pub(super) fn waits(&self) -> Waits {
-        let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
-        if self.code == polls && self.read_from == self.written {
-            Waits::ForByte
-        } else if self.does(WAIT | GOES) {
-            Waits::ToSend
-        } else {
-            Waits::No
-        }
-    }
-
-    /// Skips this many clocks in which the processor waits.
-    pub(super) fn pass(&mut self, clocks: u64) {
-        if self.waits() == Waits::ForByte {
-            self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;
         }
     }
 }

@@ -1,15 +1,15 @@
 //! Replays the inputs of a run of the model to the exported Verilog in Icarus or Verilator.
 //!
 //! The host runs once, with the model. Its inputs are then applied to the Verilog cycle by cycle.
-//! The outputs must equal those of the model in every clock, and so must the contents of the engine
-//! at the end.
+//! The outputs must equal those of the model in every clock. The words of state, of which there are
+//! some in almost every clock, are compared by a checksum.
 
 use crate::bench;
 use crate::engine::{EngineHost, Events};
 use crate::tool::{self, ICARUS};
 use crate::verilator::Simulation;
 use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
-use carrystep_core::engine::{EngineInputs, EngineOutputs, recorded_ports};
+use carrystep_core::engine::{EngineInputs, EngineOutputs, is_recorded, ports_of};
 use carrystep_core::ports::Direction;
 use carrystep_core::{EngineBuild, Program};
 use carrystep_model::Engine;
@@ -26,8 +26,12 @@ pub type Kept = Vec<[u32; 4]>;
 pub struct Recording {
     /// Inputs, each with the number of cycles for which it was applied.
     pub stimuli: Vec<(u64, EngineInputs)>,
-    /// Outputs of each cycle in which any of them changed.
+    /// Outputs of each cycle in which any of them changed, words of state aside.
     pub outputs: Vec<(u64, EngineOutputs)>,
+    /// For each of these cycles, the checksum of the words of state before it.
+    sums: Vec<u64>,
+    /// The checksum of all words of state.
+    sum: u64,
     /// Total number of cycles.
     pub clocks: u64,
     /// What is kept at the end.
@@ -50,8 +54,14 @@ impl Recording {
         how_far: Option<&HowFar>,
     ) -> Self {
         let mut model = Engine::new(build);
-        let mut recording =
-            Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
+        let mut recording = Self {
+            stimuli: Vec::new(),
+            outputs: Vec::new(),
+            sums: Vec::new(),
+            sum: 0,
+            clocks: 0,
+            kept: Kept::default(),
+        };
         let settle = settle(build);
         let mut quiet = 0;
         while quiet < settle && recording.clocks < max_clocks && !halted(halt) {
@@ -78,9 +88,12 @@ impl Recording {
             Some((count, same)) if *same == inputs => *count += 1,
             _ => self.stimuli.push((1, inputs)),
         }
-        if self.outputs.last().is_none_or(|(_, before)| *before != outputs) {
-            self.outputs.push((self.clocks, outputs));
+        let recorded = outputs.recorded();
+        if self.outputs.last().is_none_or(|(_, before)| *before != recorded) {
+            self.outputs.push((self.clocks, recorded));
+            self.sums.push(self.sum);
         }
+        self.sum = outputs.state_sum(self.sum);
         self.clocks += 1;
     }
 
@@ -106,10 +119,21 @@ fn driven(
     values: &[(&str, Option<u64>)],
     axes: usize,
 ) -> impl Iterator<Item = u64> {
-    let widths = recorded_ports(direction).map(move |port| port.width.of(axes));
-    let cut =
-        |(width, (_, value)): (u32, &(&str, Option<u64>))| value.unwrap_or(0) & ((1 << width) - 1);
-    widths.zip(values).map(cut)
+    recorded(direction)
+        .zip(values)
+        .filter_map(|(is_recorded, value)| is_recorded.then_some(value))
+        .zip(widths(direction, axes))
+        .map(|((_, value), width)| value.unwrap_or(0) & ((1 << width) - 1))
+}
+
+/// For each port of this direction, whether benches print it.
+fn recorded(direction: Direction) -> impl Iterator<Item = bool> {
+    ports_of(direction).map(is_recorded)
+}
+
+/// The widths of the ports of this direction that benches print.
+fn widths(direction: Direction, axes: usize) -> impl Iterator<Item = u32> {
+    ports_of(direction).filter(|port| is_recorded(port)).map(move |port| port.width.of(axes))
 }
 
 /// Number of cycles of rest after which every step has been counted.
@@ -119,8 +143,6 @@ pub(super) fn settle(build: &EngineBuild) -> u64 {
 
 /// The first difference between a recording and its replay on the Verilog of an engine; `None` if
 /// there is none.
-///
-/// The contents at the end are compared if the run came to rest without a fault or a block.
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, or if the level has no Verilog.
@@ -179,34 +201,36 @@ fn first_difference(
 
 fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
     let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
-    for (cycle, outputs) in &recording.outputs {
+    for ((cycle, outputs), sum) in recording.outputs.iter().zip(&recording.sums) {
         let line = next();
         let bits = packed(outputs, recording.axes());
-        if parsed(&line) != Some((*cycle, bits)) {
-            return Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}"));
+        if parsed(&line) != Some((*cycle, bits, *sum)) {
+            return Some(format!(
+                "expected in cycle {cycle} {outputs:?}: {bits:x}, and {sum:x} as the checksum of \
+                 all words of state before; found {line}"
+            ));
         }
     }
-    let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
-    for expected in recording.kept.iter().flatten() {
-        let line = next();
-        let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
-        if rests && kept != Some(*expected) {
-            return Some(format!("expected to be kept: {:x?}, found {line}", recording.kept));
-        }
+    let (line, sum) = (next(), recording.sum);
+    if line.strip_prefix("S ").and_then(|hex| u64::from_str_radix(hex, 16).ok()) != Some(sum) {
+        return Some(format!(
+            "expected {sum:x} as the checksum of all words of state, found {line}"
+        ));
     }
     found.next().map(|line| format!("expected nothing more, found {line}"))
 }
 
-/// Parses a line of a bench: cycle and packed outputs.
-fn parsed(line: &str) -> Option<(u64, u64)> {
-    let (cycle, bits) = line.split_once(' ')?;
-    Some((cycle.parse().ok()?, u64::from_str_radix(bits, 16).ok()?))
+/// Parses a line of a bench: cycle, packed outputs and checksum.
+fn parsed(line: &str) -> Option<(u64, u64, u64)> {
+    let (cycle, rest) = line.split_once(' ')?;
+    let (bits, sum) = rest.split_once(' ')?;
+    let hex = |digits| u64::from_str_radix(digits, 16).ok();
+    Some((cycle.parse().ok()?, hex(bits)?, hex(sum)?))
 }
 
 /// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
 fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
-    let widths = recorded_ports(Direction::Output).map(|port| port.width.of(axes));
-    widths
+    widths(Direction::Output, axes)
         .zip(driven(Direction::Output, &outputs.at_ports(), axes))
         .fold(0, |all, (width, value)| all << width | value)
 }

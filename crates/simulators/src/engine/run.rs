@@ -8,7 +8,7 @@ use carrystep_core::engine::{Cause, EngineOutputs};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 
-/// Index of the position in the items of the `get` port.
+/// Index of the position in what is kept of an axis.
 const POSITION: usize = 2;
 
 /// Planned moves for an engine, with a host that keeps its queues full.
@@ -37,8 +37,8 @@ pub struct EngineOutcome {
     pub fault: Option<(Cause, u8)>,
 }
 
-/// Called for each cycle in which any output changed. At the fast level, changes of `put_ready` and
-/// `start_ready` are ignored, and both are reported as 0.
+/// Called for each cycle in which any output changed; words of state are left out. At the fast
+/// level, changes of `put_ready` and `start_ready` are ignored, and both are reported as 0.
 pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
 
 impl<'a> EngineJob<'a> {
@@ -140,9 +140,10 @@ impl<'a> EngineJob<'a> {
             }
             how_far::tell(self.how_far, cycle);
             let (_, outputs) = host.step(core);
-            if before != Some(outputs) {
-                observer(cycle, &outputs);
-                before = Some(outputs);
+            let recorded = outputs.recorded();
+            if before != Some(recorded) {
+                observer(cycle, &recorded);
+                before = Some(recorded);
             }
             quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
             if quiet == settle {

@@ -31,7 +31,7 @@ impl RowMeasurement {
     /// # Errors
     /// [`SynthesisError`] if a tool is missing or fails.
     pub fn of(row: &EngineRow) -> Result<Self, SynthesisError> {
-        let size = ice40::synthesise(&verilog(row)?, ENGINE_NAME)?.size(row.part)?;
+        let size = ice40::synthesise_tight(&verilog(row)?, ENGINE_NAME)?.size(row.part)?;
         let mut mhz = [0.0; SEEDS.len()];
         for (mhz, reached) in mhz.iter_mut().zip(placed(row)?) {
             *mhz = reached?;
@@ -89,7 +89,7 @@ pub fn placed(
     row: &EngineRow,
 ) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
     let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
-    let netlist = ice40::synthesise(&(verilog(row)? + &harness), "budget_harness")?;
+    let netlist = ice40::synthesise_tight(&(verilog(row)? + &harness), "budget_harness")?;
     let row = *row;
     Ok(SEEDS.into_iter().map(move |seed| Ok(netlist.place(row.part, row.clock_hz, seed)?.mhz)))
 }

@@ -4,6 +4,7 @@
 pub mod bus;
 #[path = "../../../link/tests/support/mod.rs"]
 pub mod link;
+pub mod requests;
 pub mod words;
 
 pub use link::{random, wire};

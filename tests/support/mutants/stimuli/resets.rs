@@ -2,7 +2,7 @@
 //! ticks, and in the middle of a segment. Further ones number the words of a segment wrongly.
 
 use super::Stimulus;
-use super::stops::{ROUND, THEN, TICK, again, both_ways, cruise};
+use super::cruise::{ROUND, THEN, TICK, again, both_ways, cruise};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 

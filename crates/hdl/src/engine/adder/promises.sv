@@ -1,9 +1,9 @@
-// Proves promises 6, 7, 10, 11 and 13 of the adder, without a bound on time: the sums of a time
+// Proves promises 6, 7, 10, 11, 13 and 15 of the adder, without a bound on time: the sums of a time
 // slot are those of the words that the memory delivers in this time slot.
 //
 //   parameters   `DUT: the name of the exported adder
-//   assumptions  The beats of a time slot follow one another (proved in time_slot/promises.sv). From
-//                beat 6 on, counts, lost, up, down, wipe and forgets do not change within a time slot.
+//   assumptions  The beats of a time slot follow one another, and the next one begins at once or at
+//                least two clocks later (proved in time_slot/promises.sv). From beat 6 on, counts, lost, up, down, wipe and forgets do not change within a time slot.
 //
 // The memory delivers the low halves of A, J, V and P first and their high halves later. This file
 // joins the halves and computes the expected sums in 64 bits.
@@ -30,7 +30,10 @@ module promises (
     reg first_clock = 1;
     reg [16:0] was_beat = 0;
     reg [31:0] low_a = 0, low_j = 0, low_v = 0, low_p = 0, n = 0, pos = 0, high_j = 0, high_a = 0, high_v = 0, high_p = 0;
-    reg [31:0] was_put = 0;
+    reg [31:0] was_put = 0, tick = 0;
+    // After a time slot that no other one follows at once: the sum of this clock, and of the clock
+    // before, is the number of the tick + 1.
+    reg counts_tick = 0, had_counted = 0;
     reg was_counts = 0, was_lost = 0, was_up = 0, was_down = 0, was_wipe = 0, was_forgets = 0;
     always @(posedge clock) begin
         first_clock <= 0;
@@ -46,11 +49,14 @@ module promises (
         if (beat[8]) high_a <= word;
         if (beat[9]) high_v <= word;
         if (beat[10]) high_p <= word;
+        if (beat[13]) tick <= word;
+        {had_counted, counts_tick} <= {counts_tick, beat[15] & !beat[2]};
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[16:1] == was_beat[15:0]);
         assume (was_beat[11:5] == 0 || {counts, lost, up, down, wipe, forgets} == {was_counts, was_lost, was_up, was_down, was_wipe, was_forgets});
         assume (!(lost && counts) && !(up && down));
+        assume (!(beat[0] && beat[14]));
     end
 
     wire [63:0] a = {high_a, low_a}, j = {high_j, low_j}, v = {high_v, low_v}, p = {high_p, low_p};
@@ -81,6 +87,10 @@ module promises (
         promise_13_inactive: assert (!first_clock || {ended, overflow, turned, crosses, back, still, least, q} == 0);
     end
 
+    always_comb begin
+        promise_15_tick_is_counted: assert (!had_counted || sum == tick + 1);
+    end
+
     reg was_back = 0;
     reg [3:0] was_q = 0;
     always @(posedge clock) {was_back, was_q} <= {back, q};
@@ -91,6 +101,8 @@ module promises (
         cover_6_carry_between_the_halves: cover (beat[12] && crosses && low_p + low_v < low_p && high_v == 0);
         cover_6_overspeed: cover (beat[12] && overflow && !back);
         cover_7_step_back: cover (beat[8] && down && sum == 32'hffffffff);
+        cover_15_counts_a_tick_that_wraps: cover (had_counted && sum == 0);
+        cover_15_next_tick_has_begun: cover (counts_tick && beat[1]);
         cover_11_least: cover (beat[12] && least);
     end
 endmodule

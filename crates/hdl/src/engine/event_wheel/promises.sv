@@ -31,6 +31,7 @@ module promises (
     wire [`AXES-1:0] events, backward, axis_one_hot;
     wire [16:0] beat;
     wire [2:0] axis, axis_next;
+    wire is_last;
     wire time_slot_ends = beat[12], phase_known = beat[16];
     carrystep_time_slot time_slots (.*);
     `DUT dut (.*);

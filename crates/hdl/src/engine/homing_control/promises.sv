@@ -23,7 +23,7 @@ module promises (
 
     wire [`AXES-1:0] axis_one_hot = 32'd1 << axis;
     wire [`AXES-1:0] axes;
-    wire waits, slows;
+    wire waits, slows, caught;
     `DUT dut (.*);
 
     reg first_clock = 1, was_time_slot_ends = 0;
@@ -43,10 +43,10 @@ module promises (
 
     reg waiting = 0, slowing = 0;
     wire ends = time_slot_ends & axis == who;
-    wire caught = ends & hit & waiting;
+    wire meets = ends & hit & waiting;
     always @(posedge clock) begin
-        waiting <= resetting ? 0 : set ? (mask >> who) & 1 : waiting & !caught;
-        if (ends) slowing <= caught | slowing & goes_on;
+        waiting <= resetting ? 0 : set ? (mask >> who) & 1 : waiting & !meets;
+        if (ends) slowing <= meets | slowing & goes_on;
     end
 
     // ---- The promises. `slows` is a register, which follows one clock after the end of a time
@@ -56,6 +56,7 @@ module promises (
     always_comb begin
         promise_12_waits_as_asked: assert (((axes >> who) & 1) == waiting);
         promise_12_waits_in_its_time_slot: assert (axis != who || waits == waiting);
+        promise_12_told_of_its_own_hit: assert (axis != who || caught == meets);
         promise_12_slows_after_its_own_hit: assert (axis != who || !known || slows == slowing);
         promise_13_inactive: assert (!first_clock || !slows && axes == 0);
     end
@@ -75,6 +76,6 @@ module promises (
 
     always_comb begin
         cover_12_slows: cover (slows && axis == who);
-        cover_12_slowed: cover (ends && slowing && !goes_on && !caught);
+        cover_12_slowed: cover (ends && slowing && !goes_on && !meets);
     end
 endmodule

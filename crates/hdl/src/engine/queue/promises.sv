@@ -1,5 +1,6 @@
-// Proves promises 5, 6, 7, 10, 12 and 13 of the queue, without a bound on time: which segment runs,
-// which segments wait, and how pulses and discarded steps reach the counters in memory.
+// Proves promises 5, 6, 7, 10, 12, 13 and 15 of the queue, without a bound on time: which segment
+// runs, which segments wait, how pulses and discarded steps reach the counters in memory, and how
+// many steps are on their way.
 //
 //   parameters   `DUT: the name of the exported queue
 //   assumptions  The beats of a time slot follow one another and belong to one axis (proved in
@@ -30,6 +31,8 @@ module promises (
     input wire least,
     input wire turned,
     input wire back,
+    input wire crosses,
+    input wire caught,
     input wire [2:0] pulses,
     input wire [2:0] losses,
     input wire rises,        // a pulse of `who` in this clock
@@ -39,7 +42,8 @@ module promises (
     (* anyconst *) reg [2:0] who;
 
     wire [2:0] live, fresh, room;
-    wire misplaced, full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
+    wire misplaced, full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost, met;
+    wire [3:0] on_way;
     `DUT dut (.*);
 
     // ---- The beats of a time slot, and the inputs that do not change within it.
@@ -132,6 +136,19 @@ module promises (
         spare <= spare - rises + (samples & spare != 3);
         if (ends) {told, written_off} <= {told_then, written_off_then};
     end
+
+    // ---- The carries of `who` since the last clear, counted from the position at that clear.
+
+    reg [31:0] carried = 0;
+    reg was_caught = 0;              // in the time slot before, the limit was found
+    wire [31:0] step = !(fine & crosses) ? 0 : back ? -32'd1 : 32'd1;
+    always @(posedge clock) begin
+        if (ends) begin
+            carried <= clear ? told_then : carried + step;
+            was_caught <= caught;
+        end
+    end
+    wire [31:0] ahead = carried - told;
     wire signed [31:0] behind = at - told;
     wire signed [31:0] behind_then = at - (asked ? told_then : told);
 
@@ -144,7 +161,7 @@ module promises (
         promise_6_misplaced_is_taken: assert (!misplaced || was_take);
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
         promise_6_in_order: assert (!mine || !in_time_slot || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
-        promise_6_full: assert (!mine || !in_time_slot || full == (waiting == 7));
+        promise_6_full: assert (!mine || beat[12:1] == 0 || full == (waiting == 7));
         promise_6_room: assert (!mine || !in_time_slot || room == 7 - waiting);
         promise_6_empty: assert (!mine || !in_time_slot || empty == (waiting == 0));
         promise_6_runs_as_told: assert (!mine || !in_time_slot || {running, moves, too_fast} == {on, fine, on & !fine});
@@ -164,10 +181,13 @@ module promises (
         promise_12_no_mark_read_as_it_is_written: assert (!mark_writes || mark_write_at != mark_read_at);
 
         promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
+
+        promise_15_on_way: assert (!mine || !in_time_slot || on_way == ahead[3:0]);
+        promise_15_met_in_the_tick_before: assert (!mine || !in_time_slot || met == was_caught);
     end
 
     reg was_unseen = 0, was_ends = 0, was_mine = 0, was_wrong = 0, was_take = 0;
-    reg [18:0] was_control = 0;
+    reg [23:0] was_control = 0;
     reg signed [31:0] was_behind = 0;
     always @(posedge clock) begin
         was_ends <= ends;
@@ -182,17 +202,21 @@ module promises (
     // ---- The invariants that make the promises inductive. `sample` is an additional read port for
     // the words of `who` in memory.
 
-    wire [18:0] control;
+    wire [23:0] control, present;    // of `who`, and of the axis of the time slot
     wire [7:0] lasts;
-    memory_probe #("\\dut.control.words", 3, 19) at_control (1'b0, 1'b1, who, control);
+    memory_probe #("\\dut.control.words", 3, 24) at_present (1'b0, 1'b1, axis, present);
+    memory_probe #("\\dut.control.words", 3, 24) at_control (1'b0, 1'b1, who, control);
     genvar slot;
     generate for (slot = 0; slot < 8; slot = slot + 1) begin : each
         memory_probe #("\\dut.lasts.words", 6, 1) at_lasts (1'b0, 1'b1, {who, slot[2:0]}, lasts[slot]);
     end endgenerate
 
-    (* inside = "dut.word" *) wire [18:0] word;
+    (* inside = "dut.word" *) wire [23:0] word;
     (* inside = "dut.took" *) wire dut_took;
-    (* inside = "dut.control.write_bits" *) wire [18:0] write_bits;
+    (* inside = "dut.filled" *) wire dut_filled;
+    (* inside = "dut.fresh_now" *) wire [2:0] fresh_now;
+    (* inside = "dut.live_now" *) wire [2:0] live_now;
+    (* inside = "dut.control.write_bits" *) wire [23:0] write_bits;
     (* inside = "dut.control.write_address" *) wire [2:0] write_at;
     (* inside = "dut.control.read_address" *) wire [2:0] read_at;
     (* inside = "dut.lasts.write_bits" *) wire mark_writes;
@@ -209,6 +233,9 @@ module promises (
         invariant_1: assert (control[6:0] == {runs, committed[2:0], begun[2:0]});
         invariant_2: assert (control[7] == unfit && control[15:14] == {known, known_back});
         invariant_12: assert (control[18:16] == due);
+        invariant_15: assert (!in_time_slot || word == present);
+        invariant_16: assert (beat[12:1] == 0 || dut_filled == (fresh_now == live_now));
+        invariant_14: assert (control[23:20] == ahead[3:0] && control[19] == was_caught);
         invariant_13: assert ((mine && beat[12:1] != 0 ? dut_took == takes : !takes) && (!takes || beat[12:8] != 0));
         invariant_3: assert (control[13:8] == {written_off[2:0], told[2:0]});
         invariant_4: assert (!mine || first_clock || was_ends || word == control);
@@ -241,5 +268,7 @@ module promises (
         cover_6_one_begun_one_waits: cover (begun == 1 && committed == 2);
         cover_7_two_behind: cover (behind == 2 && told == 1);
         cover_10_dry: cover (dry && ends);
+        cover_15_two_on_way: cover (mine && in_time_slot && on_way == 2);
+        cover_15_one_back_on_way: cover (mine && in_time_slot && on_way == 15);
     end
 endmodule

@@ -1,4 +1,4 @@
-// Proves promises 11, 12 and 13 of the schedule of time slots, without a bound on time.
+// Proves promises 11, 12, 13 and 15 of the schedule of time slots, without a bound on time.
 //
 //   parameters   AXES: number of axes
 //                CLOCKS: the least number of clocks from one strobe to the next
@@ -17,6 +17,7 @@ module promises (
     wire [16:0] beat;
     wire [2:0] axis, axis_next;
     wire [`AXES-1:0] axis_one_hot;
+    wire is_last;
     `DUT dut (.*);
 
     // ---- The clocks since the strobe, and the time slot and the beat that follow from them.
@@ -60,6 +61,8 @@ module promises (
         promise_12_no_time_slot_at_a_strobe: assert (!strobe || beat[12:0] == 0);
         promise_12_a_time_slot_of_its_own_after_a_pause: assert (!was_beat[12] || axis != was_axis || beat[12:0] == 0);
         promise_13_inactive: assert (!first_clock || beat == 0);
+        promise_15_last: assert (!in_time_slot || is_last == (number == AXES - 1));
+        promise_15_two_clocks_to_count_the_tick: assert (!(beat[0] && beat[14]));
     end
 
 `ifdef INVARIANTS
@@ -68,6 +71,9 @@ module promises (
         invariant_2: assert (in_time_slot ? since == at + 1 : since > ALL_TIME_SLOTS);
         invariant_3: assert (in_time_slot ? was_beat == (clock_of_time_slot == 0 ? (at == 0 ? 0 : 13'h1000)
             : 13'd1 << (clock_of_time_slot - 1)) : was_beat == 0 || was_beat == 13'h1000);
+        invariant_6: assert (!in_time_slot || number == 0 || tail == (clock_of_time_slot < 4 ? 4'd1 << clock_of_time_slot : 0));
+        invariant_7: assert (!in_time_slot || number != 0 || (tail & (at == 0 ? 4'b0011 : at == 1 ? 4'b0111 : 4'b1111)) == 0);
+        invariant_8: assert (in_time_slot || (since == ALL_TIME_SLOTS + 1 ? tail == 1 : !tail[0]));
         invariant_5: assert (!was_beat[12] || first_clock || was_axis == (in_time_slot ? number : AXES) - 1);
         invariant_4: assert (was_next == axis || first_clock);
     end

@@ -5,7 +5,7 @@
 //! stage     0                |  1  |  2  | 0      from strobe to strobe
 //! ```
 
-use super::Engine;
+use super::Motion;
 use super::axis_model::Limit;
 use super::guard::Stop;
 
@@ -22,9 +22,14 @@ impl Reset {
     pub(super) const fn is_resetting(self) -> bool {
         self.stage != 0
     }
+
+    /// True if the next strobe sets the number of discarded steps to 0 and empties the queues.
+    pub(super) const fn forgets(self) -> bool {
+        self.ending && self.stage == 2
+    }
 }
 
-impl Engine {
+impl Motion {
     /// Executes the rules of a reset that apply in every cycle. `was` is the state before it.
     pub(super) fn clock_reset(&mut self, was: Reset, requested: bool) {
         if was.ending {

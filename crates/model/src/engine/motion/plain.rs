@@ -2,17 +2,18 @@
 //! axis only repeats its additions, and advances the counters that run during that time.
 //!
 //! All other events (an accepted word, a load, the call of a stop, a change of a debounced limit,
-//! an axis that comes to rest) are executed by [`Engine::clock`]. Every condition here must be
+//! an axis that comes to rest) are executed by [`Motion::clock`]. Every condition here must be
 //! conservative: a skipped clock must have no other effect.
 
 use super::axis_model::{AxisModel, Limit};
-use super::{Engine, SAMPLE_BEAT, bits};
-use crate::engine::guard::Stop;
+use super::guard::Stop;
+use super::limits::SAMPLE_BEAT;
+use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
 use carrystep_core::engine::{EngineInputs, LimitWiring, PUT_BEAT, QUEUE, TIME_SLOT_CLOCKS};
 
-impl Engine {
+impl Motion {
     /// Number of clocks in a tick.
     pub(crate) fn clocks_per_tick(&self) -> u32 {
         self.build.timebase.clocks_per_tick()
@@ -244,9 +245,9 @@ impl AxisModel {
         } = *moved;
         if let Some(segment) = &mut self.running {
             segment.v = moved.cubic.v;
+            segment.left = segment.left.wrapping_sub(strobes);
             if !ramp {
                 segment.a = moved.cubic.a;
-                segment.left -= strobes;
             }
         }
     }

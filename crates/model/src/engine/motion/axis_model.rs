@@ -7,6 +7,9 @@ use crate::parts::stage::{Stage, Step};
 use carrystep_core::engine::{Cause, Guard, LimitWiring, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
+/// Number of slots of an axis: those of its queue, and that of the running segment.
+const SLOTS: usize = QUEUE + 1;
+
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Queued {
@@ -68,6 +71,9 @@ pub(super) struct AxisModel {
     pub(super) stop: i64,
     pub(super) homing: Homing,
     pub(super) queue: VecDeque<Queued>,
+    /// Number of segments that have left the queue, modulo [`SLOTS`]: the slot of the running
+    /// segment, or of the last one that ran.
+    pub(super) slot: u8,
     /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Queued>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
@@ -98,6 +104,7 @@ impl AxisModel {
             stop: stop.cast_signed(),
             homing: Homing::default(),
             queue: VecDeque::new(),
+            slot: 0,
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
             next_word: 0,
@@ -111,6 +118,17 @@ impl AxisModel {
     /// Number of segments for which the queue has room.
     pub(super) fn room(&self) -> u8 {
         (QUEUE - self.queue.len()) as u8
+    }
+
+    /// Takes the first segment of the queue, if there is one, as the running segment.
+    pub(super) fn load(&mut self) {
+        self.running = self.queue.pop_front();
+        self.pass_slots(usize::from(self.running.is_some()));
+    }
+
+    /// Counts segments that leave the queue.
+    fn pass_slots(&mut self, segments: usize) {
+        self.slot = ((usize::from(self.slot) + segments) % SLOTS) as u8;
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
@@ -139,6 +157,7 @@ impl AxisModel {
             }
         }
         if self.homing.slows && next.running.is_none() {
+            next.pass_slots(next.queue.len());
             next.queue.clear();
         }
         let slows = self.homing.meets || (self.homing.slows && next.running.is_some());
@@ -157,6 +176,7 @@ impl AxisModel {
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
     fn add(&self, next: &mut Self, segment: Queued, tick: Tick<'_>) -> Option<Cause> {
         let Queued { left, v, a, j, last } = segment;
+        let segment = Queued { left: left.wrapping_sub(1), ..segment };
         let step = crosses(self.p, v)
             .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
         next.computed = Stage { step, sign: v.signum() as i8 };
@@ -176,15 +196,15 @@ impl AxisModel {
         }
         let (faster, unfit) = v.overflowing_add(a);
         let on = Queued { v: faster, a: a.wrapping_add(j), ..segment };
-        if let Some(left) = left.checked_sub(1) {
-            next.running = Some(Queued { left, ..on });
+        if left > 0 {
+            next.running = Some(on);
             next.unfit = unfit;
             return None;
         }
         if last {
             return None;
         }
-        next.running = next.queue.pop_front();
+        next.load();
         if next.running.is_some() {
             return None;
         }

@@ -1,0 +1,299 @@
+//! Reads a program line by line and gives its canonical moves one by one.
+
+use crate::canon::{Canon, Point, Step};
+use crate::comment;
+use crate::error::{ErrorKind, Fault, GcodeError};
+use crate::evaluate::{LAST_PARAMETER, Values as _, evaluate, parameter_number};
+use crate::execute;
+use crate::flow::Flow;
+use crate::grammar::{self, LineKind};
+use crate::motion::record_probe;
+use crate::options::Options;
+use crate::outcome::Outcome;
+use crate::outline::Outline;
+use crate::request::Request;
+use crate::seal::Seal;
+use crate::source::{Place, Source};
+use crate::squeeze::Squeezed;
+use crate::state::State;
+use crate::switches;
+use crate::syntax::{Block, Reference};
+use crate::values;
+use std::fs::File;
+use std::io::{Read, Seek};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A program that is being read: an iterator over its [`Step`]s.
+///
+/// The memory does not grow with the length of the program, but for a few words for each O-word.
+/// After an error, or after [`Canon::End`], the iterator is over.
+///
+/// ```
+/// use carrystep_gcode::{Canon, Interpreter, Options, Pace};
+/// use std::io::Cursor;
+///
+/// let program = Cursor::new("G20 G0 X1\nF60\nG1 Y2\nM2\n");
+/// let steps: Result<Vec<_>, _> =
+///     Interpreter::new(program, "example.ngc", &Options::default())?.collect();
+/// let steps = steps?;
+/// assert_eq!(steps[0].canon, Canon::Traverse { to: [25.4, 0.0, 0.0, 0.0, 0.0, 0.0] });
+/// let (to, pace) = ([25.4, 50.8, 0.0, 0.0, 0.0, 0.0], Pace::PerSecond(25.4));
+/// assert_eq!(steps[1].canon, Canon::Feed { to, pace });
+/// assert_eq!((steps[1].line, &steps[2].canon), (3, &Canon::End));
+/// # Ok::<(), carrystep_gcode::GcodeError>(())
+/// ```
+#[derive(Debug)]
+pub struct Interpreter<R> {
+    name: Arc<str>,
+    source: Source<R>,
+    seal: Option<Seal>,
+    flow: Flow,
+    state: State,
+    line: Squeezed,
+    block: Block,
+    /// Steps of the present line that are not given yet.
+    outcome: Outcome,
+    block_delete: bool,
+    /// Lines that may still run again.
+    blocks_left: u64,
+    blocks: u64,
+    /// The furthest place up to which the program has been read.
+    furthest: Place,
+    percents: u32,
+    is_over: bool,
+}
+
+impl Interpreter<File> {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// As [`Interpreter::new`], and if the file cannot be read. If the file changes before its last
+    /// step has been given, the iterator ends with an error.
+    pub fn open(path: &Path, options: &Options) -> Result<Self, GcodeError> {
+        let name: Arc<str> = path.display().to_string().into();
+        let fail = |kind| GcodeError { file: name.clone(), line: 0, column: 0, kind };
+        let (file, seal) = Seal::open(path).map_err(fail)?;
+        let mut this = Self::new(file, &name, options)?;
+        this.seal = Some(seal);
+        Ok(this)
+    }
+}
+
+impl<R: Read + Seek> Interpreter<R> {
+    /// Reads a program from its beginning. `name` is the name of the file in errors.
+    ///
+    /// All O-words are read at once, so that a program with an open block is refused here.
+    ///
+    /// # Errors
+    /// The program cannot be read, or an O-word is malformed or without its beginning or end.
+    pub fn new(input: R, name: &str, options: &Options) -> Result<Self, GcodeError> {
+        let name: Arc<str> = name.into();
+        let fail = |kind| GcodeError { file: name.clone(), line: 0, column: 0, kind };
+        let mut source = Source::new(input).map_err(fail)?;
+        let outline = Outline::read(&mut source, &name, options.block_delete)?;
+        source.jump(Place::default()).map_err(fail)?;
+        let mut state = State::new(options.start);
+        for &(number, value) in &options.parameters {
+            if (1..=LAST_PARAMETER).contains(&usize::from(number)) && value.is_finite() {
+                state.memory.set(number.into(), value);
+            }
+        }
+        state.refresh_frame();
+        Ok(Self {
+            name,
+            source,
+            seal: None,
+            flow: Flow::new(outline),
+            state,
+            line: Squeezed::default(),
+            block: Block::default(),
+            outcome: Outcome::default(),
+            block_delete: options.block_delete,
+            blocks_left: options.blocks,
+            blocks: options.blocks,
+            furthest: Place::default(),
+            percents: 0,
+            is_over: false,
+        })
+    }
+
+    /// The machine place after the last line that was executed.
+    pub fn place(&self) -> Point {
+        self.state.machine
+    }
+
+    /// The value of a numbered parameter, such as offsets that the machine keeps; 0 for numbers
+    /// without a parameter.
+    pub fn parameter(&self, number: u16) -> f64 {
+        self.state.numbered(number.into())
+    }
+
+    /// Reports the real machine place after a stop ([`Canon::Pause`] or [`Canon::ChangeTool`]),
+    /// before the next step is asked for. The coordinates must be finite.
+    pub fn set_place(&mut self, at: Point) {
+        self.state.machine = at;
+        self.state.program = self.state.frame.to_program(&at);
+    }
+
+    /// Reports the machine place at which the last [`Canon::Probe`] ended and whether the probe
+    /// tripped, before the next step is asked for. The coordinates must be finite.
+    pub fn probed(&mut self, at: Point, tripped: bool) {
+        self.set_place(at);
+        record_probe(&mut self.state, tripped);
+    }
+
+    /// The next step of the present line.
+    fn pending(&mut self) -> Result<Option<Canon>, ErrorKind> {
+        if let Some(canon) = self.outcome.before.pop_front() {
+            return Ok(Some(canon));
+        }
+        while let Some(stage) = self.outcome.cycle.as_mut().and_then(|cycle| cycle.next()) {
+            self.count_block()?;
+            if stage.is_some() {
+                return Ok(stage);
+            }
+        }
+        self.outcome.cycle = None;
+        Ok(self.outcome.after.pop_front())
+    }
+
+    fn count_block(&mut self) -> Result<(), ErrorKind> {
+        let left = self.blocks_left.checked_sub(1);
+        self.blocks_left = left.ok_or(ErrorKind::TooManyBlocks(self.blocks))?;
+        Ok(())
+    }
+
+    /// Reads and executes lines until there is a step; `None` after the last one.
+    fn next_step(&mut self) -> Result<Option<Step>, Fault> {
+        let whole = |kind| Fault::new(0, kind);
+        loop {
+            if let Some(canon) = self.pending().map_err(whole)? {
+                return Ok(Some(Step { line: self.state.line, canon }));
+            }
+            if self.outcome.ends {
+                return Ok(None);
+            }
+            let at = self.source.next_place();
+            self.state.line = at.lines + 1;
+            if !self.source.advance().map_err(whole)? {
+                // The end is at the last line, not behind it.
+                self.state.line = at.lines.max(1);
+                self.end();
+                continue;
+            }
+            if at.offset < self.furthest.offset {
+                self.count_block().map_err(whole)?;
+            } else {
+                self.furthest = self.source.next_place();
+            }
+            self.line.read(self.source.line())?;
+            match grammar::kind(&self.line) {
+                LineKind::Deletable if self.block_delete => continue,
+                LineKind::Percent => {
+                    self.percents += 1;
+                    if self.percents == 2 {
+                        self.end();
+                    }
+                    continue;
+                }
+                _ => {}
+            }
+            grammar::read(&self.line, &mut self.block)?;
+            for text in &self.line.comments {
+                self.outcome.before.push_back(comment::canon(text, &self.state));
+            }
+            if let Some(control) = &self.block.control {
+                if let Some(next) = self.flow.execute(at.offset, control, &mut self.state)? {
+                    self.source.jump(next).map_err(whole)?;
+                }
+            } else {
+                self.execute()?;
+            }
+        }
+    }
+
+    fn end(&mut self) {
+        switches::end(&mut self.state, &mut self.outcome.after);
+        self.outcome.ends = true;
+    }
+
+    /// Executes a line without O-word. Assignments take effect after all values are computed.
+    fn execute(&mut self) -> Result<(), Fault> {
+        if self.block.words.is_empty() && self.block.assignments.is_empty() {
+            return Ok(());
+        }
+        let mut request = Request::new(&self.block, &self.state)?;
+        self.assign()?;
+        execute::execute(&mut self.state, &mut request, &mut self.outcome)
+    }
+
+    fn assign(&mut self) -> Result<(), Fault> {
+        /// What is assigned to.
+        enum Target<'b> {
+            Number(usize),
+            Name(&'b str),
+        }
+        if self.block.assignments.is_empty() {
+            return Ok(());
+        }
+        let mut computed = Vec::with_capacity(self.block.assignments.len());
+        for assignment in &self.block.assignments {
+            let read_only = |name| Fault::new(assignment.column, ErrorKind::ReadOnly(name));
+            let target = match &assignment.reference {
+                Reference::Number(number) => {
+                    let number = parameter_number(number, &self.state)?;
+                    if values::is_read_only(number) {
+                        return Err(read_only(number.to_string()));
+                    }
+                    Target::Number(number)
+                }
+                Reference::Name(name) => {
+                    if values::machine_name(&self.state, name).is_some() {
+                        return Err(read_only(format!("<{name}>")));
+                    }
+                    Target::Name(name)
+                }
+            };
+            computed.push((target, evaluate(&assignment.value, &self.state)?));
+        }
+        for (target, value) in computed {
+            match target {
+                Target::Number(number) => self.state.memory.set(number, value),
+                Target::Name(name) => {
+                    let set = self.state.memory.set_name(name, value);
+                    set.map_err(|kind| Fault::new(0, kind))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<R: Read + Seek> Iterator for Interpreter<R> {
+    type Item = Result<Step, GcodeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.is_over {
+            return None;
+        }
+        let step = self.next_step();
+        let is_last = match &step {
+            Ok(Some(step)) => step.canon == Canon::End,
+            Ok(None) | Err(_) => true,
+        };
+        self.is_over = is_last;
+        let changed = || self.seal.as_ref().is_some_and(|seal| !seal.holds());
+        if is_last && changed() {
+            let kind = ErrorKind::Changed;
+            return Some(Err(GcodeError { file: self.name.clone(), line: 0, column: 0, kind }));
+        }
+        match step {
+            Ok(step) => step.map(Ok),
+            Err(Fault { column, kind }) => {
+                let (file, line) = (self.name.clone(), self.state.line);
+                Some(Err(GcodeError { file, line, column, kind }))
+            }
+        }
+    }
+}

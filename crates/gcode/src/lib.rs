@@ -1,0 +1,57 @@
+//! G-code as canonical moves.
+//!
+//! [`Interpreter`] reads a program in RS274/NGC, as LinuxCNC's milling programs and Grbl's senders
+//! use it, and gives its [`Step`]s one by one: straight moves, arcs, probes, dwells and switches,
+//! in machine coordinates, mm and degrees. `docs/gcode.md` lists the language.
+//!
+//! ```text
+//! lines    source     the file, line by line, and jumps
+//!          squeeze    without comments and blanks, with columns
+//!          grammar -> syntax       words, expressions, O-words
+//! control  outline    all O-words and where they lead, before the first line is executed
+//!          flow       which line is next
+//! values   evaluate   expressions; parameters in memory and values
+//! words    request    one code of each modal group (codes), one value of each letter
+//!          execute    in the order of LinuxCNC, on a state with a frame of offsets
+//!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
+//!            offsets  coordinate systems and stored places
+//!            switches spindle, coolant, tool, outputs
+//! ```
+//!
+//! The memory is constant, whatever the length of the program, but for the O-words. No program
+//! makes the interpreter panic or run without end: brackets, calls and lines that run again are
+//! limited.
+
+pub mod canon;
+mod circle;
+mod codes;
+mod comment;
+mod cycle;
+mod drill;
+pub mod error;
+mod evaluate;
+mod execute;
+mod flow;
+mod frame;
+mod grammar;
+mod interpreter;
+mod memory;
+mod motion;
+mod offsets;
+mod options;
+mod outcome;
+mod outline;
+mod polar;
+mod request;
+mod seal;
+mod source;
+mod squeeze;
+mod state;
+mod switches;
+mod syntax;
+mod values;
+
+pub use canon::{AXES, AXIS_LETTERS, Arc, Canon, Pace, PathMode, Plane, Point, Step, Turn};
+pub use error::{ErrorKind, GcodeError};
+pub use interpreter::Interpreter;
+pub use options::{DEFAULT_BLOCKS, Options};

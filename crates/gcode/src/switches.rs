@@ -1,0 +1,120 @@
+//! Executes the words that switch something: spindle, coolant, tool, outputs, overrides.
+
+use crate::canon::{Canon, Turn};
+use crate::codes::Group;
+use crate::error::{ErrorKind, Fault};
+use crate::outcome::Outcome;
+use crate::request::Request;
+use crate::state::State;
+use std::collections::VecDeque;
+
+/// Greatest value of S.
+const FASTEST: f64 = 1e9;
+
+/// S.
+pub(crate) fn spindle_speed(
+    state: &mut State,
+    request: &mut Request,
+    out: &mut Outcome,
+) -> Result<(), Fault> {
+    let Some(rpm) = request.take(b's') else { return Ok(()) };
+    if !(0.0..=FASTEST).contains(&rpm) {
+        return Err(request.out_of_range(b's', rpm, "0 to 10^9"));
+    }
+    let changes = rpm != state.modal.rpm;
+    state.modal.rpm = rpm;
+    if changes && state.modal.spindle != Turn::Off && request.code(Group::Spindle).is_none() {
+        out.before.push_back(Canon::Spindle { turn: state.modal.spindle, rpm });
+    }
+    Ok(())
+}
+
+/// T.
+pub(crate) fn tool(
+    state: &mut State,
+    request: &mut Request,
+    out: &mut Outcome,
+) -> Result<(), Fault> {
+    if let Some(tool) = request.take_whole(b't', 99_999, "0 to 99999")? {
+        state.modal.selected_tool = tool;
+        out.before.push_back(Canon::SelectTool { tool });
+    }
+    Ok(())
+}
+
+/// M62 to M65, M67 and M68.
+pub(crate) fn output(request: &mut Request, out: &mut Outcome) -> Result<(), Fault> {
+    let Some(code) = request.code(Group::Output) else { return Ok(()) };
+    let with_motion = matches!(code.tenths, 620 | 630 | 670);
+    let missing = |word| ErrorKind::Missing { code: code.to_string(), word };
+    out.before.push_back(if code.tenths >= 670 {
+        let index = request.take_whole(b'e', 255, "0 to 255")?;
+        let index = index.ok_or_else(|| Fault::new(code.column, missing("E, the output")))?;
+        let value = request.need(b'q', code, "Q, the value")?;
+        Canon::AnalogOutput { index, value, with_motion }
+    } else {
+        let index = request.take_whole(b'p', 255, "0 to 255")?;
+        let index = index.ok_or_else(|| Fault::new(code.column, missing("P, the output")))?;
+        Canon::DigitalOutput { index, on: matches!(code.tenths, 620 | 640), with_motion }
+    });
+    Ok(())
+}
+
+/// M6.
+pub(crate) fn change_tool(state: &mut State, request: &Request, out: &mut Outcome) {
+    if request.code(Group::Tool).is_some() {
+        spindle_off(state, &mut out.before);
+        state.modal.tool = state.modal.selected_tool;
+        out.before.push_back(Canon::ChangeTool { tool: state.modal.tool });
+    }
+}
+
+fn spindle_off(state: &mut State, to: &mut VecDeque<Canon>) {
+    if state.modal.spindle != Turn::Off {
+        state.modal.spindle = Turn::Off;
+        to.push_back(Canon::Spindle { turn: Turn::Off, rpm: state.modal.rpm });
+    }
+}
+
+/// M3, M4 and M5.
+pub(crate) fn spindle(state: &mut State, request: &Request, out: &mut Outcome) {
+    if let Some(code) = request.code(Group::Spindle) {
+        let turn = match code.tenths {
+            30 => Turn::Clockwise,
+            40 => Turn::Counterclockwise,
+            _ => Turn::Off,
+        };
+        state.modal.spindle = turn;
+        out.before.push_back(Canon::Spindle { turn, rpm: state.modal.rpm });
+    }
+}
+
+/// M7, M8 and M9.
+pub(crate) fn coolant(state: &mut State, request: &Request, out: &mut Outcome) {
+    let Some(code) = request.code(Group::Coolant) else { return };
+    let modal = &mut state.modal;
+    match code.tenths {
+        70 => modal.mist = true,
+        80 => modal.flood = true,
+        _ => (modal.mist, modal.flood) = (false, false),
+    }
+    out.before.push_back(Canon::Coolant { mist: modal.mist, flood: modal.flood });
+}
+
+/// M48 and M49.
+pub(crate) fn overrides(state: &mut State, request: &Request, out: &mut Outcome) {
+    if let Some(code) = request.code(Group::Overrides) {
+        state.modal.overrides = code.tenths == 480;
+        out.before.push_back(Canon::Overrides { enabled: state.modal.overrides });
+    }
+}
+
+/// The end of the program: spindle and coolant are switched off.
+pub(crate) fn end(state: &mut State, to: &mut VecDeque<Canon>) {
+    spindle_off(state, to);
+    if state.modal.mist || state.modal.flood {
+        (state.modal.mist, state.modal.flood) = (false, false);
+        to.push_back(Canon::Coolant { mist: false, flood: false });
+    }
+    to.push_back(Canon::End);
+}

@@ -1,0 +1,178 @@
+//! What the host reads: the words of the state of every axis, tick by tick, and snapshots.
+//!
+//! ```text
+//! beat        4    5    6    7    8    9    10   11   12
+//! state       P    n    pos                 P'   tick status
+//!
+//! snapshot    ___/^\_________________________________
+//! asked       _____/^^^^^^^^^\_______________________
+//! takes       ______________/^^^^^^^^^^^^^\__________   from strobe to strobe
+//! page        live           | snapshot   | live
+//! ```
+//!
+//! Each time slot reads the state of its axis from memory anyway, one word per clock. This module
+//! names the words: it outputs page and item beside the word that the memory returns. The words of
+//! a tick all belong to the strobe before it, so a tick whose words go to a page of their own is a
+//! snapshot of all axes. A snapshot waits while an axis needs the next tick for the page at its
+//! limit.
+//!
+//! Interface: the host's link stores each word at the address that page, item and axis make.
+//!
+//! Cost: three flip-flops and some 30 cells, half of which put the status in place of a word of the
+//! memory.
+
+use super::layout::{
+    BEAT_STATE_LEFT, BEAT_STATE_P_HIGH, BEAT_STATE_P_LOW, BEAT_STATE_POSITION, BEAT_STATE_STATUS,
+    BEAT_STATE_TICK,
+};
+use crate::primitives::constant::Literal;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use rust_hdl::prelude::*;
+
+/// Pages and items of the words of state, and the requests for snapshots.
+#[derive(LogicBlock, Default)]
+pub struct Readout {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// Asserted in the last clock of a tick.
+    pub strobe: Input<Bit>,
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
+    pub beat: Input<Word<17>>,
+    /// The time slot is that of the last axis.
+    pub is_last: Input<Bit>,
+    /// The host requests a snapshot.
+    pub snapshot: Input<Bit>,
+    /// In beat 12: the axis, which waits for its limit, has found it.
+    pub caught: Input<Bit>,
+    /// The axis found its limit in the tick before, while it waited for it.
+    pub met: Input<Bit>,
+    /// The word that the memory returns.
+    pub word: Input<Word<32>>,
+    /// The slot of the running segment.
+    pub live: Input<Word<3>>,
+    /// The axis runs in this tick.
+    pub running: Input<Bit>,
+    /// The number of segments for which the queue has space.
+    pub room: Input<Word<3>>,
+    /// Carries less counted steps, modulo 16.
+    pub on_way: Input<Word<4>>,
+    /// A word of the state of the axis of this time slot is output.
+    pub valid: Signal<Out, Bit>,
+    /// Its page.
+    pub page: Signal<Out, Word<2>>,
+    /// Its item.
+    pub item: Signal<Out, Word<3>>,
+    /// The word. Of the status, bits 31 to 16 have no meaning.
+    pub state: Signal<Out, Word<32>>,
+    /// All live words of this tick have been output.
+    pub refreshed: Signal<Out, Bit>,
+    asked: Register<Bit>,
+    takes: Register<Bit>,
+    found: Register<Bit>, // in this tick an axis has found the limit for which it waited
+    status: Signal<Local, Word<16>>,
+    low: Signal<Local, Word<16>>,
+    running_now: Signal<Local, Word<16>>,
+    waiting: Signal<Local, Word<3>>,
+    ticks_left: Signal<Local, Bit>,
+    p_or_position: Signal<Local, Bit>,
+    odd: Signal<Local, Bit>,
+    high_half: Literal<32, 0xffff_0000>,
+    no_status: Literal<16, 0>,
+    running_bit: Literal<16, 0x20>,
+    at_6: Literal<4, 6>,
+    at_12: Literal<4, 12>,
+    no_page: Literal<2, 0>,
+    live_page: Literal<2, 1>,
+    snapshot_page: Literal<2, 2>,
+    no_item: Literal<3, 0>,
+    odd_item: Literal<3, 1>,
+    middle_item: Literal<3, 2>,
+    high_item: Literal<3, 4>,
+}
+
+impl Logic for Readout {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, asked, takes, found);
+
+        // Requests for snapshots.
+        if self.caught.val() {
+            self.found.d.next = true;
+        }
+        if self.strobe.val() {
+            self.takes.d.next = self.asked.q.val() & !self.found.q.val();
+            self.asked.d.next = self.asked.q.val() & self.found.q.val();
+            self.found.d.next = false;
+        }
+        if self.snapshot.val() {
+            self.asked.d.next = true;
+        }
+
+        // The page.
+        self.page.next = self.live_page.val();
+        if self.met.val() {
+            self.page.next = self.no_page.val();
+        }
+        if self.takes.q.val() {
+            self.page.next = self.snapshot_page.val();
+        }
+
+        // The item, bit by bit: 0 discarded, 1 left, 3 tick, 4 and 5 P, 6 position, 7 status.
+        self.ticks_left.next = self.beat.val().get_bit(BEAT_STATE_LEFT);
+        self.p_or_position.next = self.beat.val().get_bit(BEAT_STATE_P_LOW)
+            | self.beat.val().get_bit(BEAT_STATE_P_HIGH)
+            | self.beat.val().get_bit(BEAT_STATE_POSITION);
+        self.odd.next = (self.ticks_left.val() & self.running.val())
+            | self.beat.val().get_bit(BEAT_STATE_P_HIGH)
+            | self.beat.val().get_bit(BEAT_STATE_TICK)
+            | self.beat.val().get_bit(BEAT_STATE_STATUS);
+        self.item.next = self.no_item.val();
+        if self.odd.val() {
+            self.item.next = self.odd_item.val();
+        }
+        if self.beat.val().get_bit(BEAT_STATE_TICK)
+            | self.beat.val().get_bit(BEAT_STATE_POSITION)
+            | self.beat.val().get_bit(BEAT_STATE_STATUS)
+        {
+            self.item.next = self.item.val() | self.middle_item.val();
+        }
+        if self.p_or_position.val() | self.beat.val().get_bit(BEAT_STATE_STATUS) {
+            self.item.next = self.item.val() | self.high_item.val();
+        }
+        self.valid.next = (self.ticks_left.val() & !self.met.val())
+            | self.p_or_position.val()
+            | self.beat.val().get_bit(BEAT_STATE_TICK)
+            | self.beat.val().get_bit(BEAT_STATE_STATUS);
+
+        // The word. A queue of seven slots has room for the complement of what waits.
+        self.running_now.next = self.no_status.val();
+        if self.running.val() {
+            self.running_now.next = self.running_bit.val();
+        }
+        self.waiting.next = !self.room.val();
+        self.status.next = bit_cast::<16, 3>(self.live.val())
+            | self.running_now.val()
+            | (bit_cast::<16, 3>(self.waiting.val()) << self.at_6.val())
+            | (bit_cast::<16, 4>(self.on_way.val()) << self.at_12.val());
+        self.low.next = self.word.val().get_bits::<16>(0);
+        if self.beat.val().get_bit(BEAT_STATE_STATUS) {
+            self.low.next = self.status.val();
+        }
+        self.state.next =
+            (self.word.val() & self.high_half.val()) | bit_cast::<32, 16>(self.low.val());
+        self.refreshed.next =
+            self.beat.val().get_bit(BEAT_STATE_STATUS) & self.is_last.val() & !self.takes.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn readout_synthesizes() {
+        assert_synthesizes(Readout::default(), "carrystep_readout");
+    }
+}

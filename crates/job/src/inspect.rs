@@ -1,0 +1,164 @@
+//! Measures the emitted curve: speed, acceleration and jerk of each motor, and the distance from
+//! the programmed path.
+
+use crate::limits::Motors;
+use crate::path::{Corner, Path, Place};
+use crate::rough::Knot;
+use crate::speed::Instant;
+use crate::spline::value;
+use crate::vector::{Point, from_to};
+
+/// Part of the limits that may be used; the rest is for rounding to integers.
+const LIMIT_PART: f64 = 1.0 - 1e-7;
+/// Part of the tolerance that may be used at the places that are measured; the rest is for the
+/// places between them.
+const TOLERANCE_PART: f64 = 0.97;
+
+/// Where the distance from the path is measured between two knots, beside the corner.
+const PHASES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+/// How often the time is halved in which the curve passes a corner.
+const HALVINGS: usize = 10;
+
+/// A place where the emitted curve exceeds a limit or the tolerance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fault<const N: usize> {
+    /// Parameter of the smoothed curve.
+    pub u: f64,
+    /// The value as a part of what is allowed, over 1.
+    pub excess: f64,
+    /// From the path, or from its corner, to the curve, if the tolerance is exceeded; otherwise it is a limit.
+    pub off: Option<Point<N>>,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Inspector<const N: usize> {
+    motors: Motors<N>,
+    knot_seconds: f64,
+    /// The last four control points of the emitted curve, of the letters and of the motors.
+    letters: [Point<N>; 4],
+    turned: [Point<N>; 4],
+    /// The greatest parameter of the path so far.
+    place: Place,
+    /// Parameter and place of the last four control points.
+    u: [f64; 4],
+    places: [Place; 4],
+}
+
+impl<const N: usize> Inspector<N> {
+    pub fn new(motors: Motors<N>, knot_seconds: f64) -> Self {
+        Self {
+            motors,
+            knot_seconds,
+            letters: [[0.0; N]; 4],
+            turned: [[0.0; N]; 4],
+            place: Place::default(),
+            u: [0.0; 4],
+            places: [Place::default(); 4],
+        }
+    }
+
+    /// The curve has been at rest at this knot.
+    pub fn rest(&mut self, knot: Knot<N>) {
+        self.letters = [knot.point; 4];
+        self.turned = [self.motors.of(&knot.point); 4];
+        self.place = knot.place;
+        self.u = [0.0; 4];
+        self.places = [knot.place; 4];
+    }
+
+    /// Where on the path the curve was at the last measured place.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Parameter and acceleration, as a part of its limit, at the last measured knot.
+    pub fn accelerated(&self) -> (f64, f64) {
+        let [_, b, c, d] = &self.turned;
+        let square = self.knot_seconds * self.knot_seconds;
+        let parts = self
+            .motors
+            .limits
+            .iter()
+            .enumerate()
+            .map(|(i, limit)| (d[i] - 2.0 * c[i] + b[i]).abs() / (limit.acceleration * square));
+        (self.u[2], parts.fold(0.0, f64::max))
+    }
+
+    /// Parameters are counted from a later grid point from now on.
+    pub fn rebase(&mut self, by: f64) {
+        self.u.iter_mut().for_each(|u| *u -= by);
+    }
+
+    /// Adds the next control point; measures the curve between the two points before the last.
+    pub fn push(
+        &mut self,
+        emitted: &Instant<N>,
+        path: &Path<N>,
+    ) -> impl Iterator<Item = Fault<N>> + use<N> {
+        self.letters = [self.letters[1], self.letters[2], self.letters[3], emitted.knot.point];
+        let motors = self.motors.of(&emitted.knot.point);
+        self.turned = [self.turned[1], self.turned[2], self.turned[3], motors];
+        self.u = [self.u[1], self.u[2], self.u[3], emitted.u];
+        self.places = [self.places[1], self.places[2], self.places[3], emitted.ahead];
+        let excess = self.limits() / LIMIT_PART;
+        let limit = (excess > 1.0).then_some(Fault { u: self.u[2], excess, off: None });
+        limit.into_iter().chain(self.off(path))
+    }
+
+    /// The greatest value as a part of its limit: differences of the last control points.
+    fn limits(&self) -> f64 {
+        let [a, b, c, d] = &self.turned;
+        let t = self.knot_seconds;
+        let mut greatest = 0.0_f64;
+        for (i, limit) in self.motors.limits.iter().enumerate() {
+            let (first, second) = (d[i] - c[i], d[i] - 2.0 * c[i] + b[i]);
+            let third = d[i] - 3.0 * c[i] + 3.0 * b[i] - a[i];
+            greatest = greatest
+                .max(first.abs() / (limit.speed * t))
+                .max(second.abs() / (limit.acceleration * t * t))
+                .max(third.abs() / (limit.jerk * t * t * t));
+        }
+        greatest
+    }
+
+    /// Where the distance from the path exceeds the tolerance most, between the second and third of
+    /// the last control points.
+    fn off(&mut self, path: &Path<N>) -> Option<Fault<N>> {
+        let before = self.place;
+        // The search goes as far as the curve cannot have gone.
+        let end = path.nearest(&value(&self.letters, 1.0), before, self.places[3])?;
+        if end.place > self.place {
+            self.place = end.place;
+        }
+        let measured = |phase: f64, tip: Option<(&Point<N>, f64)>| {
+            let here = value(&self.letters, phase);
+            let near = path.nearest(&here, before, end.place)?;
+            let piece = path.piece(near.place.piece)?;
+            let mut excess = path.off(&near.point, &here, piece).sqrt() / TOLERANCE_PART;
+            if let Some((tip, reach)) = tip {
+                excess = excess.max(path.off(tip, &here, piece).sqrt() / (TOLERANCE_PART * reach));
+            }
+            let u = self.u[1] + phase * (self.u[2] - self.u[1]);
+            let from = tip.map_or(&near.point, |(tip, _)| tip);
+            (excess > 1.0).then(|| Fault { u, excess, off: Some(from_to(from, &here)) })
+        };
+        let passes = |phase: f64, corner: &Corner| {
+            path.nearest(&value(&self.letters, phase), before, end.place)
+                .is_some_and(|near| near.place.piece > corner.piece)
+        };
+        // At a corner, the distance is greatest where both of its sides are equally near.
+        let cut = path.sharpest(before, end.place).map(|corner| {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = (low + high) / 2.0;
+                if passes(middle, &corner) { high = middle } else { low = middle }
+            }
+            // Between both sides, the distance grows in proportion to that from the corner.
+            measured(high, path.piece(corner.piece).map(|piece| (&piece.end, corner.reach())))
+        });
+        let cut = cut.flatten();
+        let phases = PHASES.iter();
+        let faults = phases.filter_map(|&phase| measured(phase, None)).chain(cut);
+        faults.max_by(|a, b| a.excess.total_cmp(&b.excess))
+    }
+}

@@ -1,0 +1,107 @@
+//! The public planner: items of a path in, rows of segments out.
+//!
+//! [`Planner::push`] only stores an item. [`Planner::next_row`] works as far as the next row needs,
+//! so that no item, however long it takes, makes memory grow.
+
+use crate::element::Item;
+use crate::error::JobError;
+use crate::job::{Job, Jobs};
+use crate::kinematics::Kinematics;
+use crate::row::Row;
+use carrystep_files::Machine;
+
+/// Plans a job while it is read. Memory does not grow with its length.
+#[derive(Debug)]
+pub struct Planner {
+    job: Box<dyn Jobs>,
+    ended: bool,
+}
+
+impl Planner {
+    /// A planner for a machine whose letters are at these places, mm or degrees. The first `linear`
+    /// letters (at most three) are linear, the others rotary. The start is rounded to whole steps.
+    ///
+    /// # Errors
+    /// [`JobError::Axes`], [`JobError::Coordinates`] and [`JobError::Number`], all with line 0.
+    pub fn new(
+        machine: &Machine,
+        kinematics: &dyn Kinematics,
+        linear: usize,
+        start: &[f64],
+    ) -> Result<Self, JobError> {
+        let job: Box<dyn Jobs> = match machine.axes.len() {
+            1 => Box::new(Job::<1>::new(machine, kinematics, linear, start)?),
+            2 => Box::new(Job::<2>::new(machine, kinematics, linear, start)?),
+            3 => Box::new(Job::<3>::new(machine, kinematics, linear, start)?),
+            4 => Box::new(Job::<4>::new(machine, kinematics, linear, start)?),
+            5 => Box::new(Job::<5>::new(machine, kinematics, linear, start)?),
+            6 => Box::new(Job::<6>::new(machine, kinematics, linear, start)?),
+            other => return Err(JobError::Axes(other)),
+        };
+        Ok(Self { job, ended: false })
+    }
+
+    /// Stores the next item of the path. Take rows until there is none before the next item, so
+    /// that memory stays small.
+    ///
+    /// # Errors
+    /// What is wrong with the item, with its line. [`JobError::Ended`] after [`Planner::finish`].
+    pub fn push(&mut self, item: &Item) -> Result<(), JobError> {
+        if self.ended {
+            return Err(JobError::Ended);
+        }
+        self.job.push(item)
+    }
+
+    /// The path ends at rest. The last row is marked as the last one.
+    ///
+    /// # Errors
+    /// As [`Planner::push`], about the last element.
+    pub fn finish(&mut self) -> Result<(), JobError> {
+        if self.ended {
+            return Err(JobError::Ended);
+        }
+        self.ended = true;
+        self.job.finish()
+    }
+
+    /// The next row, or `None` if more items are needed (after [`Planner::finish`]: at the end).
+    ///
+    /// # Errors
+    /// [`JobError::Stuck`] and [`JobError::Broken`]. No row comes after an error.
+    pub fn next_row(&mut self) -> Result<Option<Row>, JobError> {
+        let row = self.job.next_row();
+        if row.is_err() {
+            self.ended = true;
+        }
+        row
+    }
+}
+
+/// Plans all items; stops after the first error.
+pub fn rows<I: IntoIterator<Item = Item>>(
+    mut planner: Planner,
+    items: I,
+) -> impl Iterator<Item = Result<Row, JobError>> {
+    let mut items = items.into_iter();
+    let mut failed = false;
+    std::iter::from_fn(move || {
+        while !failed {
+            let done = planner.ended;
+            let step = match planner.next_row() {
+                Ok(Some(row)) => return Some(Ok(row)),
+                Ok(None) if done => return None,
+                Ok(None) => match items.next() {
+                    Some(item) => planner.push(&item),
+                    None => planner.finish(),
+                },
+                Err(error) => Err(error),
+            };
+            if let Err(error) = step {
+                failed = true;
+                return Some(Err(error));
+            }
+        }
+        None
+    })
+}

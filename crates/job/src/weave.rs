@@ -1,0 +1,144 @@
+//! From control points to integer segments that land exactly.
+//!
+//! Control points are converted to integers of 2^-64 step, and everything after that is exact. With
+//! knots n ticks apart, a segment from knot k to knot k + 1 has J = d3 / n^3 and A = d2 / n^2 + J,
+//! rounded toward zero (`spline.rs` defines the differences), and the V that brings P to the
+//! spline's value at knot k + 1, to within n/2 units. What is left over is part of the next
+//! segment's distance. The rounding of A and J moves P inside a segment by less than
+//! n^2/2 + n^3/6 units, which is 10^-9 step for n = 4000.
+//!
+//! A run ends with a segment of n + 1 ticks. Because n and n + 1 have no common divisor, taking r
+//! from the V before it and adding r to its own V moves the end by r units, whatever r is.
+
+use crate::error::Rule;
+use carrystep_core::Segment;
+use carrystep_plan::exact::{ExactLimits, speeds, travel};
+
+/// Greatest jump of the acceleration at a boundary, as a part of the limit: 1/50.
+const JUMP: i128 = 50;
+/// Greatest distance between P and the spline at a knot, 2^-64 step: a quarter of a step.
+const QUARTER: i128 = 1 << 62;
+
+/// The segments of all motors between two knots.
+#[derive(Debug, Clone)]
+pub(crate) struct Span<const N: usize> {
+    pub ticks: u32,
+    pub segments: [Segment; N],
+}
+
+/// The integer state of all motors.
+#[derive(Debug)]
+pub(crate) struct Weave<const N: usize> {
+    ticks: u32,
+    limits: [ExactLimits; N],
+    /// The last three control points, 2^-64 step from machine zero.
+    control: [[i128; N]; 3],
+    /// Where P is after the last span.
+    at: [i128; N],
+    /// A in the last tick of the span before.
+    acceleration: [i128; N],
+    held: Option<Span<N>>,
+}
+
+/// A rule that the segment of a motor breaks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Broken {
+    pub axis: usize,
+    pub rule: Rule,
+}
+
+impl<const N: usize> Weave<N> {
+    /// All motors rest at these whole positions, in units of 2^-64 step.
+    pub fn new(ticks: u32, limits: [ExactLimits; N], at: [i128; N]) -> Self {
+        Self { ticks, limits, control: [at; 3], at, acceleration: [0; N], held: None }
+    }
+
+    /// Whether the next control point leaves the place of rest.
+    pub fn leaves(&self, point: &[i128; N]) -> bool {
+        self.held.is_some() || *point != self.at
+    }
+
+    /// Adds a control point; gives the span before the one that it completes.
+    ///
+    /// # Errors
+    /// The rule that the finished span breaks.
+    pub fn push(&mut self, point: [i128; N]) -> Result<Option<Span<N>>, Broken> {
+        let span = self.span(self.ticks, point)?;
+        let done = self.held.replace(span);
+        match done {
+            None => Ok(None),
+            Some(done) => self.checked(done).map(Some),
+        }
+    }
+
+    /// Adds the last control point of a run; the two before it are at the same place. Gives the
+    /// last two spans.
+    ///
+    /// # Errors
+    /// The rule that a finished span breaks.
+    pub fn land(&mut self, target: [i128; N]) -> Result<Vec<Span<N>>, Broken> {
+        let Some(mut before) = self.held.take() else { return Ok(Vec::new()) };
+        let mut last = self.span(self.ticks + 1, target)?;
+        for (axis, (target, at)) in target.iter().zip(&self.at).enumerate() {
+            let rest = i64::try_from(target - at);
+            let rest = rest.map_err(|_| Broken { axis, rule: Rule::Landing })?;
+            before.segments[axis].v -= rest;
+            last.segments[axis].v += rest;
+        }
+        self.at = target;
+        self.control = [target; 3];
+        Ok(vec![self.checked(before)?, self.checked(last)?])
+    }
+
+    /// The span that a control point completes. P goes on to its end.
+    fn span(&mut self, ticks: u32, point: [i128; N]) -> Result<Span<N>, Broken> {
+        let mut segments = [Segment { ticks, v: 0, a: 0, j: 0, last: false }; N];
+        let n = i128::from(ticks);
+        for (axis, segment) in segments.iter_mut().enumerate() {
+            let [c0, c1, c2] = self.control.map(|c| c[axis]);
+            let c3 = point[axis];
+            let (second, third) = (c2 - 2 * c1 + c0, c3 - 3 * c2 + 3 * c1 - c0);
+            let register =
+                |value: i128| i64::try_from(value).map_err(|_| Broken { axis, rule: Rule::Range });
+            segment.j = register(third / (n * n * n))?;
+            segment.a = register((second * n + third) / (n * n * n))?;
+            let goal = (c1 + 4 * c2 + c3).div_euclid(6);
+            let left = goal - self.at[axis] - travel(segment, u64::from(ticks));
+            segment.v = register((left + n / 2).div_euclid(n))?;
+            self.at[axis] += travel(segment, u64::from(ticks));
+            if (goal - self.at[axis]).abs() > QUARTER {
+                return Err(Broken { axis, rule: Rule::Position });
+            }
+        }
+        self.control = [self.control[1], self.control[2], point];
+        Ok(Span { ticks, segments })
+    }
+
+    /// Checks a finished span, in integers, at its ends and extremes.
+    fn checked(&mut self, span: Span<N>) -> Result<Span<N>, Broken> {
+        for (axis, segment) in span.segments.iter().enumerate() {
+            let limits = &self.limits[axis];
+            let broken = |rule| Err(Broken { axis, rule });
+            let (a, j) = (i128::from(segment.a), i128::from(segment.j));
+            let end = a + (i128::from(segment.ticks) - 1) * j;
+            let fastest = speeds(segment).map(i128::abs).max().unwrap_or(0);
+            if fastest >= 1 << 63 {
+                return broken(Rule::Range);
+            }
+            if fastest > limits.speed {
+                return broken(Rule::Speed);
+            }
+            if a.abs().max(end.abs()) > limits.acceleration {
+                return broken(Rule::Acceleration);
+            }
+            if limits.jerk.is_some_and(|most| j.abs() > most) {
+                return broken(Rule::Jerk);
+            }
+            if (a - self.acceleration[axis]).abs() > limits.acceleration / JUMP {
+                return broken(Rule::Jump);
+            }
+            self.acceleration[axis] = end;
+        }
+        Ok(span)
+    }
+}

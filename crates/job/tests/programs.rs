@@ -1,0 +1,80 @@
+//! The test programs, from text to integers: limits, rhythm, tolerance, landing, and their times
+//! beside those of other rules.
+
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
+
+mod common;
+
+use carrystep_job::Item;
+use common::distance::Follow;
+use common::measure::{planned, times};
+use common::reader;
+use common::replay::Replay;
+
+const PROGRAMS: [&str; 4] =
+    ["square_and_arc.ngc", "chords_and_star.ngc", "trochoid.ngc", "relief.ngc"];
+
+/// Places of each row at which the distance from the path is measured.
+const PLACES: u32 = 16;
+
+#[test]
+fn programs_keep_limits_rhythm_and_tolerance_and_land_exactly() {
+    let machine = common::machine(&reader::file("machine.toml"));
+    for name in PROGRAMS {
+        let items = reader::read(&reader::file(name));
+        let rows = planned(&machine, &items);
+        let mut replay = Replay::new(&machine);
+        let mut follow = Follow::new(&[0.0; 3], &items);
+        let mut worst = 0.0_f64;
+        for row in &rows {
+            assert!((4000..=16_000).contains(&row.ticks), "{name}: {} ticks", row.ticks);
+            for place in 0..PLACES {
+                worst = worst.max(follow.off(&replay.at(row, row.ticks / PLACES * place)));
+            }
+            replay.run(row);
+        }
+        assert!(worst <= 1.0, "{name}: {worst} of the tolerance");
+        assert!(worst > 0.5, "{name}: the tolerance is not used: {worst}");
+        assert!(follow.reached + 2 >= follow.elements(), "{name}");
+        replay.assert_limits(&machine);
+        let Some(Item::Move(last)) = items.last() else { panic!("{name} has moves") };
+        for ((axis, to), steps) in replay.axes.iter().zip(&last.to).zip([80.0, 80.0, 400.0]) {
+            assert_eq!(axis.distance, ((to * steps).round() as i128) << 64, "{name}");
+        }
+        assert!(rows.last().unwrap().segments.iter().all(|s| s.last));
+        assert_eq!(rows.iter().filter(|row| row.segments.iter().any(|s| s.last)).count(), 1);
+    }
+}
+
+#[test]
+fn programs_are_nearly_as_fast_as_rules_without_a_jerk_limit() {
+    let machine = common::machine(&reader::file("machine.toml"));
+    for name in PROGRAMS {
+        let times = times(&machine, &reader::read(&reader::file(name)));
+        assert!(times.inner <= 1.03 * times.least, "{name}: {times:?}");
+        assert!(times.inner >= times.least, "{name} is faster than possible: {times:?}");
+        // On the trochoid, chords let Grbl's rule pass arcs faster than their acceleration allows.
+        if name != "trochoid.ngc" {
+            assert!(times.ours <= 1.10 * times.grbl, "{name}: {times:?}");
+        }
+        assert!(times.ours < times.rest_to_rest, "{name}: {times:?}");
+    }
+}
+
+#[test]
+fn references_give_the_published_times_of_simple_programs() {
+    use common::reference::{Limits, grbl};
+    let limits = Limits { speed: vec![100.0; 3], acceleration: vec![1000.0; 3] };
+    let read = |text: &str| reader::read(text);
+    // A trapezoid of 20 mm at 100 mm/s and 1000 mm/s^2 takes 0.2 s + 0.1 s.
+    let one = read("G1 X20 F6000");
+    assert!((grbl(&one, &limits, 0.01) - 0.3).abs() < 1e-12);
+    // A corner of 90 degrees is passed at 5.84 mm/s (a sqrt 2 along the junction).
+    let corner = (1000.0 * 2_f64.sqrt() * 0.01 * 0.5_f64.sqrt() / (1.0 - 0.5_f64.sqrt())).sqrt();
+    assert!((corner - 5.84).abs() < 0.01);
+    let expected = 2.0 * (0.3 - corner / 1000.0 + corner * corner / (2.0 * 1000.0 * 100.0));
+    let two = grbl(&read("G1 X20 F6000\nG1 Y20"), &limits, 0.01);
+    assert!((two - expected).abs() < 1e-9, "{two} {expected}");
+    let stop = grbl(&read("G1 X20 F6000\nG1 Y20"), &limits, 0.0);
+    assert!((stop - 0.6).abs() < 1e-9, "{stop}");
+}

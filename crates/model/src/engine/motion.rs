@@ -1,0 +1,270 @@
+//! The engine without the words of state that it outputs for a host: up to eight accumulators with
+//! queues. The results of a tick take effect for all axes together at the strobe that ends it. The
+//! contract is the section "engine" of docs/clock-by-clock.md up to "Homing"; change both together.
+//!
+//! ```text
+//! tick     |       n       |     n + 1     |     n + 2     |
+//! strobe   _______________/^______________/^______________/^
+//! segment  |  committed    |  in the queue
+//! step     |  computed     |  waits        |  requested in phase q
+//! ```
+//!
+//! A segment whose commit arrives in tick n is in the queue from tick n + 1 on. The additions of
+//! tick n find a step and its phase q; the strobe that ends tick n commits them. The step is
+//! requested of the shaper two ticks later, in the first clock of phase q of tick n + 2, and is on
+//! the pin one clock after that.
+
+mod axis_model;
+mod guard;
+mod inspection;
+mod limits;
+mod observed;
+mod plain;
+mod reset;
+mod strobe;
+
+use crate::parts::shaper;
+use axis_model::{AxisModel, Queued, Tick};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use guard::{Stop, Supervisor};
+pub(crate) use observed::Ending;
+use reset::Reset;
+use std::sync::Arc;
+use strobe::Decision;
+
+/// The state of the motion. [`Motion::outputs`] and [`Motion::clock`] together are one clock cycle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Motion {
+    build: Arc<EngineBuild>,
+    /// Number of the clock in the tick, from 0.
+    clock: u32,
+    /// False in the first tick after configuration, which has no time slots.
+    time_slots: bool,
+    armed: Option<u8>,
+    stop: Stop,
+    /// The word taken in the cycle before was not the next one of its segment.
+    misplaced: bool,
+    reset: Reset,
+    supervisor: Supervisor,
+    /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
+    rest: u32,
+    axis_models: Vec<AxisModel>,
+    /// The level of each axis' limit pin, as sampled in its last time slot; true is active.
+    pins: Vec<bool>,
+}
+
+impl Motion {
+    /// The engine at configuration.
+    pub fn new(build: &EngineBuild) -> Self {
+        let axis_model = |(pins, stop): (_, &u64)| {
+            AxisModel::new(
+                build.phase.start_value(),
+                *stop,
+                shaper::ShaperState::at_configuration(pins),
+            )
+        };
+        Self {
+            build: Arc::new(build.clone()),
+            clock: 0,
+            time_slots: false,
+            armed: None,
+            stop: Stop::default(),
+            misplaced: false,
+            reset: Reset::default(),
+            supervisor: Supervisor::new(),
+            rest: 2,
+            axis_models: build
+                .pins
+                .iter()
+                .copied()
+                .zip(&build.guard.stop)
+                .map(axis_model)
+                .collect(),
+            pins: vec![false; build.axes()],
+        }
+    }
+
+    /// P of an axis, in 2^-64 step. Panics if the axis does not exist.
+    pub fn fraction(&self, axis: usize) -> u64 {
+        self.axis_models[axis].p
+    }
+
+    /// The registers of an axis' step shaper. Panics if the axis does not exist.
+    pub fn shaper(&self, axis: usize) -> &shaper::ShaperState {
+        &self.axis_models[axis].shaper
+    }
+
+    /// The outputs in this cycle for these inputs, without words of state.
+    pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
+        let free = self.stop.fault.is_none();
+        let (strobe, guard) = (self.strobe(), &self.build.guard);
+        let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
+        EngineOutputs {
+            put_ready: free && self.takes(put_axis),
+            start_ready: free
+                && strobe
+                && self.armed.is_none()
+                && inputs.enable
+                && self.supervisor.is_warm(guard),
+            step: bits(&self.axis_models, |axis_model| axis_model.shaper.step),
+            dir: bits(&self.axis_models, |axis_model| axis_model.shaper.dir),
+            enabled: self.supervisor.enabled,
+            idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
+            fault: self.stop.fault,
+            halted: self.stop.halted,
+            resetting: self.reset.is_resetting(),
+            armed: self.armed.is_some(),
+            ready: inputs.enable && self.supervisor.is_warm(guard),
+            homing: bits(&self.axis_models, |axis_model| axis_model.homing.waits),
+            state: None,
+            refreshed: false,
+            room: self
+                .time_slot_at(PUT_BEAT)
+                .filter(|axis| *axis == put_axis)
+                .map(|axis| self.axis_models[axis].room()),
+            started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
+        }
+    }
+
+    /// Advances by one cycle.
+    pub fn clock(&mut self, inputs: &EngineInputs) {
+        let outputs = self.outputs(inputs);
+        let (strobe, before, reset) = (self.strobe(), self.stop, self.reset);
+        let build = Arc::clone(&self.build);
+        let guard = &build.guard;
+        // The order of these calls is the priority of the causes: the first one is latched. It is
+        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, stop.
+        let mut stop = before;
+        let busy = self.pins_busy();
+        let late = self.shape();
+        if late != 0 {
+            stop.call(Cause::Overrun, late, guard);
+        }
+        if strobe && self.supervisor.pressed() {
+            stop.call(Cause::EStop, 0, guard);
+        }
+        let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
+        if (nobody || inputs.broken || self.misplaced) && before.fault.is_none() {
+            stop.call(Cause::Protocol, 0, guard);
+        }
+        self.sample(inputs);
+        let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
+        self.misplaced = taken.is_some_and(|put| !self.put(put));
+        // While the engine is at rest, a silent host calls no stop.
+        let waits = self.rest == 2;
+        if strobe {
+            stop = self.end_tick(inputs, &outputs, stop, busy);
+        }
+        if strobe && self.supervisor.misses_the_host(guard) && !waits {
+            stop.call(Cause::Watchdog, 0, guard);
+        }
+        if inputs.stop || reset.ending {
+            stop.call(Cause::Stop, 0, guard);
+            stop.frozen |= reset.ending;
+        }
+        if before.fault.is_some() {
+            self.armed = None;
+        }
+        self.meet();
+        if let Some(mask) = inputs.home {
+            for (axis, axis_model) in self.axis_models.iter_mut().enumerate() {
+                axis_model.homing.waits = mask >> axis & 1 == 1;
+            }
+        }
+        self.supervisor.clock(guard, inputs, strobe, outputs.idle);
+        self.stop = stop;
+        if strobe && before.clearing {
+            self.stop = Stop::default();
+            self.empty();
+        }
+        self.clock_reset(reset, inputs.reset);
+        if strobe {
+            let free = before.settled && !before.clearing && !busy;
+            self.strobe_reset(reset, inputs.reset, free);
+        }
+        self.clock = (self.clock + 1) % self.build.timebase.clocks_per_tick();
+    }
+
+    fn strobe(&self) -> bool {
+        self.clock + 1 == self.build.timebase.clocks_per_tick()
+    }
+
+    fn pins_busy(&self) -> bool {
+        self.axis_models
+            .iter()
+            .any(|axis_model| axis_model.shaper.held_back.is_some() || axis_model.shaper.step)
+    }
+
+    /// Executes one clock of all shapers; returns the axes for which a second step arrived while
+    /// one was held back, one bit each.
+    fn shape(&mut self) -> u8 {
+        let per_phase = self.build.timebase.clocks_per_phase();
+        let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
+        for (axis_model, pins) in self.axis_models.iter_mut().zip(&self.build.pins) {
+            let request = axis_model
+                .emitted
+                .step
+                .filter(|step| sub == 0 && step.phase == phase)
+                .map(|step| step.backward);
+            let input = shaper::ShaperInput {
+                request,
+                sign: axis_model.emitted.sign,
+                frozen: self.stop.frozen,
+            };
+            axis_model.shaper = shaper::clock(
+                shaper::ShaperState { overrun: false, ..axis_model.shaper },
+                input,
+                *pins,
+            );
+        }
+        bits(&self.axis_models, |axis_model| axis_model.shaper.overrun)
+    }
+
+    /// True if a word for this axis is accepted in this clock. The axis accepts it in its time slot
+    /// if its queue has room. A word for an axis that does not exist is accepted at once (and is a
+    /// protocol fault).
+    fn takes(&self, axis: usize) -> bool {
+        self.axis_models.get(axis).is_none_or(|axis_model| {
+            self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+        })
+    }
+
+    /// The axis whose time slot it is, if this clock is the given beat of the time slot.
+    fn time_slot_at(&self, beat: u32) -> Option<usize> {
+        self.time_slot().filter(|(_, now)| *now == beat).map(|(axis, _)| axis)
+    }
+
+    /// Takes a word. Returns false if it is not the next word of its axis' segment.
+    fn put(&mut self, put: Put) -> bool {
+        let axis_model = &mut self.axis_models[usize::from(put.axis)];
+        self.rest = 0;
+        if put.word != axis_model.next_word {
+            return false;
+        }
+        if put.word == COMMIT {
+            axis_model.fresh = Some(Queued::of_words(axis_model.words, put.data & 1 == 1));
+            axis_model.next_word = 0;
+        } else {
+            axis_model.words[usize::from(put.word)] = put.data;
+            axis_model.next_word += 1;
+        }
+        true
+    }
+
+    fn tick(&self) -> Tick<'_> {
+        Tick {
+            guard: &self.build.guard,
+            phase_bits: self.build.timebase.phase_bits(),
+            halted: self.stop.halted,
+            ramp: self.stop.ramp,
+        }
+    }
+}
+
+fn bits(axis_models: &[AxisModel], of: impl Fn(&AxisModel) -> bool) -> u8 {
+    axis_models
+        .iter()
+        .enumerate()
+        .fold(0, |bits, (axis, axis_model)| bits | u8::from(of(axis_model)) << axis)
+}

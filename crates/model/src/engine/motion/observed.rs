@@ -1,0 +1,78 @@
+//! What the readout observes of the motion. None of it is changed there.
+
+use super::Motion;
+use carrystep_core::engine::TIME_SLOT_CLOCKS;
+
+/// The state of an axis after the last strobe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct AxisState {
+    /// P in 2^-64 step.
+    pub p: u64,
+    /// The ticks `left` of its segment if the axis runs.
+    pub left: Option<u32>,
+    /// The slot of the running segment, or of the last one that ran.
+    pub slot: u8,
+    /// Number of segments in the queue.
+    pub waiting: u8,
+}
+
+/// What the strobe of this clock does beside adding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Ending {
+    /// The axes that found in this tick the limit for which they waited, one bit each.
+    pub met: u8,
+    /// The queues are emptied, by a clear or a reset.
+    pub empties: bool,
+    /// The number of discarded steps is set to 0, by a reset.
+    pub forgets: bool,
+}
+
+impl Motion {
+    /// The axis whose time slot it is, and the beat.
+    pub(crate) fn time_slot(&self) -> Option<(usize, u32)> {
+        let (axis, beat) =
+            ((self.clock / TIME_SLOT_CLOCKS) as usize, self.clock % TIME_SLOT_CLOCKS);
+        (self.time_slots && axis < self.axis_models.len()).then_some((axis, beat))
+    }
+
+    /// The state of an axis, which must exist.
+    pub(crate) fn axis_state(&self, axis: usize) -> AxisState {
+        let axis_model = &self.axis_models[axis];
+        AxisState {
+            p: axis_model.p,
+            left: axis_model.running.filter(|_| !self.stop.halted).map(|segment| segment.left),
+            slot: axis_model.slot,
+            waiting: axis_model.queue.len() as u8,
+        }
+    }
+
+    /// What this clock ends if it is a strobe.
+    pub(crate) fn ending(&self) -> Option<Ending> {
+        let forgets = self.reset.forgets();
+        self.strobe().then(|| Ending {
+            met: super::bits(&self.axis_models, |axis_model| axis_model.homing.meets),
+            empties: self.stop.clearing || forgets,
+            forgets,
+        })
+    }
+
+    /// The step of an axis in the tick before the last strobe: 1 forward, -1 backward, or 0.
+    pub(crate) fn carry(&self, axis: usize) -> i32 {
+        self.axis_models[axis].computed.step.map_or(0, |step| signed(step.backward))
+    }
+
+    /// The position of an axis with all steps that are between its accumulator and its pin. Unless
+    /// steps are discarded, only a carry changes it.
+    pub(crate) fn carried(&self, axis: usize) -> i32 {
+        let axis_model = &self.axis_models[axis];
+        let per_phase = self.build.timebase.clocks_per_phase();
+        let emitted = axis_model.emitted.step.filter(|step| self.clock <= step.phase * per_phase);
+        let held_back = axis_model.shaper.held_back.map_or(0, signed);
+        let steps = held_back + emitted.map_or(0, |step| signed(step.backward)) + self.carry(axis);
+        axis_model.shaper.position.wrapping_add(steps)
+    }
+}
+
+const fn signed(backward: bool) -> i32 {
+    if backward { -1 } else { 1 }
+}

@@ -1,0 +1,65 @@
+//! Clocks in which the processor does not need the engine, so that the virtual board can execute
+//! the two one after the other, and clocks in which it only waits.
+
+use super::LinkProcessor;
+use carrystep_core::link::processor::{
+    ACTS, BROKEN, CONTROL, CRC_BEGIN, CRC_FEED, Code, Condition, GOES, JUMPS, KICK, PUTS, SETS,
+    STARTS, STORES, ValueSource, WAIT,
+};
+
+/// The reason for which the processor waits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::link) enum Waits {
+    /// It does not wait, or it waits for the engine.
+    No,
+    /// It waits for a byte.
+    ForByte,
+    /// It waits for the transmitter.
+    ToSend,
+}
+
+impl LinkProcessor {
+    /// True if this clock depends on the engine's outputs or on its words of state, or changes an
+    /// input of the engine other than the axis whose room it requests.
+    pub(in crate::link) fn minds_the_engine(&self) -> bool {
+        const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
+        let acts = self.does(0) && self.code & TELLS != 0;
+        let waits = self.does(WAIT) && !self.does(GOES);
+        let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
+        let asks = self.executes(JUMPS)
+            && [Condition::Fault, Condition::Startable]
+                .iter()
+                .any(|&asked| self.code >> 8 & 7 == asked as Code);
+        acts || waits || reads || asks || self.reads_register()
+    }
+
+    /// True from the clock on in which the memory is read for an instruction that loads its word
+    /// into the CRC.
+    fn reads_register(&self) -> bool {
+        const READS: Code = ACTS | CRC_BEGIN | CRC_FEED;
+        self.stage > 0 && self.code & (SETS | STORES) == 0 && self.code & READS == READS
+    }
+
+    /// Stores the room that the engine has reported, in segments.
+    pub(in crate::link) const fn keep_room(&mut self, room: u8) {
+        self.room = room;
+    }
+
+    pub(in crate::link) fn waits(&self) -> Waits {
+        let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
+        if self.code == polls && self.read_from == self.written {
+            Waits::ForByte
+        } else if self.does(WAIT | GOES) {
+            Waits::ToSend
+        } else {
+            Waits::No
+        }
+    }
+
+    /// Skips this many clocks in which the processor waits.
+    pub(in crate::link) fn pass(&mut self, clocks: u64) {
+        if self.waits() == Waits::ForByte {
+            self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;
+        }
+    }
+}
