@@ -26,6 +26,9 @@ mod memory;
 mod operated;
 mod output;
 mod pass;
+mod program;
+mod program_run;
+mod program_table;
 mod progress;
 #[cfg(unix)]
 mod shipped;
