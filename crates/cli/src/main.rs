@@ -30,6 +30,7 @@ mod program;
 mod program_run;
 mod program_table;
 mod progress;
+mod segments;
 #[cfg(unix)]
 mod shipped;
 mod spool;

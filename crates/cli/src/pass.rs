@@ -3,7 +3,7 @@
 use carrystep_core::Command;
 use carrystep_plan::{self as plan, PlannedMove};
 use carrystep_profile::Reader;
-use carrystep_program::{ProgramError, ProgramFile, Survey};
+use carrystep_program::{ProgramError, ProgramFile, Rows, Survey};
 use carrystep_simulators::Commands;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -83,7 +83,7 @@ impl<'a> RowCommands<'a> {
 
 impl Commands for RowCommands<'_> {
     fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
-        let (rows, error) = match self.file.rows() {
+        let (rows, error) = match Rows::new(self.file) {
             Ok(rows) => (Some(rows), None),
             Err(error) => (None, Some(Err(error))),
         };

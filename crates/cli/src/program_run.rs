@@ -14,7 +14,7 @@ use carrystep_check::{
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
-use carrystep_program::{ProgramFile, Survey};
+use carrystep_program::{Legs, ProgramFile, Survey};
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level, LevelError};
@@ -112,7 +112,7 @@ pub fn run(
 
     let mut checker = PathChecker::new(
         setup(file, survey, origin_ps, &timebase),
-        Box::new(kept.until_an_error(file.legs()?)),
+        Box::new(kept.until_an_error(Legs::new(file)?)),
     );
     let names = || machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };

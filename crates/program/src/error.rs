@@ -1,6 +1,6 @@
 //! What can be wrong with a program on a machine, where it is, and what to do.
 
-use crate::letters::{letter_of, unit};
+use crate::letter::{letter_of, unit};
 use carrystep_files::unit::digits;
 use carrystep_files::{InputError, SourceText};
 use carrystep_gcode::{ErrorKind, GcodeError};

@@ -1,10 +1,11 @@
 //! Canonical moves as events for a machine: each move with its start, its feed and the tolerance in
 //! force, rests, and what is switched.
 
-use crate::counts::Switch;
 use crate::error::{Fault, ProgramError};
 use crate::file::ProgramFile;
-use crate::letters::{LINEAR, Letters};
+use crate::letter::LINEAR;
+use crate::letters::Letters;
+use crate::switch::Switch;
 use carrystep_gcode::{
     AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
 };
@@ -95,7 +96,12 @@ pub struct Events {
 }
 
 impl Events {
-    pub(crate) fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+    /// Reads a program from its beginning.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not the one that was opened, or its O-words are wrong.
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+        file.same()?;
         let settings = file.settings();
         let options =
             Options { start: settings.start, blocks: settings.blocks, ..Options::default() };

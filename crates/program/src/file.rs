@@ -1,10 +1,8 @@
 //! A program, its machine, and how it is to be run.
 
 use crate::error::{Fault, ProgramError};
-use crate::events::Events;
-use crate::legs::Legs;
-use crate::letters::{Letters, unit};
-use crate::rows::Rows;
+use crate::letter::unit;
+use crate::letters::Letters;
 use carrystep_files::unit::digits;
 use carrystep_files::{InputError, Machine};
 use carrystep_gcode::{DEFAULT_BLOCKS, Point};
@@ -121,31 +119,6 @@ impl ProgramFile {
     /// How the program is to be run.
     pub fn settings(&self) -> &Settings {
         &self.settings
-    }
-
-    /// What the program does, from its beginning.
-    ///
-    /// # Errors
-    /// The file cannot be read, is not the one that was opened, or its O-words are wrong.
-    pub fn events(&self) -> Result<Events, ProgramError> {
-        self.same()?;
-        Events::new(self)
-    }
-
-    /// The planned segments, from the beginning of the program.
-    ///
-    /// # Errors
-    /// As [`ProgramFile::events`].
-    pub fn rows(&self) -> Result<Rows, ProgramError> {
-        Rows::new(self)
-    }
-
-    /// The programmed path in straight legs, from the beginning of the program.
-    ///
-    /// # Errors
-    /// As [`ProgramFile::events`].
-    pub fn legs(&self) -> Result<Legs, ProgramError> {
-        Ok(Legs::new(self.events()?))
     }
 
     /// Checks that the file is still the one that was opened.

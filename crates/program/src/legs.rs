@@ -2,6 +2,7 @@
 
 use crate::error::ProgramError;
 use crate::events::{Event, Events, ProgrammedMove};
+use crate::file::ProgramFile;
 use carrystep_check::PathLeg;
 
 /// The part of the tolerance by which a chord of an arc may be off the arc.
@@ -19,8 +20,12 @@ pub struct Legs {
 }
 
 impl Legs {
-    pub(crate) fn new(events: Events) -> Self {
-        Self { events, now: None }
+    /// Reads a program from its beginning.
+    ///
+    /// # Errors
+    /// As [`Events::new`].
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+        Ok(Self { events: Events::new(file)?, now: None })
     }
 }
 

@@ -1,22 +1,10 @@
 //! Which axis of the machine is which letter of a program.
 
 use crate::error::Fault;
+use crate::letter::{LINEAR, letter_of, unit};
 use carrystep_core::StartPhase;
 use carrystep_files::{Machine, decimal};
-use carrystep_gcode::{AXES, AXIS_LETTERS, Point};
-
-/// The first letters, x, y and z, are in mm; the others are in degrees.
-pub(crate) const LINEAR: usize = 3;
-
-/// The unit of a letter: mm or degrees.
-pub const fn unit(letter: usize) -> &'static str {
-    if letter < LINEAR { "mm" } else { "deg" }
-}
-
-/// The number of the letter that an axis of this name moves.
-pub(crate) fn letter_of(name: &str) -> Option<usize> {
-    AXIS_LETTERS.iter().position(|letter| name == letter.to_string())
-}
+use carrystep_gcode::{AXES, Point};
 
 /// The letters of a machine's axes.
 #[derive(Debug, Clone)]

@@ -35,13 +35,17 @@ enum State {
 }
 
 impl Rows {
-    pub(crate) fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+    /// Plans a program from its beginning.
+    ///
+    /// # Errors
+    /// As [`Events::new`]; the planner refuses the machine.
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
         let (machine, letters) = (file.machine().clone(), file.letters().clone());
         let start = letters.coordinates(&file.settings().start);
         let planner = Planner::new(&machine, &Cartesian, letters.linear(), &start)
             .map_err(|error| ProgramError::of_planner(file.path(), &machine, error))?;
         Ok(Self {
-            events: file.events()?,
+            events: Events::new(file)?,
             planner,
             counts: Counts::default(),
             end: file.settings().start,

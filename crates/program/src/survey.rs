@@ -3,6 +3,7 @@
 use crate::counts::Counts;
 use crate::error::ProgramError;
 use crate::file::ProgramFile;
+use crate::rows::Rows;
 use bigdecimal::BigDecimal;
 use carrystep_core::Segment;
 use carrystep_files::decimal;
@@ -89,7 +90,7 @@ impl Survey {
         };
         let mut axes: Vec<AxisSurvey> = start.iter().map(axis).collect();
         let (mut ticks, mut count) = (0, 0);
-        let mut rows = file.rows()?;
+        let mut rows = Rows::new(file)?;
         for row in rows.by_ref() {
             let row = row?;
             ticks += u64::from(row.ticks);

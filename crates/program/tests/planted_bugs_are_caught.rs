@@ -6,7 +6,7 @@
 use carrystep_check::{PathAxis, PathChecker, PathReport, PathSetup, Pin, PinChange, PinSink};
 use carrystep_files::Machine;
 use carrystep_job::Row;
-use carrystep_program::{ProgramError, ProgramFile, Settings, Survey};
+use carrystep_program::{Legs, ProgramError, ProgramFile, Settings, Survey};
 use std::path::Path;
 
 const TICK_PS: u64 = 1_000_000;
@@ -76,7 +76,7 @@ fn check(file: &ProgramFile, survey: &Survey, changes: &[PinChange]) -> PathRepo
         origin_ps: ORIGIN_PS,
         total_ps: survey.ticks * TICK_PS,
     };
-    let legs = file.legs().unwrap().map(Result::unwrap);
+    let legs = Legs::new(file).unwrap().map(Result::unwrap);
     let mut checker = PathChecker::new(setup, Box::new(legs));
     checker.changes(changes).unwrap();
     checker.finish()

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
 
 use carrystep_files::{InputError, Machine, SourceText};
-use carrystep_program::{Event, ProgramError, ProgramFile, ProgrammedMove, Settings, Survey};
+use carrystep_program::{
+    Event, Events, ProgramError, ProgramFile, ProgrammedMove, Rows, Settings, Survey,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -42,7 +44,7 @@ fn moves(text: &str) -> Vec<ProgrammedMove> {
         Ok(Event::Move(one)) => Some(one),
         _ => None,
     };
-    file.unwrap().events().unwrap().filter_map(only).collect()
+    Events::new(&file.unwrap()).unwrap().filter_map(only).collect()
 }
 
 #[test]
@@ -50,7 +52,7 @@ fn tolerance_is_that_of_the_option_or_of_g64_or_the_default() {
     let text = "F600\nG1 X1\nG64 P0.2\nX2\nG61\nX3\nG61.1\nX4\nG64 P0\nX5\n";
     let linear = |settings| {
         let (_folder, file) = open(text, "xyz", settings);
-        let events: Vec<Event> = file.unwrap().events().unwrap().map(Result::unwrap).collect();
+        let events: Vec<Event> = Events::new(&file.unwrap()).unwrap().map(Result::unwrap).collect();
         let tolerance = |event: &Event| match event {
             Event::Move(one) => Some(one.tolerance.linear),
             _ => None,
@@ -155,9 +157,9 @@ fn machines_that_cannot_run_jobs_are_refused() {
 fn file_that_changes_between_two_passes_is_refused() {
     let (folder, file) = open("G0 X1\n", "xyz", Settings::default());
     let file = file.unwrap();
-    assert!(file.rows().is_ok());
+    assert!(Rows::new(&file).is_ok());
     std::fs::write(folder.path().join("job.ngc"), "G0 X1 Y1\n").unwrap();
-    let error = InputError::from(file.rows().unwrap_err());
+    let error = InputError::from(Rows::new(&file).unwrap_err());
     assert!(error.message.contains("has changed"), "{error}");
 }
 

@@ -3,6 +3,7 @@
 use crate::arguments::PlanArguments as Arguments;
 use crate::commands::plan_program;
 use crate::failure::Failure;
+use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
 use crate::table::{self, LimitsJson};
 use crate::{interrupt, job, output};
@@ -11,7 +12,7 @@ use carrystep_files::{Axis, Machine, MoveSource};
 use carrystep_plan::{PlannedMove, Survey};
 use carrystep_program::is_program;
 use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::fmt::Write as _;
 
 /// What `--json` prints.
@@ -61,28 +62,6 @@ struct AxisJson<'a> {
     #[serde(serialize_with = "segments")]
     #[schemars(with = "Vec<SegmentJson>")]
     segments: &'a [Segment],
-}
-
-/// Numbers of 64 bits are strings, because many JSON readers keep only 53 bits.
-#[derive(JsonSchema, Serialize)]
-pub struct SegmentJson {
-    ticks: u32,
-    v: String,
-    a: String,
-    j: String,
-    last: bool,
-}
-
-/// Writes the segments one after another. All of them as text would need several times the memory
-/// of the plan.
-pub fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(segments.iter().map(|s| SegmentJson {
-        ticks: s.ticks,
-        v: s.v.to_string(),
-        a: s.a.to_string(),
-        j: s.j.to_string(),
-        last: s.last,
-    }))
 }
 
 /// Plans a move file or a program and shows the plan.
@@ -208,14 +187,6 @@ fn add_move(
             add_segment(text, name, segment);
         }
     }
-}
-
-/// Adds the line of a segment.
-pub fn add_segment(text: &mut String, name: &str, segment: &Segment) {
-    let Segment { ticks, v, a, j, last } = segment;
-    let mark = if *last { "  last" } else { "" };
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
 }
 
 /// The line that reports the rounding to whole steps; empty if there is none.

@@ -2,9 +2,9 @@
 //! segments.
 
 use crate::arguments::PlanArguments;
-use crate::commands::plan::{SegmentJson, add_segment, segments};
 use crate::failure::Failure;
 use crate::program_table::ProgramFigures;
+use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
 use crate::{output, program};
 use carrystep_core::Segment;
