@@ -88,7 +88,7 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
         200 | 210 => Group::Units,
         400 => Group::CutterRadius,
         80 => Group::Diameter,
-        431 | 490 => Group::ToolLength,
+        430..=432 | 490 => Group::ToolLength,
         980 | 990 => Group::Retract,
         540 | 550 | 560 | 570 | 580 | 590..=593 => Group::System,
         610 | 611 | 640 => Group::Path,
@@ -96,7 +96,6 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
         410 | 411 | 420 | 421 => {
             return Err(Some("cutter compensation; let the CAM program compute the path"));
         }
-        430 | 432 => return Err(Some("there is no tool table; give the offset with G43.1")),
         330 | 331 => return Err(Some("motion in step with the spindle, which is not measured")),
         760 => return Err(Some("a threading cycle; the spindle is not measured")),
         950 => return Err(Some("feed per turn of the spindle; use G94 or G93")),
@@ -130,7 +129,7 @@ fn m_group(tenths: u16) -> Result<Group, Option<&'static str>> {
             return Err(Some("single overrides and adaptive feed; use M48 and M49"));
         }
         600 => return Err(Some("pallets; use M0")),
-        610 => return Err(Some("there is no tool table; use T and M6")),
+        610 => return Err(Some("a tool without its change; use T and M6")),
         660 => return Err(Some("waiting for an input; use M0")),
         700 | 710 | 720 | 730 => return Err(Some("saved modes; write the modes anew")),
         980 | 990 => return Err(Some("subroutines by M98; use o100 sub and o100 call")),

@@ -104,10 +104,10 @@ fn modes(state: &mut State, request: &Request) {
     }
 }
 
-/// G43.1, G49, G54 to G59.3, G61, G61.1 and G64.
+/// G43, G43.1, G43.2, G49, G54 to G59.3, G61, G61.1 and G64.
 fn path(mover: &mut Mover<'_>, out: &mut Outcome) -> Result<(), Fault> {
     if let Some(code) = mover.request.code(Group::ToolLength) {
-        if let Some(other) = uses_axis_words(mover).filter(|_| code.tenths == 431) {
+        if let Some(other) = uses_axis_words(mover).filter(|_| matches!(code.tenths, 431 | 432)) {
             return Err(axes_twice(code, other));
         }
         mover.tool_length(code)?;
@@ -160,7 +160,7 @@ fn offsets_and_motion(mover: &mut Mover<'_>, out: &mut Outcome) -> Result<(), Fa
             return Err(axes_twice(code, motion));
         }
         match code.tenths {
-            100 => mover.set_system(code)?,
+            100 => mover.set_data(code)?,
             280 => out.before.extend(mover.go_home(numbers::HOME_28)?),
             300 => out.before.extend(mover.go_home(numbers::HOME_30)?),
             281 => mover.store_home(numbers::HOME_28),

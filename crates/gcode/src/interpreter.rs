@@ -18,6 +18,7 @@ use crate::squeeze::Squeezed;
 use crate::state::State;
 use crate::switches;
 use crate::syntax::{Block, Reference};
+use crate::tools::ToolTable;
 use crate::values;
 use std::fs::File;
 use std::io::{Read, Seek};
@@ -93,7 +94,7 @@ impl<R: Read + Seek> Interpreter<R> {
         let mut source = Source::new(input).map_err(fail)?;
         let outline = Outline::read(&mut source, &name, options.block_delete)?;
         source.jump(Place::default()).map_err(fail)?;
-        let mut state = State::new(options.start);
+        let mut state = State::new(options.start, options.tools.clone());
         for &(number, value) in &options.parameters {
             if (1..=LAST_PARAMETER).contains(&usize::from(number)) && value.is_finite() {
                 state.memory.set(number.into(), value);
@@ -127,6 +128,11 @@ impl<R: Read + Seek> Interpreter<R> {
     /// without a parameter.
     pub fn parameter(&self, number: u16) -> f64 {
         self.state.numbered(number.into())
+    }
+
+    /// The tool table as the program has changed it by G10, if there is one.
+    pub fn tools(&self) -> Option<&ToolTable> {
+        self.state.tools.as_ref()
     }
 
     /// Reports the real machine place after a stop ([`Canon::Pause`] or [`Canon::ChangeTool`]),

@@ -15,6 +15,7 @@
 //!          execute    in the order of LinuxCNC, on a state with a frame of offsets
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
 //!            offsets  coordinate systems and stored places
+//!            tool_length offsets of tools; tools: the tool table
 //!            switches spindle, coolant, tool, outputs
 //! ```
 //!
@@ -49,9 +50,12 @@ mod squeeze;
 mod state;
 mod switches;
 mod syntax;
+mod tool_length;
+mod tools;
 mod values;
 
 pub use canon::{AXES, AXIS_LETTERS, Arc, Canon, Pace, PathMode, Plane, Point, Step, Turn};
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
 pub use options::{DEFAULT_BLOCKS, Options};
+pub use tools::{Tool, ToolTable};

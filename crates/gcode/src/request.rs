@@ -39,7 +39,7 @@ impl Request {
                     let code = Code::new(word.letter, value, word.column).map_err(fault)?;
                     request.add_code(code).map_err(fault)?;
                 }
-                b'a'..=b'f' | b'i'..=b'l' | b'p'..=b't' | b'x'..=b'z' | b'@' | b'^'
+                b'a'..=b'f' | b'h'..=b'l' | b'p'..=b't' | b'x'..=b'z' | b'@' | b'^'
                     if word.letter != b'd' =>
                 {
                     let given = Given { value, column: word.column, is_used: false };

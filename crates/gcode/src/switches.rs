@@ -6,6 +6,7 @@ use crate::error::{ErrorKind, Fault};
 use crate::outcome::Outcome;
 use crate::request::Request;
 use crate::state::State;
+use crate::tools::{LAST_TOOL, TOOL_RANGE};
 use std::collections::VecDeque;
 
 /// Greatest value of S.
@@ -35,7 +36,12 @@ pub(crate) fn tool(
     request: &mut Request,
     out: &mut Outcome,
 ) -> Result<(), Fault> {
-    if let Some(tool) = request.take_whole(b't', 99_999, "0 to 99999")? {
+    if let Some(tool) = request.take_whole(b't', LAST_TOOL, TOOL_RANGE)? {
+        if let Some(table) = state.tools.as_ref().filter(|_| tool != 0)
+            && table.get(tool).is_none()
+        {
+            return Err(request.fault(b't', ErrorKind::UnknownTool(tool)));
+        }
         state.modal.selected_tool = tool;
         out.before.push_back(Canon::SelectTool { tool });
     }

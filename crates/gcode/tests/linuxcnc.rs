@@ -9,10 +9,11 @@
 mod random;
 mod support;
 
-use carrystep_gcode::{Canon, Interpreter, Options, Pace, Plane, Point};
+use carrystep_gcode::{Canon, Interpreter, Options, Pace, Plane, Point, ToolTable};
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::TestRunner;
 use std::collections::BTreeSet;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use support::{files, jobs, programs};
@@ -25,6 +26,10 @@ const SAME_FEED: f64 = 1e-9;
 
 /// Least number of the package's programs that have to be compared.
 const LEAST: usize = 15;
+
+/// Programs that cannot be compared. After M6 LinuxCNC asks for its place anew, and its preview
+/// leaves the tool offset out, so that the tool seems to jump if an offset is in effect then.
+const OFFSET_AT_TOOL_CHANGE: [&str; 1] = ["skeleton.ngc"];
 
 /// Where the package keeps programs.
 const PACKAGE: [&str; 3] =
@@ -74,9 +79,20 @@ impl Moves {
     }
 }
 
+/// The tool table of both interpreters: a line for each tool.
+fn tool_table() -> String {
+    let line = |tool: u32| {
+        let n = f64::from(tool);
+        let turned = if tool.is_multiple_of(7) { n } else { 0.0 };
+        format!("T{tool} P{tool} X{} Z{} A{turned} D{}\n", n / 8.0, 2.5 * n, n / 4.0)
+    };
+    (1..99).map(line).collect()
+}
+
 fn ours(path: &Path) -> Outcome {
+    let tools = ToolTable::read(Cursor::new(tool_table()), "tools").expect("a tool table");
     // A probe may trip late, and a program may wait for this in a loop.
-    let options = Options { blocks: 200_000, ..Options::default() };
+    let options = Options { blocks: 200_000, tools: Some(tools), ..Options::default() };
     let mut moves = Moves::default();
     let mut at = Point::default();
     for step in Interpreter::open(path, &options).map_err(|error| error.to_string())? {
@@ -123,7 +139,10 @@ fn ours(path: &Path) -> Outcome {
 fn linuxcncs(paths: &[PathBuf]) -> Vec<Outcome> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/linuxcnc/canon.py");
     // The module belongs to Debian's Python, which need not be the first one on the path.
-    let output = Command::new("/usr/bin/python3").arg(script).args(paths).output();
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("tools.tbl");
+    std::fs::write(&table, tool_table()).expect("a file");
+    let output = Command::new("/usr/bin/python3").arg(script).arg(&table).args(paths).output();
     let output = output.expect("python3 is missing: sudo apt-get install python3");
     let text = String::from_utf8_lossy(&output.stdout);
     let mut outcomes = Vec::new();
@@ -187,7 +206,9 @@ fn all_programs_have_the_canonical_moves_of_linuxcnc() {
     // Some folders of the package are links to others.
     let package = PACKAGE.iter().flat_map(|folder| files(Path::new(folder)));
     let package: BTreeSet<PathBuf> = package.filter_map(|path| path.canonicalize().ok()).collect();
-    let package: Vec<PathBuf> = package.into_iter().collect();
+    let is_compared =
+        |path: &PathBuf| !OFFSET_AT_TOOL_CHANGE.iter().any(|name| path.ends_with(name));
+    let package: Vec<PathBuf> = package.into_iter().filter(is_compared).collect();
     let own: Vec<PathBuf> = [jobs(), programs()].concat();
     let paths = [package, own.clone()].concat();
     let (mut compared, mut compared_own, mut moves) = (0, 0, 0);

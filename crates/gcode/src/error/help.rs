@@ -56,6 +56,13 @@ impl ErrorKind {
             Kind::Missing { .. } => "add the word",
             Kind::NotWhole { .. } => "give a whole number",
             Kind::OutOfRange { .. } => "give a number in its range",
+            Kind::NoToolTable(_) => "give a tool table, or the offset itself with G43.1",
+            Kind::UnknownTool(_) => "correct the number, or add the tool to the table",
+            Kind::ToolZero => {
+                "write G43 for the tool in the spindle, as LinuxCNC reads it, or G49 for no offset, \
+                 as Fanuc's controls do"
+            }
+            Kind::ToolTwice(_) => "remove one of the two lines",
             Kind::AxesTwice { .. } => "write them in two lines",
             Kind::NoMotion => "write G0, G1 or another motion before the axis words",
             Kind::FeedWithUnits => {

@@ -178,6 +178,18 @@ pub enum ErrorKind {
         /// The range, in words.
         range: &'static str,
     },
+    /// A code that needs a tool table.
+    #[error("{0} without a tool table")]
+    NoToolTable(String),
+    /// A tool that is not in the table.
+    #[error("the tool table has no tool {0}")]
+    UnknownTool(u32),
+    /// The offset of tool 0.
+    #[error("G43 with H0")]
+    ToolZero,
+    /// A tool of two lines of the tool table.
+    #[error("tool {0} is in the table twice")]
+    ToolTwice(u32),
     /// Two codes that both use axis words.
     #[error("{first} and {second} both use the axis words")]
     AxesTwice {
