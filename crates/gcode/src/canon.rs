@@ -5,6 +5,7 @@
 //! and the place where the first one begins.
 
 use std::f64::consts::TAU;
+use std::sync::Arc as Shared;
 
 /// Number of axes: x, y, z in mm, then a, b, c in degrees.
 pub const AXES: usize = 6;
@@ -18,6 +19,8 @@ pub type Point = [f64; AXES];
 /// A canonical move or action, and the line of the program that asked for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
+    /// Name of the file, as the caller gave it, or that of a subroutine.
+    pub file: Shared<str>,
     /// Line in the file, from 1.
     pub line: u64,
     /// What is to be done.

@@ -41,7 +41,7 @@ pub(crate) enum Group {
     SpindleMode,
     /// M62 to M68.
     Output,
-    /// M0, M1, M2, M30.
+    /// M0, M1, M2, M30, M98, M99.
     Stop,
     /// M6.
     Tool,
@@ -118,7 +118,7 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
 /// The group of an M code, or why it is not done.
 fn m_group(tenths: u16) -> Result<Group, Option<&'static str>> {
     Ok(match tenths {
-        0 | 10 | 20 | 300 => Group::Stop,
+        0 | 10 | 20 | 300 | 980 | 990 => Group::Stop,
         30 | 40 | 50 => Group::Spindle,
         60 => Group::Tool,
         70 | 80 | 90 => Group::Coolant,
@@ -132,7 +132,6 @@ fn m_group(tenths: u16) -> Result<Group, Option<&'static str>> {
         610 => return Err(Some("a tool without its change; use T and M6")),
         660 => return Err(Some("waiting for an input; use M0")),
         700 | 710 | 720 | 730 => return Err(Some("saved modes; write the modes anew")),
-        980 | 990 => return Err(Some("subroutines by M98; use o100 sub and o100 call")),
         _ if (1000..=1990).contains(&tenths) && tenths.is_multiple_of(10) => {
             return Err(Some("programs of the user are not run"));
         }

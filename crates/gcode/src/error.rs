@@ -40,10 +40,19 @@ pub(crate) struct Fault {
     /// Column in characters, from 1; 0 for the whole line.
     pub(crate) column: u32,
     pub(crate) kind: ErrorKind,
+    /// File and line, if they are not those that are being executed.
+    pub(crate) elsewhere: Option<Box<(Arc<str>, u64)>>,
 }
 
 impl Fault {
     pub(crate) fn new(column: u32, kind: ErrorKind) -> Self {
-        Self { column, kind }
+        Self { column, kind, elsewhere: None }
+    }
+}
+
+impl From<GcodeError> for Fault {
+    fn from(error: GcodeError) -> Self {
+        let elsewhere = Some(Box::new((error.file, error.line)));
+        Self { column: error.column, kind: error.kind, elsewhere }
     }
 }

@@ -8,9 +8,10 @@
 //! lines    source     the file, line by line, and jumps
 //!          squeeze    without comments and blanks, with columns
 //!          grammar -> syntax       words, expressions, O-words
-//! control  outline    all O-words and where they lead, before the first line is executed
+//! control  files      the program, and the files beside it whose subroutines it calls
+//!          outline    all O-words and where they lead, before the first line is executed
 //!          flow       which line is next
-//! values   evaluate   expressions; parameters in memory and values
+//! values   evaluate   expressions; parameters in memory and values; assign
 //! words    request    one code of each modal group (codes), one value of each letter
 //!          execute    in the order of LinuxCNC, on a state with a frame of offsets
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
@@ -23,6 +24,7 @@
 //! makes the interpreter panic or run without end: brackets, calls and lines that run again are
 //! limited.
 
+mod assign;
 pub mod canon;
 mod circle;
 mod codes;
@@ -32,6 +34,7 @@ mod drill;
 pub mod error;
 mod evaluate;
 mod execute;
+mod files;
 mod flow;
 mod frame;
 mod grammar;

@@ -14,7 +14,7 @@ pub(crate) const FURTHEST: f64 = 1e9;
 /// Places that differ by less than this, in mm or degrees, are the same but for rounding.
 const SAME: f64 = 1e-9;
 
-/// Greatest number of turns of an arc and of holes of a line.
+/// Greatest number of turns of an arc, of holes of a line, and of calls of M98.
 pub(crate) const MOST: u32 = 1_000_000_000;
 
 /// Longest rest in s.

@@ -110,7 +110,7 @@ fn a_probe_that_trips_early_moves_the_place_and_the_parameters() {
     let probe = program.next().unwrap().unwrap();
     assert!(matches!(
         probe,
-        Step { line: 4, canon: Canon::Probe { contact: true, required: true, .. } }
+        Step { line: 4, canon: Canon::Probe { contact: true, required: true, .. }, .. }
     ));
     program.probed([25.4, 0.0, 0.0, 0.0, 0.0, 0.0], true);
     let rest: Vec<Canon> = program.map(|step| step.unwrap().canon).collect();

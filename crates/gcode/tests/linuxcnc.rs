@@ -9,14 +9,13 @@
 mod random;
 mod support;
 
-use carrystep_gcode::{Canon, Interpreter, Options, Pace, Plane, Point, ToolTable};
+use carrystep_gcode::{Canon, Interpreter, Options, Pace, Plane, Point};
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::TestRunner;
 use std::collections::BTreeSet;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use support::{files, jobs, programs};
+use support::{files, jobs, main_of_subroutines, programs, tool_table, tools};
 
 /// Greatest difference of two places, in mm or degrees.
 const SAME: f64 = 1e-9;
@@ -79,20 +78,9 @@ impl Moves {
     }
 }
 
-/// The tool table of both interpreters: a line for each tool.
-fn tool_table() -> String {
-    let line = |tool: u32| {
-        let n = f64::from(tool);
-        let turned = if tool.is_multiple_of(7) { n } else { 0.0 };
-        format!("T{tool} P{tool} X{} Z{} A{turned} D{}\n", n / 8.0, 2.5 * n, n / 4.0)
-    };
-    (1..99).map(line).collect()
-}
-
 fn ours(path: &Path) -> Outcome {
-    let tools = ToolTable::read(Cursor::new(tool_table()), "tools").expect("a tool table");
     // A probe may trip late, and a program may wait for this in a loop.
-    let options = Options { blocks: 200_000, tools: Some(tools), ..Options::default() };
+    let options = Options { blocks: 200_000, tools: Some(tools()), ..Options::default() };
     let mut moves = Moves::default();
     let mut at = Point::default();
     for step in Interpreter::open(path, &options).map_err(|error| error.to_string())? {
@@ -209,7 +197,7 @@ fn all_programs_have_the_canonical_moves_of_linuxcnc() {
     let is_compared =
         |path: &PathBuf| !OFFSET_AT_TOOL_CHANGE.iter().any(|name| path.ends_with(name));
     let package: Vec<PathBuf> = package.into_iter().filter(is_compared).collect();
-    let own: Vec<PathBuf> = [jobs(), programs()].concat();
+    let own: Vec<PathBuf> = [jobs(), programs(), vec![main_of_subroutines()]].concat();
     let paths = [package, own.clone()].concat();
     let (mut compared, mut compared_own, mut moves) = (0, 0, 0);
     let mut wrong = Vec::new();

@@ -31,8 +31,15 @@ impl ErrorKind {
                 "write the label as a number or a name; only call computes it"
             }
             Kind::UnknownSub(_) => {
-                "put the subroutine into this file; other files are not searched"
+                "put the subroutine into the file, or into a file of its name beside the program: \
+                 name.ngc for o<name>, 100.ngc for o100"
             }
+            Kind::SubNotInFile { .. } => "put the subroutine into that file, or correct its label",
+            Kind::TooManyFiles(_) => "put several subroutines into one file",
+            Kind::NothingToReturn => {
+                "end the main program with M2; repeat it by o1 while, and end `sub` with endsub"
+            }
+            Kind::NoReturn => "end the subroutine with M99, and the program before it with M2",
             Kind::TooManyCalls(_) => "end the recursion by a condition, or use a loop",
             Kind::TooManyBlocks(_) => {
                 "check the condition of the loop, or raise the limit of blocks"

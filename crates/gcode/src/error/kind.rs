@@ -71,7 +71,7 @@ pub enum ErrorKind {
     #[error("blocks are nested more than {0} deep")]
     BlocksTooDeep(usize),
     /// A second subroutine of this name.
-    #[error("`o{label} sub` is already in line {line}")]
+    #[error("subroutine `o{label}` is already in line {line}")]
     SubTwice {
         /// The label.
         label: String,
@@ -84,9 +84,26 @@ pub enum ErrorKind {
     /// A computed label where none is possible.
     #[error("a computed label before `{0}`")]
     ComputedLabel(&'static str),
-    /// A call of a subroutine that is not in the file.
-    #[error("the file has no `o{0} sub`")]
+    /// A call of a subroutine that is nowhere.
+    #[error("the file has no `{0}`")]
     UnknownSub(String),
+    /// A call of a subroutine that is not in the file of its name.
+    #[error("{file} has no `{sub}`")]
+    SubNotInFile {
+        /// Name of the file.
+        file: String,
+        /// The subroutine.
+        sub: String,
+    },
+    /// Subroutines in more files than a program needs.
+    #[error("the program has more than {0} files")]
+    TooManyFiles(usize),
+    /// M99 in the main program, or in a subroutine that M98 has not called.
+    #[error("M99 outside of a subroutine that M98 has called")]
+    NothingToReturn,
+    /// The end of the file in a subroutine that M98 has called.
+    #[error("the subroutine of M98 ends without M99")]
+    NoReturn,
     /// Calls within calls.
     #[error("subroutines call each other more than {0} deep")]
     TooManyCalls(usize),
