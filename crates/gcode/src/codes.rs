@@ -41,7 +41,7 @@ pub(crate) enum Group {
     SpindleMode,
     /// M62 to M68.
     Output,
-    /// M0, M1, M2, M30, M98, M99.
+    /// M0, M1, M2, M30, M60, M98, M99.
     Stop,
     /// M6.
     Tool,
@@ -118,19 +118,17 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
 /// The group of an M code, or why it is not done.
 fn m_group(tenths: u16) -> Result<Group, Option<&'static str>> {
     Ok(match tenths {
-        0 | 10 | 20 | 300 | 980 | 990 => Group::Stop,
+        0 | 10 | 20 | 300 | 600 | 980 | 990 => Group::Stop,
         30 | 40 | 50 => Group::Spindle,
         60 => Group::Tool,
         70 | 80 | 90 => Group::Coolant,
         480 | 490 => Group::Overrides,
-        620 | 630 | 640 | 650 | 670 | 680 => Group::Output,
+        620 | 630 | 640 | 650 | 660 | 670 | 680 => Group::Output,
         190 => return Err(Some("the spindle is not oriented")),
         500 | 510 | 520 | 530 => {
             return Err(Some("single overrides and adaptive feed; use M48 and M49"));
         }
-        600 => return Err(Some("pallets; use M0")),
         610 => return Err(Some("a tool without its change; use T and M6")),
-        660 => return Err(Some("waiting for an input; use M0")),
         700 | 710 | 720 | 730 => return Err(Some("saved modes; write the modes anew")),
         _ if (1000..=1990).contains(&tenths) && tenths.is_multiple_of(10) => {
             return Err(Some("programs of the user are not run"));

@@ -6,6 +6,7 @@
 use crate::canon::{Canon, PathMode, Plane};
 use crate::codes::{Code, Group};
 use crate::error::{ErrorKind, Fault};
+use crate::inputs_outputs;
 use crate::motion::{FURTHEST, MOST, MOST_SECONDS, Moved, Mover};
 use crate::outcome::{Jump, Outcome};
 use crate::request::Request;
@@ -25,7 +26,7 @@ pub(crate) fn execute(
     let inverse_feed = feed(state, request)?;
     switches::spindle_speed(state, request, out)?;
     switches::tool(state, request, out)?;
-    switches::output(request, out)?;
+    inputs_outputs::execute(state, request, out)?;
     switches::change_tool(state, request, out);
     switches::spindle(state, request, out);
     switches::coolant(state, request, out);
@@ -223,11 +224,11 @@ fn standing_code(state: &State, request: &Request) -> Code {
     Code { letter: b'g', tenths, column: request.column }
 }
 
-/// M0, M1, M2, M30, M98 and M99.
+/// M0, M1, M2, M30, M60, M98 and M99.
 fn stop(state: &mut State, request: &mut Request, out: &mut Outcome) -> Result<(), Fault> {
     let Some(code) = request.code(Group::Stop) else { return Ok(()) };
     match code.tenths {
-        0 => out.after.push_back(Canon::Pause { optional: false }),
+        0 | 600 => out.after.push_back(Canon::Pause { optional: false }),
         10 => out.after.push_back(Canon::Pause { optional: true }),
         980 => {
             let number = request.take_whole(b'p', MOST, "0 to 10^9")?;

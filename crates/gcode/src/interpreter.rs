@@ -15,7 +15,7 @@ use crate::outcome::Outcome;
 use crate::request::Request;
 use crate::seal::Seal;
 use crate::squeeze::Squeezed;
-use crate::state::State;
+use crate::state::{State, numbers};
 use crate::switches;
 use crate::syntax::Block;
 use crate::tools::ToolTable;
@@ -147,6 +147,13 @@ impl<R: Read + Seek> Interpreter<R> {
     pub fn probed(&mut self, at: Point, tripped: bool) {
         self.set_place(at);
         record_probe(&mut self.state, tripped);
+    }
+
+    /// Reports the value at which the last [`Canon::ReadInput`] ended, before the next step is asked
+    /// for: 0 or 1 for digital inputs, any finite value for analog ones, `None` if the input did not
+    /// become what was wanted in time. A program sees it as `#5399`, and `None` as -1.
+    pub fn input_read(&mut self, value: Option<f64>) {
+        self.state.memory.set(numbers::INPUT, value.unwrap_or(-1.0));
     }
 
     /// The next step of the present line.

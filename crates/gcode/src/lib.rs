@@ -17,7 +17,7 @@
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
 //!            offsets  coordinate systems and stored places
 //!            tool_length offsets of tools; tools: the tool table
-//!            switches spindle, coolant, tool, outputs
+//!            switches spindle, coolant, tool; inputs_outputs
 //! ```
 //!
 //! The memory is constant, whatever the length of the program, but for the O-words. No program
@@ -38,6 +38,7 @@ mod files;
 mod flow;
 mod frame;
 mod grammar;
+mod inputs_outputs;
 mod interpreter;
 mod memory;
 mod motion;
@@ -57,7 +58,9 @@ mod tool_length;
 mod tools;
 mod values;
 
-pub use canon::{AXES, AXIS_LETTERS, Arc, Canon, Pace, PathMode, Plane, Point, Step, Turn};
+pub use canon::{
+    AXES, AXIS_LETTERS, Arc, Canon, Input, Pace, PathMode, Plane, Point, Step, Turn, Until,
+};
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
 pub use options::{DEFAULT_BLOCKS, Options};

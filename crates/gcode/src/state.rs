@@ -30,6 +30,8 @@ pub(crate) mod numbers {
     pub(crate) const ROTATION: usize = 5230;
     /// Distance of the parameters of two coordinate systems.
     pub(crate) const SYSTEM_STEP: usize = 20;
+    /// Value of the last input that was read, or -1.
+    pub(crate) const INPUT: usize = 5399;
     /// Number of the tool in the spindle.
     pub(crate) const TOOL: usize = 5400;
     /// Offset of the tool in the spindle as the tool table gives it, six axes.

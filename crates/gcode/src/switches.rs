@@ -1,4 +1,4 @@
-//! Executes the words that switch something: spindle, coolant, tool, outputs, overrides.
+//! Executes the words that switch something: spindle, coolant, tool, overrides.
 
 use crate::canon::{Canon, Turn};
 use crate::codes::Group;
@@ -45,24 +45,6 @@ pub(crate) fn tool(
         state.modal.selected_tool = tool;
         out.before.push_back(Canon::SelectTool { tool });
     }
-    Ok(())
-}
-
-/// M62 to M65, M67 and M68.
-pub(crate) fn output(request: &mut Request, out: &mut Outcome) -> Result<(), Fault> {
-    let Some(code) = request.code(Group::Output) else { return Ok(()) };
-    let with_motion = matches!(code.tenths, 620 | 630 | 670);
-    let missing = |word| ErrorKind::Missing { code: code.to_string(), word };
-    out.before.push_back(if code.tenths >= 670 {
-        let index = request.take_whole(b'e', 255, "0 to 255")?;
-        let index = index.ok_or_else(|| Fault::new(code.column, missing("E, the output")))?;
-        let value = request.need(b'q', code, "Q, the value")?;
-        Canon::AnalogOutput { index, value, with_motion }
-    } else {
-        let index = request.take_whole(b'p', 255, "0 to 255")?;
-        let index = index.ok_or_else(|| Fault::new(code.column, missing("P, the output")))?;
-        Canon::DigitalOutput { index, on: matches!(code.tenths, 620 | 640), with_motion }
-    });
     Ok(())
 }
 

@@ -70,6 +70,7 @@ impl ErrorKind {
                  as Fanuc's controls do"
             }
             Kind::ToolTwice(_) => "remove one of the two lines",
+            Kind::AnalogWait => "read it with L0, in a loop with G4 P0.1",
             Kind::AxesTwice { .. } => "write them in two lines",
             Kind::NoMotion => "write G0, G1 or another motion before the axis words",
             Kind::FeedWithUnits => {

@@ -207,6 +207,9 @@ pub enum ErrorKind {
     /// A tool of two lines of the tool table.
     #[error("tool {0} is in the table twice")]
     ToolTwice(u32),
+    /// M66 waits for an analog input.
+    #[error("M66 waits for an analog input")]
+    AnalogWait,
     /// Two codes that both use axis words.
     #[error("{first} and {second} both use the axis words")]
     AxesTwice {
