@@ -139,6 +139,20 @@ pub enum Canon {
     End,
 }
 
+impl Canon {
+    /// Whether the machine comes to rest after it, and what follows can depend on what happens
+    /// then: a probe, M66, M6, M0, M1 and M60.
+    pub fn is_sync_point(&self) -> bool {
+        matches!(
+            self,
+            Self::Probe { .. }
+                | Self::ReadInput { .. }
+                | Self::ChangeTool { .. }
+                | Self::Pause { .. }
+        )
+    }
+}
+
 /// An input that a program can read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {

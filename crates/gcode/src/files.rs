@@ -112,10 +112,16 @@ impl<R: Read + Seek> Files<R> {
         self.opened[to.file].source.jump(to.place)
     }
 
-    /// The first file that has changed since it was opened, if there is one.
-    pub(crate) fn changed(&self) -> Option<Arc<str>> {
+    /// Checks that no file has changed since it was opened.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
         let has_changed = |file: &&Opened<R>| file.seal.as_ref().is_some_and(|seal| !seal.holds());
-        self.opened.iter().find(has_changed).map(|file| file.name.clone())
+        match self.opened.iter().find(has_changed) {
+            None => Ok(()),
+            Some(Opened { name: file, .. }) => {
+                let (file, kind) = (file.clone(), ErrorKind::Changed);
+                Err(GcodeError { file, line: 0, column: 0, kind }.into())
+            }
+        }
     }
 
     /// Finds the first line of a subroutine, and opens its file if need be. `label` is the number,

@@ -24,6 +24,9 @@ use std::io::{Read, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Lines after which the files are checked for changes.
+const LINES_OF_A_CHECK: u32 = 1000;
+
 /// A program that is being read: an iterator over its [`Step`]s.
 ///
 /// The memory does not grow with the length of the program, but for a few words for each O-word.
@@ -58,6 +61,8 @@ pub struct Interpreter<R> {
     /// Lines that may still run again.
     blocks_left: u64,
     blocks: u64,
+    /// Lines until the files are checked for changes again.
+    until_check: u32,
     /// Bytes of the main program up to the furthest line that was executed outside of subroutines.
     furthest: u64,
     percents: u32,
@@ -113,6 +118,7 @@ impl<R: Read + Seek> Interpreter<R> {
             block_delete: options.block_delete,
             blocks_left: options.blocks,
             blocks: options.blocks,
+            until_check: LINES_OF_A_CHECK,
             furthest: 0,
             percents: 0,
             is_over: false,
@@ -179,58 +185,64 @@ impl<R: Read + Seek> Interpreter<R> {
 
     /// Reads and executes lines until there is a step; `None` after the last one.
     fn next_step(&mut self) -> Result<Option<Step>, Fault> {
-        let whole = |kind| Fault::new(0, kind);
         loop {
-            if let Some(canon) = self.pending().map_err(whole)? {
+            if let Some(canon) = self.pending().map_err(whole_line)? {
+                if canon.is_sync_point() {
+                    self.until_check = 0;
+                }
                 return Ok(Some(Step { file: self.file.clone(), line: self.state.line, canon }));
             }
             if self.outcome.ends {
                 return Ok(None);
             }
-            let at = self.files.next();
-            self.state.line = at.place.lines + 1;
-            if !self.files.advance().map_err(whole)? {
-                // The end is at the last line, not behind it.
-                self.state.line = at.place.lines.max(1);
-                self.end_of_file()?;
-                continue;
+            if self.until_check == 0 {
+                self.files.check()?;
+                self.until_check = LINES_OF_A_CHECK;
             }
-            self.file.clone_from(self.files.name(at.file));
-            if self.flow.is_in_call() || at.place.offset < self.furthest {
-                self.count_block().map_err(whole)?;
-            } else {
-                self.furthest = self.files.next().place.offset;
-            }
-            self.line.read(self.files.line())?;
-            match grammar::kind(&self.line) {
-                LineKind::Deletable if self.block_delete => continue,
-                LineKind::Percent => {
-                    self.percents += 1;
-                    if self.percents == 2 {
-                        self.end_of_file()?;
-                    }
-                    continue;
-                }
-                _ => {}
-            }
-            grammar::read(&self.line, &mut self.block)?;
-            for text in &self.line.comments {
-                self.outcome.before.push_back(comment::canon(text, &self.state));
-            }
-            let next = if let Some(control) = &self.block.control {
-                self.flow.execute(&mut self.files, at, control, &mut self.state)?
-            } else {
-                self.execute()?;
-                let next = self.files.next();
-                let jump = self.outcome.jump.take();
-                jump.map(|jump| self.flow.jump(&mut self.files, next, jump, &mut self.state))
-                    .transpose()?
-                    .flatten()
-            };
-            if let Some(next) = next {
-                self.files.jump(next).map_err(whole)?;
-            }
+            self.until_check -= 1;
+            self.next_line()?;
         }
+    }
+
+    /// Reads and executes a line.
+    fn next_line(&mut self) -> Result<(), Fault> {
+        let at = self.files.next();
+        self.state.line = at.place.lines + 1;
+        self.file.clone_from(self.files.name(at.file));
+        if !self.files.advance().map_err(whole_line)? {
+            // The end is at the last line, not behind it.
+            self.state.line = at.place.lines.max(1);
+            return self.end_of_file();
+        }
+        if self.flow.is_in_call() || at.place.offset < self.furthest {
+            self.count_block().map_err(whole_line)?;
+        } else {
+            self.furthest = self.files.next().place.offset;
+        }
+        self.line.read(self.files.line())?;
+        match grammar::kind(&self.line) {
+            LineKind::Deletable if self.block_delete => return Ok(()),
+            LineKind::Percent => {
+                self.percents += 1;
+                return if self.percents == 2 { self.end_of_file() } else { Ok(()) };
+            }
+            LineKind::Deletable | LineKind::Block => {}
+        }
+        grammar::read(&self.line, &mut self.block)?;
+        for text in &self.line.comments {
+            self.outcome.before.push_back(comment::canon(text, &self.state));
+        }
+        let next = if let Some(control) = &self.block.control {
+            self.flow.execute(&mut self.files, at, control, &mut self.state)?
+        } else {
+            self.execute()?;
+            let following = self.files.next();
+            match self.outcome.jump.take() {
+                None => None,
+                Some(jump) => self.flow.jump(&mut self.files, following, jump, &mut self.state)?,
+            }
+        };
+        next.map_or(Ok(()), |next| self.files.jump(next).map_err(whole_line))
     }
 
     /// The end of the file, or the second `%`.
@@ -261,15 +273,16 @@ impl<R: Read + Seek> Iterator for Interpreter<R> {
         if self.is_over {
             return None;
         }
-        let step = self.next_step();
-        let is_last = match &step {
+        let mut step = self.next_step();
+        self.is_over = match &step {
             Ok(Some(step)) => step.canon == Canon::End,
             Ok(None) | Err(_) => true,
         };
-        self.is_over = is_last;
-        if is_last && let Some(file) = self.files.changed() {
-            let kind = ErrorKind::Changed;
-            return Some(Err(GcodeError { file, line: 0, column: 0, kind }));
+        // A mistake in a file that has changed is none of the program's.
+        if self.is_over
+            && let Err(changed) = self.files.check()
+        {
+            step = Err(changed);
         }
         match step {
             Ok(step) => step.map(Ok),
@@ -280,4 +293,9 @@ impl<R: Read + Seek> Iterator for Interpreter<R> {
             }
         }
     }
+}
+
+/// A mistake that belongs to a whole line.
+fn whole_line(kind: ErrorKind) -> Fault {
+    Fault::new(0, kind)
 }

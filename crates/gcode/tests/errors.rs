@@ -292,6 +292,22 @@ fn a_file_that_changes_while_it_is_read_is_refused() {
 }
 
 #[test]
+fn a_change_of_the_file_is_noticed_after_a_thousand_lines_or_at_the_next_stop() {
+    let text = |begin: &str| begin.to_owned() + &"G4 P1\n".repeat(5_000);
+    for (begin, most) in [("G4 P1\n", 1_001), ("G4 P1\nM0\n", 1)] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("job.ngc");
+        std::fs::write(&path, text(begin)).unwrap();
+        let mut program = Interpreter::open(&path, &Options::default()).unwrap();
+        assert!(program.next().unwrap().is_ok());
+        std::fs::write(&path, text(begin) + "G4 P2\n").unwrap();
+        let steps = program.by_ref().take_while(Result::is_ok).count();
+        assert!(steps <= most, "{steps}");
+        assert!(program.next().is_none());
+    }
+}
+
+#[test]
 fn files_that_cannot_be_read_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for path in [folder.path().join("none.ngc"), folder.path().to_owned(), "/dev/zero".into()] {
