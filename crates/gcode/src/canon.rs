@@ -103,9 +103,10 @@ pub enum Canon {
         /// True (M67): it changes with the beginning of the next move. False (M68): at once.
         with_motion: bool,
     },
-    /// M66: the machine rests until an input is as it is wanted, or for this time, and reads it. The
-    /// interpreter assumes that the input becomes what is wanted, and is 0 if nothing is wanted,
-    /// unless [`Interpreter::input_read`](crate::Interpreter::input_read) reports another value.
+    /// M66: the machine rests until an input is as it is wanted, or for this time, and reads it.
+    /// The interpreter assumes that the input becomes what is wanted, and is 0 if nothing is
+    /// wanted, unless [`Interpreter::input_read`](crate::Interpreter::input_read) reports another
+    /// value.
     ReadInput {
         /// The input.
         input: Input,

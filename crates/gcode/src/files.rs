@@ -1,8 +1,8 @@
 //! The files of a program: the program itself, and the files beside it whose subroutines it calls.
 //!
-//! `o<name> call` and `M98 P100` look for their subroutine in the running file, then in the program,
-//! and then in the file `name.ngc` or `100.ngc` in the folder of the program. A file stays open once
-//! it has been found, with its outline; its lines are read again for each call.
+//! `o<name> call` and `M98 P100` look for their subroutine in the running file, then in the
+//! program, and then in the file `name.ngc` or `100.ngc` in the folder of the program. A file stays
+//! open once it has been found, with its outline; its lines are read again for each call.
 
 use crate::error::{ErrorKind, Fault, GcodeError};
 use crate::outline::{Outline, Style};

@@ -1,7 +1,7 @@
 //! Executes O-words, M98 and M99: which line is the next one.
 //!
-//! A loop, a branch and a call are jumps in the files; only the return addresses and the counters of
-//! `repeat` and M98 are kept.
+//! A loop, a branch and a call are jumps in the files; only the return addresses and the counters
+//! of `repeat` and M98 are kept.
 
 use crate::error::{ErrorKind, Fault};
 use crate::evaluate::{evaluate, whole};

@@ -65,6 +65,7 @@ pub struct Interpreter<R> {
     until_check: u32,
     /// Bytes of the main program up to the furthest line that was executed outside of subroutines.
     furthest: u64,
+    /// Lines with `%` so far.
     percents: u32,
     is_over: bool,
 }
@@ -155,9 +156,9 @@ impl<R: Read + Seek> Interpreter<R> {
         record_probe(&mut self.state, tripped);
     }
 
-    /// Reports the value at which the last [`Canon::ReadInput`] ended, before the next step is asked
-    /// for: 0 or 1 for digital inputs, any finite value for analog ones, `None` if the input did not
-    /// become what was wanted in time. A program sees it as `#5399`, and `None` as -1.
+    /// Reports the value at which the last [`Canon::ReadInput`] ended, before the next step is
+    /// asked for: 0 or 1 for digital inputs, any finite value for analog ones, `None` if the input
+    /// did not become what was wanted in time. A program sees it as `#5399`, and `None` as -1.
     pub fn input_read(&mut self, value: Option<f64>) {
         self.state.memory.set(numbers::INPUT, value.unwrap_or(-1.0));
     }

@@ -1,4 +1,5 @@
-//! What a line gives: a queue of moves and actions, with a drilling cycle in its middle, and a jump.
+//! What a line gives: a queue of moves and actions, with a drilling cycle in its middle, and a
+//! jump.
 
 use crate::canon::Canon;
 use crate::cycle::Cycle;

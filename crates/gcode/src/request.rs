@@ -70,7 +70,7 @@ impl Request {
         self.codes[group as usize]
     }
 
-    /// The value of a letter, without using it.
+    /// Whether the line has a letter whose value is not used yet.
     pub(crate) fn has(&self, letter: u8) -> bool {
         self.letters[index(letter)].is_some_and(|given| !given.is_used)
     }

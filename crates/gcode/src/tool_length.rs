@@ -1,5 +1,5 @@
-//! Executes the codes of tools' offsets: G43, G43.1, G43.2, G49, and G10 L1 and L10, which change the
-//! tool table while the program runs.
+//! Executes the codes of tools' offsets: G43, G43.1, G43.2, G49, and G10 L1 and L10, which change
+//! the tool table while the program runs.
 
 use crate::canon::{AXES, Point};
 use crate::codes::Code;

@@ -17,7 +17,7 @@ SECONDS = 10
 
 
 def load_tool_table(folder, table):
-    """Loads the tool table into the shared memory that the interpreter expects in the user's folder."""
+    """Loads the tool table into shared memory, where the interpreter looks for it."""
     os.environ["HOME"] = folder
     tools = ctypes.CDLL("libtooldata.so.0", mode=ctypes.RTLD_GLOBAL)
     status = ctypes.create_string_buffer(1 << 16)
