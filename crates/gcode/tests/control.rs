@@ -201,6 +201,16 @@ fn moves_that_are_shorter_than_rounding_errors_add_up_to_one() {
 }
 
 #[test]
+fn a_small_peck_does_not_return_above_r() {
+    let z = |canon: &Canon| match canon {
+        Canon::Traverse { to } | Canon::Feed { to, .. } => Some((to[2] * 1000.0).round()),
+        _ => None,
+    };
+    let found: Vec<f64> = canons("F60\nG83 Z-0.5 R0.1 Q0.2").iter().filter_map(z).collect();
+    assert_eq!(found, [100.0, -100.0, 100.0, -300.0, 100.0, -46.0, -500.0, 100.0]);
+}
+
+#[test]
 fn mist_and_flood_are_switched_on_one_by_one_and_off_together() {
     let coolant = |mist, flood| Canon::Coolant { mist, flood };
     let found = canons("M7\nM8\nM9\nM8");
