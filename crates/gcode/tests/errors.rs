@@ -213,6 +213,7 @@ fn feed_moves_need_a_feed_above_zero() {
         ("G93 G1 X1", "1:5", "G1 in inverse time (G93) without F"),
         ("G93 G1 X1 F1\nX2", "2:1", "without F in its line"),
         ("F1 G93\nG1 X1 F1\nG94 G1 X2", "3:5", "G1 without a feed"),
+        ("F1\nG93\nG1 X1 F1\nG94 G1 X2", "4:5", "G1 without a feed"),
         ("G93 F1 G81 X1 Z-1 R1", "1:8", "G81 in inverse time"),
         ("G93 F1 G38.2 X1", "1:8", "G38.2 in inverse time"),
         ("G20 F10", "1:5", "changes the units"),

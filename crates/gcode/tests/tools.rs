@@ -85,6 +85,8 @@ fn the_offset_of_a_tool_is_in_effect_from_g43_to_g49() {
     assert_eq!(zs("G43 H1 G0 Z1\nT2 M6\nZ2\nG43 Z3"), [13.5, 14.5, 23.0]);
     assert_eq!(zs("G43 H1\nG43.2 H2\nG0 Z1\nG43.2 Z0.5\nZ2\nG43\nZ3"), [33.5, 35.0, 3.0]);
     assert_eq!(zs("T1 M6 G20\nG43 G0 Z1"), [37.9]);
+    // T alone does not change the tool.
+    assert_eq!(zs("T1 M6\nT2\nG43 G0 Z1"), [13.5]);
 }
 
 #[test]
