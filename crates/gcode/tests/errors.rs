@@ -179,6 +179,7 @@ fn words_that_are_unknown_useless_or_missing_are_refused() {
         ("G0 X1 P2", "1:7", "nothing in this line uses P"),
         ("G17 R1", "1:5", "nothing in this line uses R"),
         ("X1", "1:1", "axis words without a G code"),
+        ("G0 X1\nG80\nX2", "3:1", "axis words without a G code"),
         ("G4", "1:1", "G4 needs P"),
         ("G4 P-1", "1:4", "P is -1, out of its range"),
         ("G92", "1:1", "G92 needs the coordinate"),
