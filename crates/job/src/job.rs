@@ -9,7 +9,7 @@ use crate::piece::Piece;
 use crate::rhythm::{Rhythm, SHORTEST};
 use crate::row::Row;
 use crate::run::Runs;
-use crate::settle::{Emitted, Stuck};
+use crate::settle::Emitted;
 use crate::targets::Targets;
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
@@ -327,7 +327,7 @@ impl<const N: usize> Job<N> {
                 if done == count {
                     self.work.pop_front();
                 }
-                self.runs.push(part, &mut emitted).map_err(stuck)?;
+                self.runs.push(part, &mut emitted);
                 self.weave(&emitted, None)?;
             }
             Some(&mut Work::Mark(mark)) => {
@@ -338,7 +338,7 @@ impl<const N: usize> Job<N> {
                 self.work.pop_front();
                 if self.runs.moving() {
                     let end = *self.runs.end();
-                    self.runs.rest(&mut emitted).map_err(stuck)?;
+                    self.runs.rest(&mut emitted);
                     let target = self.targets.steps(&end, self.line)?;
                     self.weave(&emitted, Some(target.map(|steps| i128::from(steps) << 64)))?;
                 }
@@ -441,8 +441,4 @@ impl<const N: usize> Job<N> {
     fn broken(&self, broken: Broken) -> JobError {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
-}
-
-fn stuck(stuck: Stuck) -> JobError {
-    JobError::Stuck { line: stuck.line }
 }

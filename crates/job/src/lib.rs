@@ -18,10 +18,13 @@
 //! Memory does not grow with the length of a job: each stage holds a window as long as the machine
 //! needs to stop.
 
+mod attempt;
 mod banded;
+mod cover;
 mod element;
 mod error;
 mod filter;
+mod halt;
 mod inspect;
 mod job;
 mod kinematics;
