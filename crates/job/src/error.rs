@@ -110,6 +110,9 @@ pub enum Rule {
     /// The integer position and the planned one.
     #[error("the position leaves the plan")]
     Position,
+    /// An edge near a reversal.
+    #[error("DIR set-up or hold does not fit at a reversal")]
+    Direction,
     /// The end of a run.
     #[error("it does not land exactly")]
     Landing,

@@ -79,3 +79,60 @@ pub(crate) fn halt<const N: usize>(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Arc, Tolerance};
+    use crate::limits::Limit;
+    use crate::piece::Piece;
+
+    const LIMIT: Limit = Limit { speed: 100.0, acceleration: 1000.0, jerk: 250_000.0 };
+    const KNOT: f64 = 0.004;
+
+    /// The greatest speed, acceleration and jerk as parts of their limits.
+    fn peaks(piece: Piece<2>, from: Point<2>) -> [f64; 3] {
+        let motors = Motors { limits: [LIMIT; 2], matrix: [[1.0, 0.0], [0.0, 1.0]] };
+        let mut path = Path::new(2);
+        let end = piece.end;
+        path.push(piece);
+        let knots = halt(&from, Place { piece: 0, along: 0.0 }, &path, &motors, KNOT);
+        let mut points = vec![from; 4];
+        points.extend(knots.iter().map(|knot| knot.point));
+        points.extend([end; 4]);
+        assert_eq!(knots.last().unwrap().point, end);
+        let mut peaks = [0.0_f64; 3];
+        for c in points.windows(4) {
+            for i in 0..2 {
+                let [a, b, d, e] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let parts = [
+                    (e - d) / (LIMIT.speed * KNOT),
+                    (e - 2.0 * d + b) / (LIMIT.acceleration * KNOT.powi(2)),
+                    (e - 3.0 * d + 3.0 * b - a) / (LIMIT.jerk * KNOT.powi(3)),
+                ];
+                for (peak, part) in peaks.iter_mut().zip(parts) {
+                    *peak = peak.max(part.abs());
+                }
+            }
+        }
+        peaks
+    }
+
+    #[test]
+    fn exact_stop_keeps_all_limits_and_uses_them() {
+        let tolerance = Tolerance { linear: 0.01, rotary: 0.01 };
+        let line = |to: Point<2>| Piece::new([0.0; 2], to, None, f64::INFINITY, tolerance, 1, 2);
+        for length in [1e-6, 0.01, 0.3, 3.0, 30.0, 300.0] {
+            let found = peaks(line([length, -0.3 * length]), [0.004, 0.005]);
+            assert!(found.iter().all(|part| *part <= 1.0), "{length}: {found:?}");
+            let used = found.iter().copied().fold(0.0, f64::max);
+            assert!(length < 0.1 || used > 0.8, "{length}: {found:?}");
+            let arc = Arc { plane: [0, 1], centre: [0.0, length], angle: 2.0 };
+            let (sin, cos) = 2_f64.sin_cos();
+            let end = [length * sin, length - length * cos];
+            let bent = Piece::new([0.0; 2], end, Some(arc), 1e9, tolerance, 1, 2);
+            let found = peaks(bent, [0.0, 0.005]);
+            assert!(found.iter().all(|part| *part <= 1.0), "arc {length}: {found:?}");
+        }
+    }
+}

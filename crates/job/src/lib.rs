@@ -32,6 +32,7 @@ mod limits;
 mod path;
 mod piece;
 mod planner;
+mod refuse;
 mod retime;
 mod rhythm;
 mod rough;
@@ -42,6 +43,7 @@ mod smooth;
 mod speed;
 mod spline;
 mod targets;
+mod turn;
 mod vector;
 mod weave;
 

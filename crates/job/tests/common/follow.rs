@@ -63,7 +63,7 @@ pub fn within(
 /// Goes from one tick to another; in smaller parts where a part is too long to change from one
 /// part of the path to the next.
 fn chord(
-    follow: &mut Follow,
+    follow: &mut Follow<'_>,
     at: &impl Fn(u32) -> Vec<f64>,
     from: u32,
     to: u32,

@@ -2,7 +2,6 @@
 
 use super::reader;
 use super::reference::{Limits, Sample, grbl, least_time};
-use super::replay::Replay;
 use carrystep_files::Machine;
 use carrystep_job::{Cartesian, Item, Planner, Row, rows};
 
