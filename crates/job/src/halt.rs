@@ -17,7 +17,7 @@ const LAW: [f64; 3] = [1.875, 5.774, 60.0];
 /// Part of the limits that is used.
 const PART: f64 = 0.98;
 /// By what the time is multiplied until the limits are kept.
-const SLOWER: f64 = 1.1;
+const SLOWER: f64 = 1.02;
 /// Fewest knots of a motion.
 const LEAST: f64 = 8.0;
 
@@ -126,7 +126,7 @@ mod tests {
             let found = peaks(line([length, -0.3 * length]), [0.004, 0.005]);
             assert!(found.iter().all(|part| *part <= 1.0), "{length}: {found:?}");
             let used = found.iter().copied().fold(0.0, f64::max);
-            assert!(length < 0.1 || used > 0.8, "{length}: {found:?}");
+            assert!(length < 1.0 || used > 0.9, "{length}: {found:?}");
             let arc = Arc { plane: [0, 1], centre: [0.0, length], angle: 2.0 };
             let (sin, cos) = 2_f64.sin_cos();
             let end = [length * sin, length - length * cos];
