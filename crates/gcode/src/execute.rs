@@ -6,8 +6,9 @@
 use crate::canon::{Canon, PathMode, Plane};
 use crate::codes::{Code, Group};
 use crate::error::{ErrorKind, Fault};
+use crate::frame::FURTHEST;
 use crate::inputs_outputs;
-use crate::motion::{FURTHEST, MOST, MOST_SECONDS, Moved, Mover};
+use crate::motion::{MOST, MOST_SECONDS, Moved, Mover};
 use crate::outcome::{Jump, Outcome};
 use crate::request::Request;
 use crate::state::{Motion, State, numbers};

@@ -9,6 +9,9 @@
 
 use crate::canon::Point;
 
+/// A coordinate further from zero than this, in mm or degrees, is a mistake of the program.
+pub(crate) const FURTHEST: f64 = 1e9;
+
 /// The offsets in effect.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Frame {

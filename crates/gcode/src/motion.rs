@@ -5,11 +5,9 @@ use crate::circle::{self, Vector};
 use crate::codes::{Code, Group};
 use crate::cycle::Cycle;
 use crate::error::{ErrorKind, Fault};
+use crate::frame::FURTHEST;
 use crate::request::Request;
 use crate::state::{Motion, State, numbers};
-
-/// A coordinate further from zero than this, in mm or degrees, is a mistake of the program.
-pub(crate) const FURTHEST: f64 = 1e9;
 
 /// Places that differ by less than this, in mm or degrees, are the same but for rounding.
 const SAME: f64 = 1e-9;

@@ -12,7 +12,7 @@
 use crate::canon::{AXIS_LETTERS, Point};
 use crate::error::{ErrorKind, Fault, GcodeError};
 use crate::evaluate::whole;
-use crate::motion::FURTHEST;
+use crate::frame::FURTHEST;
 use crate::seal::Seal;
 use crate::source::Source;
 use std::collections::BTreeMap;

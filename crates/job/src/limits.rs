@@ -1,11 +1,13 @@
 //! The limits of the motors: as floats for the stages that plan, and exact for the check.
 
 use crate::error::JobError;
-use crate::rhythm::SHORTEST;
 use crate::vector::Point;
 use bigdecimal::ToPrimitive;
 use carrystep_files::Machine;
 use carrystep_plan::exact::ExactLimits;
+
+/// Shortest time between knots, seconds.
+pub(crate) const SHORTEST: f64 = 0.004;
 
 /// What one motor may do, in its unit and seconds.
 #[derive(Debug, Clone, Copy)]
