@@ -103,8 +103,7 @@ mod tests {
         assert_eq!(knots.last().unwrap().point, end);
         let mut peaks = [0.0_f64; 3];
         for c in points.windows(4) {
-            for i in 0..2 {
-                let [a, b, d, e] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+            for (((a, b), d), e) in c[0].iter().zip(&c[1]).zip(&c[2]).zip(&c[3]) {
                 let parts = [
                     (e - d) / (LIMIT.speed * KNOT),
                     (e - 2.0 * d + b) / (LIMIT.acceleration * KNOT.powi(2)),

@@ -52,7 +52,8 @@ impl Pair<'_> {
         signs.extend(
             [extreme - 1, extreme, extreme + 1, end]
                 .iter()
-                .filter_map(|&t| (1..=end).contains(&t).then(|| (t, speed(t).signum()))),
+                .filter(|t| (1..=end).contains(*t))
+                .map(|&t| (t, speed(t).signum())),
         );
         signs.windows(2).all(|pair| {
             let [(mut low, sign), (mut high, other)] = [pair[0], pair[1]];

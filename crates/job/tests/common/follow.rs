@@ -6,8 +6,7 @@ use super::replay::Replay;
 use carrystep_files::Machine;
 use carrystep_job::Row;
 
-/// The longest chord of the emitted curve, as a part of the tolerance, and the shortest one where
-/// the curve leaves the tolerance otherwise, ticks.
+/// The longest chord of the emitted curve, as a part of the tolerance.
 const CHORD: f64 = 0.5;
 
 /// Checks that the rows stay within `scale` times the tolerance, in order, to the path's end.

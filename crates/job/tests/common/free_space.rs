@@ -193,14 +193,14 @@ impl Follow<'_> {
             let half = (left / square).sqrt();
             (low, high) = (low.max(foot - half), high.min(foot + half));
         }
-        for i in n..LETTERS {
-            if chord.along[i] == 0.0 {
-                if off[i].abs() > most[1] {
+        for (&along, &off) in chord.along.iter().zip(&off).skip(n) {
+            if along == 0.0 {
+                if off.abs() > most[1] {
                     return None;
                 }
                 continue;
             }
-            let [a, b] = [-most[1], most[1]].map(|x| (x - off[i]) / chord.along[i]);
+            let [a, b] = [-most[1], most[1]].map(|x| (x - off) / along);
             (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
         }
         (low <= high).then_some((low, high))
