@@ -57,7 +57,7 @@ pub struct ProgramFigures {
 /// Something that a program does and a plan does not.
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct NotDone {
-    /// pause, tool change, spindle, coolant, output or probe.
+    /// pause, tool change, spindle, coolant, output, input or probe.
     pub what: &'static str,
     /// How often.
     pub count: u64,

@@ -73,9 +73,6 @@ impl Fault {
                 "check the condition of the loop, or allow more with --blocks".into()
             }
             Self::Gcode(kind) => kind.help().to_owned(),
-            Self::Plan(JobError::Stuck { .. }) => {
-                "use a greater tolerance: --tolerance, or G64 P".into()
-            }
             Self::Plan(JobError::Broken { .. } | JobError::Ended) => {
                 "this is a bug of carrystep; please report it with the program".into()
             }
@@ -114,7 +111,6 @@ fn planner_line(error: &JobError) -> u64 {
         | JobError::Arc { line }
         | JobError::Travel { line, .. }
         | JobError::Far { line, .. }
-        | JobError::Stuck { line }
         | JobError::Broken { line, .. } => *line,
         _ => 0,
     }

@@ -136,7 +136,7 @@ impl Events {
         }
     }
 
-    fn add(&mut self, Step { line, canon }: Step) -> Result<(), Fault> {
+    fn add(&mut self, Step { line, canon, .. }: Step) -> Result<(), Fault> {
         let rest = Event::Rest { seconds: 0.0, line };
         match canon {
             Canon::Traverse { to } => self.go(line, to, None, None)?,
@@ -155,6 +155,7 @@ impl Events {
             Canon::DigitalOutput { .. } | Canon::AnalogOutput { .. } => {
                 self.switch(Switch::Output, line);
             }
+            Canon::ReadInput { .. } => self.switch(Switch::Input, line),
             Canon::ChangeTool { .. } => self.switch(Switch::ToolChange, line),
             Canon::Pause { .. } => self.switch(Switch::Pause, line),
             Canon::End => self.waiting.push_back(Event::End { line }),

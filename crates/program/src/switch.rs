@@ -15,14 +15,23 @@ pub enum Switch {
     Coolant,
     /// M62 to M68.
     Output,
+    /// M66: the input is assumed to become what the program waits for.
+    Input,
     /// G38.2 to G38.5: the probe is assumed to trip at the target.
     Probe,
 }
 
 impl Switch {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 6] =
-        [Self::Pause, Self::ToolChange, Self::Spindle, Self::Coolant, Self::Output, Self::Probe];
+    pub const ALL: [Self; 7] = [
+        Self::Pause,
+        Self::ToolChange,
+        Self::Spindle,
+        Self::Coolant,
+        Self::Output,
+        Self::Input,
+        Self::Probe,
+    ];
 
     /// Its name in documents.
     pub const fn name(self) -> &'static str {
@@ -32,6 +41,7 @@ impl Switch {
             Self::Spindle => "spindle",
             Self::Coolant => "coolant",
             Self::Output => "output",
+            Self::Input => "input",
             Self::Probe => "probe",
         }
     }
@@ -41,6 +51,7 @@ impl Switch {
         match self {
             Self::Pause | Self::ToolChange => "the job rests; its time has no waiting",
             Self::Spindle | Self::Coolant | Self::Output => "the job rests; nothing is switched",
+            Self::Input => "assumed to become what the program waits for",
             Self::Probe => "assumed to trip at its target",
         }
     }
