@@ -26,14 +26,20 @@
 #define CARRYSTEP_WRITE 0x80u
 /* Length of the sequence number and the address of a request in bytes. */
 #define CARRYSTEP_REQUEST_HEAD 2u
-/* Number of words of a segment, the commit included. */
+/* Length of the session number in a request in bytes. */
+#define CARRYSTEP_SESSION_BYTES 2u
+/* Number of words of a SEGMENT frame, the commit included. */
 #define CARRYSTEP_SEGMENT_FRAME_WORDS 8u
-/* Length of the longest request in bytes, without END and ESC. */
-#define CARRYSTEP_LONGEST_REQUEST 38u
+/* Number of words of a SEGMENTS frame before its axes: the mask, and ticks - 1. */
+#define CARRYSTEP_SEGMENTS_HEAD_WORDS 2u
+/* Number of words for each axis of a SEGMENTS frame: V, A, J. */
+#define CARRYSTEP_SEGMENTS_AXIS_WORDS 6u
+/* Length of the longest request (SEGMENTS for eight axes) in bytes, without END and ESC. */
+#define CARRYSTEP_LONGEST_REQUEST 212u
 /* Length of an answer in bytes, without END and ESC. */
-#define CARRYSTEP_ANSWER_BYTES 15u
+#define CARRYSTEP_ANSWER_BYTES 16u
 /* Number of the first data byte in an answer. */
-#define CARRYSTEP_ANSWER_DATA 7u
+#define CARRYSTEP_ANSWER_DATA 8u
 /* Number of writes that may be unacknowledged, and by which a repeated one may lie behind. */
 #define CARRYSTEP_WINDOW 0x7fu
 /* Value of the register IDENTITY. */
@@ -42,8 +48,8 @@
 #define CARRYSTEP_PROTOCOL_VERSION UINT32_C(0x00000002)
 /* Bit of CONTROL: power the drivers. */
 #define CARRYSTEP_CONTROL_ENABLE UINT32_C(0x00000001)
-/* Bit of CONTROL: stop all axes. */
-#define CARRYSTEP_CONTROL_STOP UINT32_C(0x00000002)
+/* Bit of OPEN: stop all axes if the gateware is busy. */
+#define CARRYSTEP_OPEN_FORCE UINT32_C(0x00000001)
 /* Lowest address at which a register of an axis is read. */
 #define CARRYSTEP_AXES_AT 0x18u
 /* Bits of STATUS: the slot of the running segment. */
@@ -78,7 +84,7 @@
 #define CARRYSTEP_TICK_NS 0x06u
 /* Number of phases in a tick (read) */
 #define CARRYSTEP_PHASES 0x07u
-/* Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read) */
+/* Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
 /* TICKS of the other words at the limit (read, axis 0) */
 #define CARRYSTEP_LIMIT_TICKS 0x18u
@@ -118,7 +124,7 @@
 #define CARRYSTEP_SNAPSHOT_POSITION 0xb0u
 /* STATUS in that tick (read, axis 0) */
 #define CARRYSTEP_SNAPSHOT_STATUS 0xb8u
-/* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
+/* Bit 0: power the drivers (write) */
 #define CARRYSTEP_CONTROL 0x20u
 /* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
@@ -128,8 +134,14 @@
 #define CARRYSTEP_HOME 0x23u
 /* Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write) */
 #define CARRYSTEP_SNAPSHOT 0x24u
+/* Makes the session number of this frame the owner; bit 0: stop all axes if it is busy (write) */
+#define CARRYSTEP_OPEN 0x25u
+/* Any value stops all axes, each with its ramp; executed for every host (write) */
+#define CARRYSTEP_STOP 0x26u
 /* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
+/* Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis) */
+#define CARRYSTEP_SEGMENTS 0x48u
 
 /* The causes of a stop, by their number in the field `cause` of an answer. */
 #define CARRYSTEP_CAUSE_ESTOP 0u
@@ -141,35 +153,44 @@
 #define CARRYSTEP_CAUSE_UNDERRUN 6u
 #define CARRYSTEP_CAUSE_STOP 7u
 
+/* The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused. */
+
+/* A write before this one was lost: its number is not `next`. */
+#define CARRYSTEP_REASON_SEQUENCE 1u
+/* The request cannot be executed now: try again. */
+#define CARRYSTEP_REASON_BUSY 2u
+/* The request does not have the session number of the gateware's owner. */
+#define CARRYSTEP_REASON_SESSION 3u
+
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
 /* the sequence number of the request */
 #define CARRYSTEP_ANSWER_SEQUENCE(answer) ((uint8_t)((answer)[0] >> 0 & 255u))
 /* the address of the request */
 #define CARRYSTEP_ANSWER_ADDRESS(answer) ((uint8_t)((answer)[1] >> 0 & 255u))
-/* number of the next write; all before it were executed, or dropped during a fault */
+/* number of the owner's next write; all before it were executed, or dropped during a fault */
 #define CARRYSTEP_ANSWER_NEXT(answer) ((uint8_t)((answer)[2] >> 0 & 255u))
 /* a stop has been triggered; segments and starts are dropped until a clear */
 #define CARRYSTEP_ANSWER_FAULT(answer) ((uint8_t)((answer)[3] >> 0 & 1u))
-/* the stop is complete: no axis moves any more */
-#define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
-/* no axis moves, no queue holds a segment, and no start is armed */
-#define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the drivers have had power for the enable time, as a start requires */
-#define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
+#define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
 /* a start is armed; another start is refused as busy */
-#define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
-/* the cause of the stop, if `fault` is set; otherwise 0 */
-#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)(((answer)[3] >> 5 & 7u) | ((answer)[4] >> 4 & 1u) << 3))
-/* number of segments for which the queue of the addressed axis has room */
-#define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
-/* this write was not executed: out of sequence, or busy */
-#define CARRYSTEP_ANSWER_REFUSED(answer) ((uint8_t)((answer)[4] >> 3 & 1u))
+#define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the request was a write; a read of the same address has 0 here */
-#define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[4] >> 7 & 1u))
+#define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
+/* no axis moves, no queue holds a segment, and no start is armed */
+#define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 6 & 1u))
+/* the stop is complete: no axis moves any more */
+#define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 7 & 1u))
+/* number of segments for which the queue of the addressed axis has room; of SEGMENTS the least of its axes */
+#define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 255u))
 /* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
 /* the axes that still wait for their limit, one bit each */
 #define CARRYSTEP_ANSWER_HOMING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
+/* the cause of the stop, if `fault` is set; otherwise 0 */
+#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)((answer)[7] >> 0 & 15u))
+/* why the request was refused; 0 if it was not */
+#define CARRYSTEP_ANSWER_REASON(answer) ((uint8_t)((answer)[7] >> 4 & 15u))
 
 #endif

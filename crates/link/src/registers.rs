@@ -22,14 +22,20 @@ pub const CRC_BYTES: usize = 4;
 pub const WRITE: u8 = 0x80;
 /// Length of the sequence number and the address of a request in bytes.
 pub const REQUEST_HEAD: usize = 2;
-/// Number of words of a segment, the commit included.
+/// Length of the session number in a request in bytes.
+pub const SESSION_BYTES: usize = 2;
+/// Number of words of a SEGMENT frame, the commit included.
 pub const SEGMENT_FRAME_WORDS: usize = 8;
-/// Length of the longest request in bytes, without END and ESC.
-pub const LONGEST_REQUEST: usize = 38;
+/// Number of words of a SEGMENTS frame before its axes: the mask, and ticks - 1.
+pub const SEGMENTS_HEAD_WORDS: usize = 2;
+/// Number of words for each axis of a SEGMENTS frame: V, A, J.
+pub const SEGMENTS_AXIS_WORDS: usize = 6;
+/// Length of the longest request (SEGMENTS for eight axes) in bytes, without END and ESC.
+pub const LONGEST_REQUEST: usize = 212;
 /// Length of an answer in bytes, without END and ESC.
-pub const ANSWER_BYTES: usize = 15;
+pub const ANSWER_BYTES: usize = 16;
 /// Number of the first data byte in an answer.
-pub const ANSWER_DATA: usize = 7;
+pub const ANSWER_DATA: usize = 8;
 /// Number of writes that may be unacknowledged, and by which a repeated one may lie behind.
 pub const WINDOW: u8 = 0x7f;
 /// Value of the register IDENTITY.
@@ -38,8 +44,8 @@ pub const IDENTITY_VALUE: u32 = 0x5054_5343;
 pub const PROTOCOL_VERSION: u32 = 0x0000_0002;
 /// Bit of CONTROL: power the drivers.
 pub const CONTROL_ENABLE: u32 = 0x0000_0001;
-/// Bit of CONTROL: stop all axes.
-pub const CONTROL_STOP: u32 = 0x0000_0002;
+/// Bit of OPEN: stop all axes if the gateware is busy.
+pub const OPEN_FORCE: u32 = 0x0000_0001;
 /// Lowest address at which a register of an axis is read.
 pub const AXES_AT: u8 = 0x18;
 /// Bits of STATUS: the slot of the running segment.
@@ -71,7 +77,7 @@ pub const CLOCK_HZ: u8 = 0x05;
 pub const TICK_NS: u8 = 0x06;
 /// Number of phases in a tick (read).
 pub const PHASES: u8 = 0x07;
-/// Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read).
+/// Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read).
 pub const WATCHDOG_TICKS: u8 = 0x08;
 /// TICKS of the other words at the limit (read, axis 0).
 pub const LIMIT_TICKS: u8 = 0x18;
@@ -111,7 +117,7 @@ pub const SNAPSHOT_P_HIGH: u8 = 0xa8;
 pub const SNAPSHOT_POSITION: u8 = 0xb0;
 /// STATUS in that tick (read, axis 0).
 pub const SNAPSHOT_STATUS: u8 = 0xb8;
-/// Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write).
+/// Bit 0: power the drivers (write).
 pub const CONTROL: u8 = 0x20;
 /// Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write).
 pub const START: u8 = 0x21;
@@ -121,12 +127,28 @@ pub const CLEAR: u8 = 0x22;
 pub const HOME: u8 = 0x23;
 /// Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write).
 pub const SNAPSHOT: u8 = 0x24;
+/// Makes the session number of this frame the owner; bit 0: stop all axes if it is busy (write).
+pub const OPEN: u8 = 0x25;
+/// Any value stops all axes, each with its ramp; executed for every host (write).
+pub const STOP: u8 = 0x26;
 /// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;
+/// Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis).
+pub const SEGMENTS: u8 = 0x48;
 
 /// The causes of a stop, by their number in the field `cause` of an answer.
 pub const CAUSES: [&str; 8] =
     ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
+
+/// The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused.
+pub const REASONS: [&str; 4] =
+    ["none", "sequence", "busy", "session"];
+/// A write before this one was lost: its number is not `next`.
+pub const REASON_SEQUENCE: u8 = 1;
+/// The request cannot be executed now: try again.
+pub const REASON_BUSY: u8 = 2;
+/// The request does not have the session number of the gateware's owner.
+pub const REASON_SESSION: u8 = 3;
 
 /// Of an answer: the sequence number of the request.
 pub const fn sequence(answer: &[u8; ANSWER_BYTES]) -> u8 {
@@ -138,7 +160,7 @@ pub const fn address(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[1]
 }
 
-/// Of an answer: number of the next write; all before it were executed, or dropped during a fault.
+/// Of an answer: number of the owner's next write; all before it were executed, or dropped during a fault.
 pub const fn next(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[2]
 }
@@ -148,44 +170,34 @@ pub const fn fault(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] & 1 == 1
 }
 
-/// Of an answer: the stop is complete: no axis moves any more.
-pub const fn halted(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[3] >> 1 & 1 == 1
-}
-
-/// Of an answer: no axis moves, no queue holds a segment, and no start is armed.
-pub const fn idle(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[3] >> 2 & 1 == 1
-}
-
 /// Of an answer: the drivers have had power for the enable time, as a start requires.
 pub const fn ready(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[3] >> 3 & 1 == 1
+    answer[3] >> 1 & 1 == 1
 }
 
 /// Of an answer: a start is armed; another start is refused as busy.
 pub const fn armed(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[3] >> 4 & 1 == 1
-}
-
-/// Of an answer: the cause of the stop, if `fault` is set; otherwise 0.
-pub const fn cause(answer: &[u8; ANSWER_BYTES]) -> u8 {
-    answer[3] >> 5 | (answer[4] >> 4 & 1) << 3
-}
-
-/// Of an answer: number of segments for which the queue of the addressed axis has room.
-pub const fn free(answer: &[u8; ANSWER_BYTES]) -> u8 {
-    answer[4] & 7
-}
-
-/// Of an answer: this write was not executed: out of sequence, or busy.
-pub const fn refused(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[4] >> 3 & 1 == 1
+    answer[3] >> 2 & 1 == 1
 }
 
 /// Of an answer: the request was a write; a read of the same address has 0 here.
 pub const fn written(answer: &[u8; ANSWER_BYTES]) -> bool {
-    answer[4] >> 7 & 1 == 1
+    answer[3] >> 3 & 1 == 1
+}
+
+/// Of an answer: no axis moves, no queue holds a segment, and no start is armed.
+pub const fn idle(answer: &[u8; ANSWER_BYTES]) -> bool {
+    answer[3] >> 6 & 1 == 1
+}
+
+/// Of an answer: the stop is complete: no axis moves any more.
+pub const fn halted(answer: &[u8; ANSWER_BYTES]) -> bool {
+    answer[3] >> 7 & 1 == 1
+}
+
+/// Of an answer: number of segments for which the queue of the addressed axis has room; of SEGMENTS the least of its axes.
+pub const fn free(answer: &[u8; ANSWER_BYTES]) -> u8 {
+    answer[4]
 }
 
 /// Of an answer: the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0.
@@ -196,5 +208,15 @@ pub const fn culprits(answer: &[u8; ANSWER_BYTES]) -> u8 {
 /// Of an answer: the axes that still wait for their limit, one bit each.
 pub const fn homing(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[6]
+}
+
+/// Of an answer: the cause of the stop, if `fault` is set; otherwise 0.
+pub const fn cause(answer: &[u8; ANSWER_BYTES]) -> u8 {
+    answer[7] & 15
+}
+
+/// Of an answer: why the request was refused; 0 if it was not.
+pub const fn reason(answer: &[u8; ANSWER_BYTES]) -> u8 {
+    answer[7] >> 4
 }
 

@@ -6,6 +6,7 @@
 //!           0x18 .. 0xff   the state of the axes: page 2 | item 3 | axis 3 (engine/state.rs)
 //! writes    0xa0 .. 0xbf   commands of the host, one word each
 //!           0xc0 .. 0xc7   segments: 0xc0 + axis, eight words
+//!           0xc8           segments of several axes
 //! ```
 //!
 //! A request without words reads, a request with words writes, so that the same address can be a
@@ -27,6 +28,9 @@ pub enum RegisterAccess {
     /// Written with the eight words of a segment in one frame.
     #[strum(to_string = "write, 8 words")]
     WriteSegment,
+    /// Written with the segments of several axes in one frame.
+    #[strum(to_string = "write, 3 words and 6 for each axis")]
+    WriteSegments,
 }
 
 /// One row of the register map.
@@ -72,7 +76,7 @@ registers! {
     TICK_NS      = 0x06, Read false "Length of a tick in ns";
     PHASES       = 0x07, Read false "Number of phases in a tick";
     WATCHDOG_TICKS = 0x08, Read false
-        "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
+        "Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog";
     LIMIT_TICKS  = state_address(Limit, Ticks), Read true
         "TICKS of the other words at the limit";
     LIMIT_P_LOW  = state_address(Limit, PLow), Read true
@@ -105,7 +109,7 @@ registers! {
     SNAPSHOT_POSITION = state_address(Snapshot, Position), Read true "POSITION in that tick";
     SNAPSHOT_STATUS = state_address(Snapshot, Status), Read true "STATUS in that tick";
     CONTROL      = 0x20, Write false
-        "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
+        "Bit 0: power the drivers";
     START        = 0x21, Write false
         "Axes, one bit each, to start together once all rest; an empty queue: fault (protocol)";
     CLEAR        = 0x22, Write false
@@ -114,16 +118,23 @@ registers! {
         "Axes, one bit each: the next limit latches the state and ramps down this axis only";
     SNAPSHOT     = 0x24, Write false
         "Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick";
+    OPEN         = 0x25, Write false
+        "Makes the session number of this frame the owner; bit 0: stop all axes if it is busy";
+    STOP         = 0x26, Write false
+        "Any value stops all axes, each with its ramp; executed for every host";
     SEGMENT      = 0x40, WriteSegment true
         "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \
          its move, else 0";
+    SEGMENTS     = 0x48, WriteSegments false
+        "Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half \
+         first; 1 if last of their move, else 0";
 }
 
 super::constants! {
     IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "Value of the register IDENTITY.";
     PROTOCOL_VERSION: u32 = 2, "Version of the protocol to which this register map belongs.";
     CONTROL_ENABLE: u32 = 1 << 0, "Bit of CONTROL: power the drivers.";
-    CONTROL_STOP: u32 = 1 << 1, "Bit of CONTROL: stop all axes.";
+    OPEN_FORCE: u32 = 1 << 0, "Bit of OPEN: stop all axes if the gateware is busy.";
     AXES_AT: u8 = LIMIT_TICKS, "Lowest address at which a register of an axis is read.";
     STATUS_SLOT: u32 = 0x1f, "Bits of STATUS: the slot of the running segment.";
     STATUS_RUNS: u32 = 1 << 5, "Bit of STATUS: the axis runs a segment.";
