@@ -79,7 +79,7 @@ pub struct Link<const N: usize> {
     pub start_ready: Input<Bit>,
     /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The host requests a controlled stop, as long as it is asserted.
+    /// The host requests a controlled stop.
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
@@ -89,7 +89,7 @@ pub struct Link<const N: usize> {
     pub home_mask: Signal<Out, Word<N>>,
     /// The host requests a snapshot of the state of all axes.
     pub snapshot: Signal<Out, Bit>,
-    /// The host has sent a valid request: the watchdog restarts.
+    /// The owner of the session has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Signal<Out, Bit>,
@@ -170,7 +170,7 @@ impl<const N: usize> Logic for Link<N> {
 
         self.put_valid.next = self.processor.put_valid.val();
         self.put_axis.next = self.processor.a.val().get_bits::<3>(0);
-        self.put_word.next = self.processor.x.val().get_bits::<3>(2);
+        self.put_word.next = self.processor.put_word.val();
         self.put_data.next = self.processor.put_data.val();
         self.processor.put_ready.next = self.put_ready.val();
         self.processor.room.next = self.room.val();

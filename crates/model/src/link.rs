@@ -54,7 +54,7 @@ impl Link {
     /// The outputs in this clock. All of them come from registers.
     pub fn outputs(&self) -> LinkOutputs {
         let processor = self.processor.outputs();
-        let (axis, word) = (self.room_of(), processor.x >> 2 & 7);
+        let (axis, word) = (self.room_of(), processor.number);
         let mask = processor.a & self.axes;
         let engine = EngineInputs {
             put: processor.puts.then_some(Put { axis, word, data: processor.word }),
