@@ -97,7 +97,8 @@ impl Supply {
         if axis.begins.len() > usize::from(QUEUE_SEGMENTS)
             && let Some(place) = axis.begins.pop_front()
         {
-            let request = Request { sequence: 0, body: Body::Segment { axis: number, segment } };
+            let request =
+                Request { sequence: 0, session: 0, body: Body::Segment { axis: number, segment } };
             let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
             let takes = (bits * 1_000_000_000).div_ceil(u64::from(self.baud.max(1)));
             axis.jobs.push_back(Job { place, due, takes });

@@ -84,11 +84,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         mut watch: impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Homed, HostError<L::Error>> {
         homing.check().map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
-        let beyond =
-            (homing.mask() | homing.others).checked_shr(self.session.axes().into()).unwrap_or(0);
+        let beyond = (homing.mask() | homing.others).checked_shr(self.axes().into()).unwrap_or(0);
         if beyond != 0 {
-            let axis = self.session.axes() + beyond.trailing_zeros() as u8;
-            return Err(ProgramError::Axis { axis, axes: self.session.axes() }.into());
+            let axis = self.axes() + beyond.trailing_zeros() as u8;
+            return Err(ProgramError::Axis { axis, axes: self.axes() }.into());
         }
         let mut edges = [0; AXES];
         match self.find_all(homing, &mut edges, &mut watch)? {
