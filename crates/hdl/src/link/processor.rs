@@ -60,7 +60,7 @@ pub struct LinkProcessor<const N: usize> {
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
     /// A replaces the mask of the axes that wait for their limit.
-    pub home_valid: Signal<Out, Bit>,
+    pub seek_valid: Signal<Out, Bit>,
     /// The host requests a snapshot.
     pub snapshot: Signal<Out, Bit>,
     /// The host has sent a valid request.
@@ -92,7 +92,7 @@ pub struct LinkProcessor<const N: usize> {
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Input<Word<N>>,
+    pub seeking: Input<Word<N>>,
     instructions: Memory<8, 16>,
     data: Memory<8, 8>,
     ring: Memory<8, 8>,
@@ -278,7 +278,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
                 self.port.next = bit_cast::<8, N>(self.culprits.val());
             }
             if self.code.val().get_bit(0) {
-                self.port.next = bit_cast::<8, N>(self.homing.val());
+                self.port.next = bit_cast::<8, N>(self.seeking.val());
             }
         }
         self.value.next = self.port.val();
@@ -356,7 +356,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             self.control.d.next = self.sum.q.val().get_bits::<2>(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
-        self.home_valid.next =
+        self.seek_valid.next =
             self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
         self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
         self.broken.next =
