@@ -243,7 +243,7 @@ impl LinkProcessor {
             _ => match self.code as u8 & 3 {
                 ROOM => self.room | (number(engine) >> 3) << 4,
                 CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
-                HOMING => engine.homing,
+                HOMING => engine.seeking,
                 _ => {
                     let bits = [
                         engine.fault.is_some(),
