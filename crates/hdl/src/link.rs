@@ -84,9 +84,9 @@ pub struct Link<const N: usize> {
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
     /// The host replaces the mask of the axes that wait for their limit.
-    pub home_valid: Signal<Out, Bit>,
-    /// The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
-    pub home_mask: Signal<Out, Word<N>>,
+    pub seek_valid: Signal<Out, Bit>,
+    /// The axes that wait for their limit, valid with `seek_valid`; bit i is axis i.
+    pub seek_mask: Signal<Out, Word<N>>,
     /// The host requests a snapshot of the state of all axes.
     pub snapshot: Signal<Out, Bit>,
     /// The owner of the session has sent a valid request: the watchdog restarts.
@@ -121,7 +121,7 @@ pub struct Link<const N: usize> {
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Input<Word<N>>,
+    pub seeking: Input<Word<N>>,
     processor: LinkProcessor<N>,
     register_mirror: RegisterMirror,
 }
@@ -178,8 +178,8 @@ impl<const N: usize> Logic for Link<N> {
         self.start_valid.next = self.processor.start_valid.val();
         self.start_mask.next = self.processor.a.val().get_bits::<N>(0);
         self.processor.start_ready.next = self.start_ready.val();
-        self.home_valid.next = self.processor.home_valid.val();
-        self.home_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.seek_valid.next = self.processor.seek_valid.val();
+        self.seek_mask.next = self.processor.a.val().get_bits::<N>(0);
         self.clear.next = self.processor.clear.val();
         self.stop.next = self.processor.stop.val();
         self.broken.next = self.processor.broken.val();
@@ -195,7 +195,7 @@ impl<const N: usize> Logic for Link<N> {
         self.processor.armed.next = self.armed.val();
         self.processor.cause.next = self.cause.val();
         self.processor.culprits.next = self.culprits.val();
-        self.processor.homing.next = self.homing.val();
+        self.processor.seeking.next = self.seeking.val();
         self.processor.facts.next = self.register_mirror.data.val();
 
         self.register_mirror.address.next = self.processor.x.val();

@@ -23,11 +23,14 @@ mod spi;
 mod uart;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, Put, StateWord};
+use carrystep_core::engine::{EngineInputs, Put, SeekSource, StateWord};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, image};
 use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
 use register_mirror::RegisterMirror;
+
+/// The source with which axes home: each waits for its own limit at its low end.
+const LOW_LIMITS: SeekSource = SeekSource { axis: 0, row: 0, own: true, level: true };
 
 /// The state of the link. [`Link::outputs`] and [`Link::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,7 +66,8 @@ impl Link {
             clear: processor.clear,
             stop: processor.stop,
             broken: processor.broken,
-            home: processor.homes.then_some(mask),
+            seek_source: processor.homes.then_some(LOW_LIMITS),
+            seek: processor.homes.then_some(mask),
             snapshot: processor.snapshot,
             kick: processor.kicks,
             enable: processor.enable,

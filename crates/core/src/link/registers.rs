@@ -13,7 +13,7 @@
 //! register of either kind.
 
 use crate::engine::StateItem::{Discarded, Left, PHigh, PLow, Position, Status, Ticks};
-use crate::engine::StatePage::{Limit, Live, Snapshot};
+use crate::engine::StatePage::{Live, Seek, Snapshot};
 use crate::engine::{MAX_AXES, QUEUE, state_address};
 use strum::Display;
 
@@ -77,13 +77,13 @@ registers! {
     PHASES       = 0x07, Read false "Number of phases in a tick";
     WATCHDOG_TICKS = 0x08, Read false
         "Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog";
-    LIMIT_TICKS  = state_address(Limit, Ticks), Read true
+    LIMIT_TICKS  = state_address(Seek, Ticks), Read true
         "TICKS of the other words at the limit";
-    LIMIT_P_LOW  = state_address(Limit, PLow), Read true
+    LIMIT_P_LOW  = state_address(Seek, PLow), Read true
         "P in the tick after the one in which homing found the limit, low half";
-    LIMIT_P_HIGH = state_address(Limit, PHigh), Read true "P at the limit, high half";
-    LIMIT_POSITION = state_address(Limit, Position), Read true "Position at the limit in steps";
-    LIMIT_STATUS = state_address(Limit, Status), Read true "STATUS at the limit";
+    LIMIT_P_HIGH = state_address(Seek, PHigh), Read true "P at the limit, high half";
+    LIMIT_POSITION = state_address(Seek, Position), Read true "Position at the limit in steps";
+    LIMIT_STATUS = state_address(Seek, Status), Read true "STATUS at the limit";
     DISCARDED    = state_address(Live, Discarded), Read true
         "Number of steps that freezes have discarded since configuration";
     LEFT         = state_address(Live, Left), Read true

@@ -106,6 +106,8 @@ impl RawGuard {
             limit_freezes: self.limit_stop == LimitStop::Freeze,
             estop_low: self.estop == Active::Low,
             limits_low: self.limit_level == Active::Low,
+            inputs: Default::default(),
+            latch: None,
             stop,
         })
     }

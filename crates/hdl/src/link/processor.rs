@@ -62,7 +62,7 @@ pub struct LinkProcessor<const N: usize> {
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
     /// A replaces the mask of the axes that wait for their limit.
-    pub home_valid: Signal<Out, Bit>,
+    pub seek_valid: Signal<Out, Bit>,
     /// The host requests a snapshot.
     pub snapshot: Signal<Out, Bit>,
     /// The owner of the session has sent a valid request.
@@ -94,7 +94,7 @@ pub struct LinkProcessor<const N: usize> {
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Input<Word<N>>,
+    pub seeking: Input<Word<N>>,
     instructions: Memory<9, 16>,
     data: Memory<9, 8>,
     ring: Memory<9, 8>,
@@ -289,7 +289,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
                 self.port.next = bit_cast::<8, N>(self.culprits.val());
             }
             if self.code.val().get_bit(0) {
-                self.port.next = bit_cast::<8, N>(self.homing.val());
+                self.port.next = bit_cast::<8, N>(self.seeking.val());
             }
         }
         // The source in bits 10 to 8: bit 10 is 0 for the data memory.
@@ -374,7 +374,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             self.power.d.next = self.sum.q.val().get_bit(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
-        self.home_valid.next =
+        self.seek_valid.next =
             self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
         self.kick.next = self.does.val()
             & self.code.val().get_bit(7)

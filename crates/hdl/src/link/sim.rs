@@ -73,7 +73,7 @@ impl<const N: usize> AnyLink for Link<N> {
         self.armed.next = engine.armed;
         self.cause.next = Word::from(cause);
         self.culprits.next = Word::from(u64::from(culprits));
-        self.homing.next = Word::from(u64::from(engine.homing));
+        self.seeking.next = Word::from(u64::from(engine.seeking));
         settle(self);
         let [axis, word] =
             [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
@@ -87,7 +87,7 @@ impl<const N: usize> AnyLink for Link<N> {
                 clear: self.clear.val(),
                 stop: self.stop.val(),
                 broken: self.broken.val(),
-                home: self.home_valid.val().then(|| self.home_mask.val().value() as u8),
+                seek: self.seek_valid.val().then(|| self.seek_mask.val().value() as u8),
                 snapshot: self.snapshot.val(),
                 kick: self.kick.val(),
                 enable: self.enable.val(),

@@ -277,7 +277,7 @@ impl LinkProcessor {
         match self.code as u8 & 3 {
             ROOM => self.room << 4 | cause,
             CULPRITS => culprits,
-            HOMING => engine.homing,
+            HOMING => engine.seeking,
             _ => {
                 let bits = [
                     (engine.fault.is_some(), 0),
