@@ -29,9 +29,6 @@ use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
 use register_mirror::RegisterMirror;
 
-/// The source with which axes home: each waits for its own limit at its low end.
-const LOW_LIMITS: SeekSource = SeekSource { axis: 0, row: 0, own: true, level: true };
-
 /// The state of the link. [`Link::outputs`] and [`Link::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
@@ -66,8 +63,9 @@ impl Link {
             clear: processor.clear,
             stop: processor.stop,
             broken: processor.broken,
-            seek_source: processor.homes.then_some(LOW_LIMITS),
-            seek: processor.homes.then_some(mask),
+            seek_source: processor.sources.then_some(SeekSource::of_byte(processor.a)),
+            seek: processor.seeks.then_some(mask),
+            latch_arm: processor.arms,
             snapshot: processor.snapshot,
             kick: processor.kicks,
             enable: processor.enable,

@@ -57,7 +57,7 @@ pub const ANSWER: [Field; 14] = [
         8,
         "the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0",
     ),
-    field("homing", 6, 0, 8, "the axes that still wait for their limit, one bit each"),
+    field("seeking", 6, 0, 8, "the axes that wait for the source of their seek, one bit each"),
     field("cause", 7, 0, 4, "the cause of the stop, if `fault` is set; otherwise 0"),
     field("reason", 7, 4, 4, "why the request was refused; 0 if it was not"),
 ];

@@ -76,8 +76,13 @@ pub const STATE: u8 = 0;
 pub const ROOM: u8 = 1;
 /// Item: the mask of the axes that caused a stop; it has no meaning without a fault.
 pub const CULPRITS: u8 = 2;
-/// Item: the mask of the axes that wait for their limit.
-pub const HOMING: u8 = 3;
+/// Item: the mask of the axes that wait for the source of their seek.
+pub const SEEKING: u8 = 3;
+/// Item: the mask of the axes that have hit it, until the host ends the seek.
+pub const HITS: u8 = 4;
+/// Item: in bits 3..0 the edges since the latch was armed that it did not latch, in bit 4 whether
+/// it is armed.
+pub const LATCH: u8 = 5;
 
 /// Condition of a jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,14 +124,17 @@ pub const WAIT: Code = 1 << 5;
 /// or with `refreshed`.
 pub const FOR_ROOM: Code = 1 << 3;
 /// Bit 0 of A is written to the control register. With [`KICK`], A is written to the mask of the
-/// axes that wait for their limit instead; with [`BROKEN`] it is written nowhere.
+/// axes that seek instead, and with [`KICK`] and [`BROKEN`] to the source of seeks; with [`BROKEN`]
+/// it is written nowhere.
 pub const CONTROL: Code = 1 << 6;
-/// The owner of the session has sent a valid request; this restarts the watchdog.
+/// The owner of the session has sent a valid request; this restarts the watchdog. With
+/// [`CLEARING`]: arms the latch too.
 pub const KICK: Code = 1 << 7;
 /// The host has violated the segment protocol. With [`CONTROL`]: requests a snapshot instead. With
 /// [`KICK`]: requests a stop of all axes instead.
 pub const BROKEN: Code = 1 << 8;
 /// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
+/// With [`KICK`] and without [`CONTROL`]: arms the latch.
 pub const CLEARING: Code = 1 << 9;
 /// With [`WAIT`]: sends A to the host.
 pub const GOES: Code = 1 << 9;

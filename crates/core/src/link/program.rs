@@ -14,6 +14,7 @@
 mod answer;
 mod check;
 mod execute;
+mod inputs;
 mod layout;
 mod order;
 mod receive;

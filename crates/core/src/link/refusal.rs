@@ -6,13 +6,12 @@ use strum::{Display, IntoStaticStr};
 
 /// Declares the enumeration and its table.
 macro_rules! refusals {
-    ($($refusal:ident = $number:literal, $what:literal;)*) => {
+    ($($refusal:ident = $number:literal, $name:literal, $what:literal;)*) => {
         /// Reason of a refusal. Its number is the value of the field `reason` of an answer, in
         /// which 0 means that the request was not refused.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Display, IntoStaticStr)]
-        #[strum(serialize_all = "lowercase")]
         pub enum Refusal {
-            $(#[doc = $what] $refusal = $number,)*
+            $(#[doc = $what] #[strum(to_string = $name)] $refusal = $number,)*
         }
 
         /// All reasons, in the order of their numbers, from 1 on.
@@ -30,9 +29,11 @@ macro_rules! refusals {
 }
 
 refusals! {
-    Sequence = 1, "A write before this one was lost: its number is not `next`.";
-    Busy = 2, "The request cannot be executed now: try again.";
-    Session = 3, "The request does not have the session number of the gateware's owner.";
+    Sequence = 1, "sequence", "A write before this one was lost: its number is not `next`.";
+    Busy = 2, "busy", "The request cannot be executed now: try again.";
+    Session = 3, "session", "The request does not have the session number of the gateware's owner.";
+    SeekEnded = 4, "seek ended",
+        "An axis that it names has hit the source of its seek, and the host has not ended the seek.";
 }
 
 impl Refusal {

@@ -61,8 +61,12 @@ pub struct LinkProcessor<const N: usize> {
     pub clear: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// A replaces the mask of the axes that wait for their limit.
+    /// A replaces the source of seeks.
+    pub seek_source_valid: Signal<Out, Bit>,
+    /// A replaces the mask of the axes that wait for the source of their seek.
     pub seek_valid: Signal<Out, Bit>,
+    /// The latch is armed.
+    pub latch_arm: Signal<Out, Bit>,
     /// The host requests a snapshot.
     pub snapshot: Signal<Out, Bit>,
     /// The owner of the session has sent a valid request.
@@ -93,8 +97,14 @@ pub struct LinkProcessor<const N: usize> {
     pub room_valid: Input<Bit>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
-    /// The axes that wait for their limit; bit i is axis i.
+    /// The axes that wait for the source of their seek; bit i is axis i.
     pub seeking: Input<Word<N>>,
+    /// The axes that have hit it, until the host ends the seek; bit i is axis i.
+    pub hits: Input<Word<N>>,
+    /// The latch waits for its edge.
+    pub latch_armed: Input<Bit>,
+    /// The edges since the latch was armed that it did not latch, at most 15.
+    pub latch_edges: Input<Word<4>>,
     instructions: Memory<9, 16>,
     data: Memory<9, 8>,
     ring: Memory<9, 8>,
@@ -148,6 +158,7 @@ pub struct LinkProcessor<const N: usize> {
     bit_0: Literal<8, 1>,
     bit_1: Literal<8, 2>,
     bit_2: Literal<8, 4>,
+    bit_4: Literal<8, 16>,
     bit_6: Literal<8, 64>,
     bit_7: Literal<8, 128>,
     if_zero: Literal<3, 1>,
@@ -292,6 +303,15 @@ impl<const N: usize> Logic for LinkProcessor<N> {
                 self.port.next = bit_cast::<8, N>(self.seeking.val());
             }
         }
+        if self.code.val().get_bit(2) {
+            self.port.next = bit_cast::<8, N>(self.hits.val());
+            if self.code.val().get_bit(0) {
+                self.port.next = bit_cast::<8, 4>(self.latch_edges.val());
+                if self.latch_armed.val() {
+                    self.port.next = bit_cast::<8, 4>(self.latch_edges.val()) | self.bit_4.val();
+                }
+            }
+        }
         // The source in bits 10 to 8: bit 10 is 0 for the data memory.
         self.other.next = self.ring.read_data.val();
         if self.code.val().get_bit(8) {
@@ -374,8 +394,15 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             self.power.d.next = self.sum.q.val().get_bit(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
-        self.seek_valid.next =
-            self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
+        self.seek_valid.next = self.does.val()
+            & self.code.val().get_bit(6)
+            & self.code.val().get_bit(7)
+            & !self.code.val().get_bit(8);
+        self.seek_source_valid.next = self.does.val()
+            & self.code.val().get_bit(6)
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(8);
+        self.latch_arm.next = self.kick.val() & self.code.val().get_bit(9);
         self.kick.next = self.does.val()
             & self.code.val().get_bit(7)
             & !self.code.val().get_bit(6)
@@ -384,9 +411,14 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             & self.code.val().get_bit(8)
             & !self.code.val().get_bit(6)
             & !self.code.val().get_bit(7);
-        self.stop.next = self.does.val() & self.code.val().get_bit(7) & self.code.val().get_bit(8);
-        self.snapshot.next =
-            self.does.val() & self.code.val().get_bit(8) & self.code.val().get_bit(6);
+        self.stop.next = self.does.val()
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(8)
+            & !self.code.val().get_bit(6);
+        self.snapshot.next = self.does.val()
+            & self.code.val().get_bit(8)
+            & self.code.val().get_bit(6)
+            & !self.code.val().get_bit(7);
         self.clear.next = self.clears.q.val();
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);

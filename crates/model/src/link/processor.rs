@@ -13,8 +13,8 @@ use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::Image;
 use carrystep_core::link::processor::{
     ACTS, AND, BROKEN, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP,
-    CULPRITS, Code, Condition, FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS,
-    STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
+    CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH, PUTS, ROOM,
+    SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
 };
 use std::sync::Arc;
 
@@ -77,7 +77,12 @@ pub(super) struct Outputs {
     pub starts: bool,
     /// A is offered to the transmitter.
     pub goes: bool,
-    pub homes: bool,
+    /// A is a new mask of the axes that seek.
+    pub seeks: bool,
+    /// A is a new source of seeks.
+    pub sources: bool,
+    /// The latch is armed.
+    pub arms: bool,
     pub kicks: bool,
     pub broken: bool,
     /// A snapshot is requested.
@@ -141,20 +146,22 @@ impl LinkProcessor {
             puts: self.does(PUTS),
             starts: self.does(STARTS),
             goes: self.does(WAIT | GOES),
-            homes: self.does(CONTROL | KICK),
-            kicks: self.does_only(KICK),
-            broken: self.does_only(BROKEN),
-            snapshot: self.does(CONTROL | BROKEN),
+            seeks: self.tells(CONTROL | KICK),
+            sources: self.tells(CONTROL | KICK | BROKEN),
+            arms: self.tells(KICK) && self.code & CLEARING != 0,
+            kicks: self.tells(KICK),
+            broken: self.tells(BROKEN),
+            snapshot: self.tells(CONTROL | BROKEN),
             clear,
-            stop: self.does(KICK | BROKEN),
+            stop: self.tells(KICK | BROKEN),
             enable,
         }
     }
 
-    /// True if an instruction is executed that contains this one of three bits, two of which
-    /// together have another meaning.
-    fn does_only(&self, bit: Code) -> bool {
-        self.does(bit) && self.code & (CONTROL | KICK | BROKEN) == bit
+    /// True if an instruction is executed that contains these and no others of three bits, each
+    /// combination of which has a meaning of its own.
+    fn tells(&self, bits: Code) -> bool {
+        self.does(bits) && self.code & (CONTROL | KICK | BROKEN) == bits
     }
 
     pub(super) fn clock(&mut self, inputs: &Inputs<'_>) {
@@ -172,7 +179,7 @@ impl LinkProcessor {
         let sets = self.executes(SETS);
         let stores = self.executes(STORES) && code & SETS == 0;
         let acts = self.executes(ACTS) && code & JUMPS == 0;
-        let controls = self.does_only(CONTROL);
+        let controls = self.tells(CONTROL);
         let puts = self.does(PUTS) && over;
 
         // The memories are read before this clock writes to them.
@@ -274,10 +281,12 @@ impl LinkProcessor {
     fn item(&self, engine: &EngineOutputs) -> u8 {
         let (cause, culprits) =
             engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u8, culprits));
-        match self.code as u8 & 3 {
+        match self.code as u8 & 7 {
             ROOM => self.room << 4 | cause,
             CULPRITS => culprits,
-            HOMING => engine.seeking,
+            SEEKING => engine.seeking,
+            HITS => engine.hits,
+            LATCH => u8::from(engine.latch_armed) << 4 | engine.latch_edges,
             _ => {
                 let bits = [
                     (engine.fault.is_some(), 0),

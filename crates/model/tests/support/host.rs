@@ -2,9 +2,7 @@
 //! and resets, and presses switches.
 
 use super::random::Random;
-use carrystep_core::engine::{
-    COMMIT, EngineInputs, EngineOutputs, Put, SWITCH_ROWS, SeekSource,
-};
+use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Put, SWITCH_ROWS, SeekSource};
 use carrystep_core::{EngineBuild, Segment};
 use carrystep_model::Engine;
 use std::collections::VecDeque;

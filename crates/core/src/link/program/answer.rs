@@ -1,16 +1,17 @@
 //! Assembles the answer.
 
+use super::inputs;
 use super::layout::{
-    ADDRESS, ANSWER, ANSWERS, CHECKED, FAULT_BIT, NEXT, REASON, SEQUENCE, WRITTEN,
+    ADDRESS, ANSWER, ANSWERS, CHECKED, DATA, FAULT_BIT, NEXT, REASON, SEQUENCE, WRITTEN,
 };
 use super::segments::rooms;
+use crate::link::WRITE;
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{X7, Zero};
 use crate::link::processor::{
-    CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, HOMING, ROOM, STATE, TAX, ValueSource, WAIT,
+    CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, ROOM, SEEKING, STATE, TAX, ValueSource, WAIT,
 };
 use crate::link::registers::{POSITION, SEGMENT, SEGMENTS};
-use crate::link::{ANSWER_DATA, WRITE};
 
 pub(super) fn answer(a: &mut Assembler) {
     a.label("answer");
@@ -41,14 +42,15 @@ pub(super) fn answer(a: &mut Assembler) {
     a.label("cause");
     a.xor(REASON);
     a.store(ANSWER + 7);
-    a.load_from(ValueSource::Engine, HOMING);
+    a.load_from(ValueSource::Engine, SEEKING);
     a.store(ANSWER + 6);
     a.acts(CRC_BEGIN | CRC_FEED);
     for byte in 0..4 {
         a.load_from(ValueSource::Crc, 0);
-        a.store(ANSWER + ANSWER_DATA as u8 + byte);
+        a.store(DATA + byte);
         a.acts(CRC_STEP);
     }
+    inputs::put_together(a);
     for (at, from) in [SEQUENCE, ADDRESS, NEXT].into_iter().enumerate() {
         a.load(from);
         a.store(ANSWER + at as u8);

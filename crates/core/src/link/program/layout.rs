@@ -9,15 +9,17 @@
 //!             00, 10 .. 70   BELOW_ROOM: the same, by the item ROOM of the engine
 //!             7c .. 7f   RESIDUE
 //!             80 .. 91   FRAMES: two bytes for each number of axes of a SEGMENTS frame
+//!             a0 .. a3   ROWS: a byte for each row of switches
 //!             f8 .. ff   BITS: one bit for each axis
 //! ```
 
-use crate::engine::MAX_AXES;
+use crate::engine::{MAX_AXES, SWITCH_ROWS};
 use crate::link::assembler::Assembler;
 use crate::link::processor::{REQUEST, REQUEST_END};
+use crate::link::registers::switch_address;
 use crate::link::{
-    ANSWER_BYTES, CRC_BYTES, CRC_RESIDUE, LONGEST_REQUEST, REQUEST_HEAD, SEGMENTS_AXIS_WORDS,
-    SEGMENTS_HEAD_WORDS, SESSION_BYTES,
+    ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, LONGEST_REQUEST, REQUEST_HEAD,
+    SEGMENTS_AXIS_WORDS, SEGMENTS_HEAD_WORDS, SESSION_BYTES,
 };
 
 pub(super) const SEQUENCE: u8 = REQUEST;
@@ -28,6 +30,8 @@ pub(super) const SESSION: u8 = REQUEST + REQUEST_HEAD as u8;
 pub(super) const WORDS: u8 = SESSION + SESSION_BYTES as u8;
 /// Address of the answer while it is assembled; the answer ends where bit 7 of X becomes 0.
 pub(super) const ANSWER: u8 = REQUEST_END;
+/// Address of the answer's data.
+pub(super) const DATA: u8 = ANSWER + ANSWER_DATA as u8;
 /// Address of the answer's CRC.
 pub(super) const CHECKED: u8 = ANSWER + (ANSWER_BYTES - CRC_BYTES) as u8;
 /// Address of the commit of a segment while its words are put. X is then at or behind
@@ -44,11 +48,13 @@ pub(super) const OWNER: u8 = 0x05; // two bytes: the session number of the owner
 pub(super) const POWER: u8 = 0x07; // the control register
 pub(super) const MASK: u8 = 0x08; // the axes of the request, one bit each
 pub(super) const AXIS: u8 = 0x09; // an address in BITS, whose bits 2..0 are the axis
-pub(super) const LEAST: u8 = 0x0a; // as many ones as each queue of the mask has room for
+pub(super) const LEAST: u8 = 0x0a; // as many ones as each queue of the mask has room for; a byte of INPUTS
 pub(super) const ANSWERS: u8 = 0x0b; // 0 while the room is examined before a segment is put
 pub(super) const TICKS: u8 = 0x0c; // four bytes: the first word of a segment
 pub(super) const BASE: u8 = 0x10; // the address of a word of a segment
 pub(super) const LAST: u8 = 0x11; // the address of the commit in the request
+pub(super) const WANTED: u8 = 0x12; // the bit of a switch's word that is read
+pub(super) const ROW: u8 = 0x13; // an address in ROWS
 
 /// Bit of an answer's flags: a stop has been triggered.
 pub(super) const FAULT_BIT: u8 = 1 << 0;
@@ -69,6 +75,9 @@ pub(super) const ROOM_BITS: u8 = 0x70;
 pub(super) const RESIDUE: u8 = 0x7c;
 /// Table: the address behind a SEGMENTS frame and that of its last word, by its number of axes.
 pub(super) const FRAMES: u8 = 0x80;
+/// Table: by the row of a switch, the address of its word exclusive or [`BITS`], for axis 0. Its
+/// entries and the bytes of the answer's data have the same lowest three bits.
+pub(super) const ROWS: u8 = 0xa0 | DATA & 7;
 /// Table: the bits of the axes. Bit 7 of X becomes 0 behind the last one.
 pub(super) const BITS: u8 = 0xf8;
 
@@ -95,6 +104,12 @@ pub(super) fn tables(a: &mut Assembler) {
         let end = end(SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * axes + 1);
         a.table(FRAMES + 2 * axes as u8, &[end, last_of(end)]);
     }
+    a.table(
+        ROWS,
+        &core::array::from_fn::<u8, { SWITCH_ROWS as usize }, _>(|row| {
+            BITS ^ switch_address(row as u8)
+        }),
+    );
     a.table(BITS, &core::array::from_fn::<u8, 8, _>(|axis| 1 << axis));
 }
 

@@ -10,7 +10,7 @@ use super::layout::{
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{Commit, Fault, Full, X7, Zero};
 use crate::link::processor::{
-    BROKEN, CRC_BEGIN, CRC_FEED, CRC_STEP, FOR_ROOM, INX, PUTS, ROOM, TAX, ValueSource, WAIT,
+    BROKEN, CRC_BEGIN, CRC_FEED, CRC_STEP, FOR_ROOM, HITS, INX, PUTS, ROOM, TAX, ValueSource, WAIT,
 };
 use crate::link::registers::AXIS_COUNT;
 
@@ -28,6 +28,9 @@ pub(super) fn segments(a: &mut Assembler) {
     a.and_table();
     a.xor(MASK);
     a.jump_unless(Zero, "broken");
+    a.load_from(ValueSource::Engine, HITS);
+    a.and(MASK);
+    a.jump_unless(Zero, "seek ended");
     // A segment of 0 ticks has all ones as its first word, which is ticks minus one.
     a.index(BASE);
     copy(a, TICKS);

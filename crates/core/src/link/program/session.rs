@@ -67,9 +67,12 @@ pub(super) fn session(a: &mut Assembler) {
     a.jump_if(Zero, "busy");
     a.acts(STOPS);
 
-    for (label, refusal) in
-        [("busy", Refusal::Busy), ("stranger", Refusal::Session), ("lost", Refusal::Sequence)]
-    {
+    for (label, refusal) in [
+        ("busy", Refusal::Busy),
+        ("stranger", Refusal::Session),
+        ("lost", Refusal::Sequence),
+        ("seek ended", Refusal::SeekEnded),
+    ] {
         a.label(label);
         a.store_number(REASON, refusal.number() << 4);
         a.jump("answer");
