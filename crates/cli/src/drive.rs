@@ -122,11 +122,12 @@ impl Ways {
 /// The board has stopped already, a limit forbids the motion, or the line to the board is
 /// lost.
 pub fn drive(
-    connection: Connection,
+    mut connection: Connection,
     streamed: &Streamed,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
-    let mut memory = BoardMemory::recall(&connection);
+    let mut memory = BoardMemory::recall(&mut connection);
+    connection::open(&mut connection)?;
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -134,12 +135,6 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    if start.answer.fault {
-        return Err(told(HostError::Fault {
-            cause: start.answer.cause,
-            culprits: start.answer.culprits,
-        }));
-    }
     if !into_limit {
         streamed.check_limits(&memory, &start, &axes)?;
     }

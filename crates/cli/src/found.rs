@@ -38,10 +38,17 @@ pub struct FoundBoard {
     pub phases: u32,
     /// Ticks of silence after which it stops; 0: never.
     pub watchdog_ticks: u32,
+    /// Number of ticks since the board was configured, modulo 2^32; unknown if the report comes from
+    /// a driving command.
+    #[serde(default)]
+    pub ticks: Option<u32>,
     /// The drivers have power.
     pub ready: bool,
     /// All axes are done.
     pub idle: bool,
+    /// An axis moves or a segment waits, of whichever host.
+    #[serde(default)]
+    pub moving: bool,
     /// A start is armed and waits for its axes.
     pub armed: bool,
     /// A stop has been called; only a clear resumes.
@@ -124,8 +131,10 @@ impl FoundBoard {
             tick_ns: facts.tick_ns,
             phases: facts.phases,
             watchdog_ticks: facts.watchdog_ticks,
+            ticks: None,
             ready,
             idle,
+            moving: !idle && !halted,
             armed,
             fault,
             halted,
@@ -170,6 +179,9 @@ impl fmt::Display for FoundBoard {
             (Some(cause), false, _) => writeln!(f, "stopping: {cause}{from}; {power}")?,
             (None, _, true) => writeln!(f, "at rest; {power}")?,
             (None, _, false) => writeln!(f, "moving; {power}")?,
+        }
+        if let Some(ticks) = self.ticks {
+            writeln!(f, "{ticks} ticks since its configuration, modulo 2^32")?;
         }
         if let (Some(meaning), Some(remedy)) = (&self.meaning, &self.remedy) {
             writeln!(f, "why:   {meaning}\nto do: {remedy}")?;

@@ -7,24 +7,25 @@
 //! and its drivers have kept their power. Three values detect a change:
 //!
 //! ```text
-//! next        the number of the next write: any write of another host changes it
+//! session     the number of the last session: another host opens one of its own before it writes,
+//!             and a configuration leaves none
 //! positions   of all axes: any move changes them
-//! ready       0 after a configuration until a host switches the drivers on: detects a restart
+//! ready       the drivers have power
 //! ```
 //!
-//! If one of them differs from the stored value, the content is discarded. One case is not
-//! detected: a restart, after which another host switches the drivers on, makes as many writes as
-//! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
+//! If one of them differs from the stored value, the content is discarded. The board does not tell
+//! the number of its session; it only tells whether a number that it is asked about is the one.
 
 use crate::connection::{ConnectedBoard, Connection};
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write as _};
+use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// The environment variable that overrides the folder.
 const FOLDER: &str = "CARRYSTEP_STATE";
 
@@ -34,7 +35,7 @@ struct Record {
     schema: u32,
     port: String,
     build: String,
-    next: u8,
+    session: Option<NonZeroU16>,
     ready: bool,
     axes: Vec<AxisRecord>,
 }
@@ -79,8 +80,8 @@ pub struct BoardMemory {
 
 impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
-    /// discarded.
-    pub fn recall(connection: &Connection) -> Self {
+    /// discarded. No session may be open; an error of the line counts as a change.
+    pub fn recall(connection: &mut Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
         // The canonical path, so that every link to the port gives the same name.
         let port = Path::new(port)
@@ -92,24 +93,21 @@ impl BoardMemory {
         let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
         let blank = vec![AxisRecord::default(); axes.len()];
         let Status { answer, positions } = *board.status();
-        let mut record = Record {
-            schema: SCHEMA,
-            port,
-            build,
-            next: answer.next,
-            ready: answer.ready,
-            axes: blank,
-        };
+        let mut record =
+            Record { schema: SCHEMA, port, build, session: None, ready: answer.ready, axes: blank };
         let stored = path.as_ref().and_then(|path| std::fs::read(path).ok());
         if let Some(stored) = stored.and_then(|text| serde_json::from_slice::<Record>(&text).ok())
             && (stored.schema, &stored.port, &stored.build) == (SCHEMA, &record.port, &record.build)
-            && (stored.next, stored.ready, stored.axes.len())
-                == (record.next, record.ready, record.axes.len())
+            && (stored.ready, stored.axes.len()) == (record.ready, record.axes.len())
             && stored.axes.iter().zip(positions).all(|(axis, position)| axis.position == position)
+            // A read of the owner would restart the watchdog of axes that move.
+            && (answer.idle || answer.halted)
+            && stored.session.is_some_and(|number| board.keeps(number).unwrap_or(false))
         {
+            record.session = stored.session;
             record.axes = stored.axes;
         }
-        for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit) {
+        for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit.iter()) {
             // A coordinate in steps is meaningless if the size of a step has changed.
             if axis.steps_per_unit.to_bits() != steps.to_bits() {
                 *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
@@ -158,7 +156,8 @@ impl BoardMemory {
     /// longer matches the board and is ignored.
     pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
         let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;
-        (self.record.next, self.record.ready) = (answer.next, answer.ready);
+        self.record.ready = answer.ready;
+        self.record.session = board.session().or(self.record.session);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
             axis.limit = axis.limit.filter(|limit| limit.to_go(position) > 0);

@@ -98,8 +98,10 @@ pub fn run(arguments: &HomeArguments) -> Result<(), Failure> {
     homing.check().map_err(|(axis, why)| {
         Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name))
     })?;
-    let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
-    let mut memory = BoardMemory::recall(&connection);
+    let mut connection =
+        connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
+    let mut memory = BoardMemory::recall(&mut connection);
+    connection::open(&mut connection)?;
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
     let report = drive(connection, &machine, &homing, &mut memory)?;
     if arguments.json {
@@ -122,10 +124,6 @@ fn drive(
     let begun = Instant::now();
     let facts = *board.facts();
     let start = *board.status();
-    if start.answer.fault {
-        let fault = HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits };
-        return Err(connection::broken(&fault, &axes));
-    }
     let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
     let powered = board
         .enable_while(|progress| control.wish(progress.status))
