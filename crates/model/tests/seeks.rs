@@ -112,7 +112,7 @@ fn hit_ramps_its_axes_exactly_and_changes_no_edge_of_another() {
         script.push((any_clock(&mut random, SEEK + 1), Act::Seek(mask)));
         let free = run(&build, &script, 500);
         script.push((any_clock(&mut random, HIT), levels(reached)));
-        let mut found = run(&build, &script, 500);
+        let found = run(&build, &script, 500);
         assert!(free.is_free() && found.is_free(), "seed {seed}: a hit is no fault");
         let hit = match (source.own, reached) {
             (true, _) => mask & reached,
@@ -125,7 +125,7 @@ fn hit_ramps_its_axes_exactly_and_changes_no_edge_of_another() {
         limits += u64::from(source.row < 2 && hit != 0);
         let last = found.cycles.last().unwrap().1;
         assert_eq!((last.seeking, last.hits), (mask & !hit, hit), "seed {seed}");
-        for axis in 0..build.axes() {
+        for (axis, &v) in speeds.iter().enumerate() {
             let name = format!("seed {seed}, axis {axis}, {source:?}");
             let captured = found.ticks_on(StatePage::Seek, axis);
             if hit >> axis & 1 == 0 {
@@ -134,7 +134,7 @@ fn hit_ramps_its_axes_exactly_and_changes_no_edge_of_another() {
                 continue;
             }
             let [tick] = captured[..] else { panic!("{name}: {captured:?}") };
-            let goal = place(&found, tick, axis) + ramp(speeds[axis], build.guard.stop[axis]);
+            let goal = place(&found, tick, axis) + ramp(v, build.guard.stop[axis]);
             assert_eq!(found.place(axis), goal, "{name}");
         }
         // Whether the host ends the seek in the ramp or never, the ramps are the same.
@@ -145,7 +145,6 @@ fn hit_ramps_its_axes_exactly_and_changes_no_edge_of_another() {
         }
         let last = ended.cycles.last().unwrap().1;
         assert_eq!((last.seeking, last.hits), (0, 0), "seed {seed}");
-        found.cycles.clear();
     }
     assert!(
         [own, common, level_0, limits].iter().all(|&count| count > 10),
