@@ -270,6 +270,6 @@ impl<'a> Around<'a> {
             let forgotten = Debounced::new(self.build.guard.debounce as usize);
             self.switches.iter_mut().flatten().for_each(|switch| *switch = forgotten.clone());
         }
-        self.ending = (ending && !(is_last && !asks)) || asks;
+        self.ending = asks || (ending && !is_last);
     }
 }

@@ -5,6 +5,7 @@
 pub mod books;
 pub mod host;
 pub mod random;
+pub mod script;
 pub mod words;
 
 use carrystep_core::engine::{InputRow, Latch, LimitWiring};
