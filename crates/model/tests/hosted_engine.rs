@@ -116,5 +116,8 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
     assert!(met.pages.iter().all(|&words| words > 1000), "{met:?}");
     assert!(met.ends.iter().all(|&ends| ends > 10), "{met:?}");
     assert!(met.switches > 100_000 && met.edges_of_the_latch > 20, "{met:?}");
-    assert!([met.faults, met.clears, met.resets, met.hits].iter().all(|&count| count > 20), "{met:?}");
+    assert!(
+        [met.faults, met.clears, met.resets, met.hits].iter().all(|&count| count > 20),
+        "{met:?}"
+    );
 }

@@ -79,7 +79,8 @@ impl HostedEngine {
         }
         let from = self.cycle();
         let begin = self.readout.begin(self.engine.core());
-        let skipped = self.readout.is_live(self.engine.core()) && self.leap_to_whole_tick(inputs, most, to) > 0;
+        let skipped = self.readout.is_live(self.engine.core())
+            && self.leap_to_whole_tick(inputs, most, to) > 0;
         let clock = self.core().clock_of_tick();
         self.words.clear();
         self.words.extend(self.readout.words(self.engine.core()));

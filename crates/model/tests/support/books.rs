@@ -179,8 +179,8 @@ impl<'a> Around<'a> {
                 let at = 13 * axis + 12;
                 let (source, seeking) = (sources[at], cycles[at].1.seeking);
                 let waits = seeking & (if source.own { 1 << axis } else { u8::MAX }) != 0;
-                let is_source =
-                    usize::from(source.row) == row && (source.own || usize::from(source.axis) == axis);
+                let is_source = usize::from(source.row) == row
+                    && (source.own || usize::from(source.axis) == axis);
                 if is_source && waits && switch.state == source.level {
                     hits[axis] = source.own;
                     sweeps |= !source.own;
@@ -196,8 +196,7 @@ impl<'a> Around<'a> {
         for (captures, hit) in self.captures.iter_mut().zip(&hits) {
             *captures = hit | (*captures & was_latched);
         }
-        self.counts.hits_after_the_latch +=
-            u64::from(latches && self.captures.contains(&true));
+        self.counts.hits_after_the_latch += u64::from(latches && self.captures.contains(&true));
         self.turn_pages(cycles, latches, all[to].1.resetting);
         self.end_round(cycles);
     }
@@ -271,6 +270,6 @@ impl<'a> Around<'a> {
             let forgotten = Debounced::new(self.build.guard.debounce as usize);
             self.switches.iter_mut().flatten().for_each(|switch| *switch = forgotten.clone());
         }
-        self.ending = (ending && !(is_last && !asks)) || asks;
+        self.ending = asks || (ending && !is_last);
     }
 }

@@ -2,9 +2,7 @@
 //! and resets, and presses switches.
 
 use super::random::Random;
-use carrystep_core::engine::{
-    COMMIT, EngineInputs, EngineOutputs, Put, SWITCH_ROWS, SeekSource,
-};
+use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Put, SWITCH_ROWS, SeekSource};
 use carrystep_core::{EngineBuild, Segment};
 use carrystep_model::Engine;
 use std::collections::VecDeque;
@@ -130,13 +128,20 @@ impl Host {
             59..62 => {
                 inputs.seek_source = Some(source(random, *axes));
                 inputs.seek = random.one_of(&[None, Some(mask), Some(all), Some(all)]);
+                inputs.latch_arm = random.once_in(3);
             }
             62 => inputs.seek = random.one_of(&[Some(0), Some(mask), Some(all)]),
             63 => inputs.latch_arm = true,
-            64..67 => inputs.limit_min ^= mask | 1,
-            67..70 => inputs.limit_max ^= mask | 1,
-            70 => inputs.inputs[0] ^= mask | 1,
-            71 => inputs.inputs[1] ^= mask,
+            64..72 => {
+                // The latch is often connected to a switch.
+                inputs.latch ^= random.once_in(2);
+                match random.below(8) {
+                    0..3 => inputs.limit_min ^= mask | 1,
+                    3..6 => inputs.limit_max ^= mask | 1,
+                    6 => inputs.inputs[0] ^= mask | 1,
+                    _ => inputs.inputs[1] ^= mask,
+                }
+            }
             72..74 => (inputs.latch, inputs.latch_arm) = (!inputs.latch, random.once_in(4)),
             74 if random.once_in(4) => inputs.inputs[1] ^= 1,
             74..76 => (inputs.kick, inputs.clear) = (true, true),

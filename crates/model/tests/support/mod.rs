@@ -5,6 +5,7 @@
 pub mod books;
 pub mod host;
 pub mod random;
+pub mod script;
 pub mod words;
 
 use carrystep_core::engine::{InputRow, Latch, LimitWiring};
@@ -51,8 +52,7 @@ pub fn build(random: &mut Random) -> EngineBuild {
     if guard.inputs != [InputRow::default(); 2] {
         guard.round = guard.round.max(4);
     }
-    let latch =
-        Latch { low: random.below(2) == 0, looks: random.one_of(&[1, 2, 5, 16]) };
+    let latch = Latch { low: random.below(2) == 0, looks: random.one_of(&[1, 2, 5, 16]) };
     guard.latch = random.one_of(&[None, Some(latch)]);
     guard.stop = (0..axes).map(|_| 1 << (54 + random.below(7))).collect();
     build.check().unwrap();

@@ -44,8 +44,7 @@ pub fn of_tick(tick: &[Cycle], axes: usize) -> Vec<AxisWords> {
         let status = AxisStatus::of_word(status);
         let of = |item| beat(5).filter(|word| word.item == item).map(|word| word.word);
         let (left, discarded) = (of(Left), of(Discarded));
-        let shown =
-            [status.running, !status.running].map(|shown| shown && page != StatePage::Seek);
+        let shown = [status.running, !status.running].map(|shown| shown && page != StatePage::Seek);
         assert_eq!([left.is_some(), discarded.is_some()], shown, "axis {axis} on {page:?}");
         let p = u64::from(p_high) << 32 | u64::from(p);
         let position = position.cast_signed();

@@ -113,11 +113,7 @@ impl AxisModel {
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
-    pub(super) fn tick(
-        &self,
-        tick: Tick<'_>,
-        sample: Option<Sample>,
-    ) -> (Self, Option<Cause>) {
+    pub(super) fn tick(&self, tick: Tick<'_>, sample: Option<Sample>) -> (Self, Option<Cause>) {
         let mut next = self.clone();
         next.emitted = self.computed;
         next.computed = Stage::default();

@@ -124,12 +124,11 @@ impl Motion {
         let halted = stop.frozen || (stop.ramp && !ran);
         let goes_on =
             Stop { ramp: fault, halted, settled: stop.halted, clearing: false, ..*stop } == *stop;
-        let clears =
-            inputs.clear && stop.settled && !self.supervisor.pressed() && !self.interlock;
+        let clears = inputs.clear && stop.settled && !self.supervisor.pressed() && !self.interlock;
         let opens = self.interlock && !fault;
-        let starts = self.armed.is_some_and(|mask| {
-            mask & !waiting != 0 || mask & running == 0 || mask & ramps != 0
-        });
+        let starts = self
+            .armed
+            .is_some_and(|mask| mask & !waiting != 0 || mask & running == 0 || mask & ramps != 0);
         let rests = if ran || waiting != 0 { 0 } else { 2 };
         let is_due = !goes_on || clears || opens || starts || self.rest != rests;
         let mut strobes = if is_due { 0 } else { self.latch.plain_strobes(guard) };
@@ -171,7 +170,8 @@ impl Motion {
                 let ticks = samples.saturating_mul(guard.round.into()).saturating_add(first);
                 let opens = guard.has_interlock() && row == INTERLOCK_ROW && axis == 0;
                 let within = seeking || opens;
-                plain = plain.and(if within { Plain::to_tick(ticks) } else { Plain::to_strobe(ticks) });
+                plain =
+                    plain.and(if within { Plain::to_tick(ticks) } else { Plain::to_strobe(ticks) });
             }
         }
         plain

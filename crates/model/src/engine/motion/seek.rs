@@ -94,9 +94,7 @@ impl Motion {
             slows: hits || (slows && !(rests && self.seek.released)),
             ramps,
             hits,
-            is_excused: found == Some(Cause::Limit)
-                && is_source.is_some()
-                && (waits || slows),
+            is_excused: found == Some(Cause::Limit) && is_source.is_some() && (waits || slows),
         };
         self.seek.released &= !hits;
         self.seek.sweeps |= is_hit && !hits;
@@ -116,8 +114,6 @@ impl Motion {
     /// Ends the seek of all axes, in a reset.
     pub(super) fn forget_seek(&mut self) {
         self.seek = Seek { source: self.seek.source, ..Seek::default() };
-        self.axis_models
-            .iter_mut()
-            .for_each(|axis_model| axis_model.seek = AxisSeek::default());
+        self.axis_models.iter_mut().for_each(|axis_model| axis_model.seek = AxisSeek::default());
     }
 }
