@@ -51,7 +51,7 @@
 /* Bit of OPEN: stop all axes if the gateware is busy. */
 #define CARRYSTEP_OPEN_FORCE UINT32_C(0x00000001)
 /* Lowest address at which a register of an axis is read. */
-#define CARRYSTEP_AXES_AT 0x18u
+#define CARRYSTEP_AXES_AT 0x10u
 /* Bits of STATUS: the slot of the running segment. */
 #define CARRYSTEP_STATUS_SLOT UINT32_C(0x0000001f)
 /* Bit of STATUS: the axis runs a segment. */
@@ -86,16 +86,30 @@
 #define CARRYSTEP_PHASES 0x07u
 /* Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
-/* TICKS of the other words at the limit (read, axis 0) */
-#define CARRYSTEP_LIMIT_TICKS 0x18u
-/* P in the tick after the one in which homing found the limit, low half (read, axis 0) */
-#define CARRYSTEP_LIMIT_P_LOW 0x20u
-/* P at the limit, high half (read, axis 0) */
-#define CARRYSTEP_LIMIT_P_HIGH 0x28u
-/* Position at the limit in steps (read, axis 0) */
-#define CARRYSTEP_LIMIT_POSITION 0x30u
-/* STATUS at the limit (read, axis 0) */
-#define CARRYSTEP_LIMIT_STATUS 0x38u
+/* Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed (read) */
+#define CARRYSTEP_CAPTURES 0x09u
+/* Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock) (read) */
+#define CARRYSTEP_INPUTS 0x0au
+/* Levels of the same pins, 1 active, when they were sampled last (read) */
+#define CARRYSTEP_INPUT_LEVELS 0x0bu
+/* Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0) */
+#define CARRYSTEP_LIMIT_MIN_SWITCH 0x10u
+/* Limit at the high end, likewise (read, axis 0) */
+#define CARRYSTEP_LIMIT_MAX_SWITCH 0x50u
+/* Input of row 2 in the time slot of this axis, likewise; of axis 0 it is the probe (read, axis 0) */
+#define CARRYSTEP_INPUT_0_SWITCH 0x90u
+/* Input of row 3 in the time slot of this axis, likewise; of axis 0 it is the interlock (read, axis 0) */
+#define CARRYSTEP_INPUT_1_SWITCH 0xd0u
+/* TICKS at the hit of a seek (read, axis 0) */
+#define CARRYSTEP_SEEK_TICKS 0x18u
+/* P in the tick after the hit of a seek, low half (read, axis 0) */
+#define CARRYSTEP_SEEK_P_LOW 0x20u
+/* P at the hit, high half (read, axis 0) */
+#define CARRYSTEP_SEEK_P_HIGH 0x28u
+/* POSITION at the hit (read, axis 0) */
+#define CARRYSTEP_SEEK_POSITION 0x30u
+/* STATUS at the hit (read, axis 0) */
+#define CARRYSTEP_SEEK_STATUS 0x38u
 /* Number of steps that freezes have discarded since configuration (read, axis 0) */
 #define CARRYSTEP_DISCARDED 0x40u
 /* Ticks of the running segment after the next one; no meaning while the axis does not run (read, axis 0) */
@@ -124,20 +138,36 @@
 #define CARRYSTEP_SNAPSHOT_POSITION 0xb0u
 /* STATUS in that tick (read, axis 0) */
 #define CARRYSTEP_SNAPSHOT_STATUS 0xb8u
+/* DISCARDED in the tick of the latch; no meaning if the axis ran (read, axis 0) */
+#define CARRYSTEP_LATCH_DISCARDED 0xc0u
+/* LEFT in the tick of the latch; no meaning if the axis did not run (read, axis 0) */
+#define CARRYSTEP_LATCH_LEFT 0xc8u
+/* TICKS of the latch; the same for all axes (read, axis 0) */
+#define CARRYSTEP_LATCH_TICKS 0xd8u
+/* P in that tick, low half (read, axis 0) */
+#define CARRYSTEP_LATCH_P_LOW 0xe0u
+/* P in that tick, high half (read, axis 0) */
+#define CARRYSTEP_LATCH_P_HIGH 0xe8u
+/* POSITION in that tick (read, axis 0) */
+#define CARRYSTEP_LATCH_POSITION 0xf0u
+/* STATUS in that tick (read, axis 0) */
+#define CARRYSTEP_LATCH_STATUS 0xf8u
 /* Bit 0: power the drivers (write) */
 #define CARRYSTEP_CONTROL 0x20u
 /* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
 /* Any value ends a complete stop: queues empty, P at its start value, position kept (write) */
 #define CARRYSTEP_CLEAR 0x22u
-/* Axes, one bit each: the next limit latches the state and ramps down this axis only (write) */
-#define CARRYSTEP_HOME 0x23u
+/* Byte 0: the axes that wait for a source, one bit each, 0 ends the seek; byte 1: the source, axis of the switch in bits 2..0, row in 4..3, own switch of each axis in 5, state that is the hit in 6 (write) */
+#define CARRYSTEP_SEEK 0x23u
 /* Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write) */
 #define CARRYSTEP_SNAPSHOT 0x24u
 /* Makes the session number of this frame the owner; bit 0: stop all axes if it is busy (write) */
 #define CARRYSTEP_OPEN 0x25u
 /* Any value stops all axes, each with its ramp; executed for every host (write) */
 #define CARRYSTEP_STOP 0x26u
+/* Any value arms the latch: its next edge latches the state of all axes (write) */
+#define CARRYSTEP_LATCH 0x27u
 /* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
 /* Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis) */
@@ -152,6 +182,7 @@
 #define CARRYSTEP_CAUSE_LIMIT 5u
 #define CARRYSTEP_CAUSE_UNDERRUN 6u
 #define CARRYSTEP_CAUSE_STOP 7u
+#define CARRYSTEP_CAUSE_INTERLOCK 8u
 
 /* The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused. */
 
@@ -161,6 +192,8 @@
 #define CARRYSTEP_REASON_BUSY 2u
 /* The request does not have the session number of the gateware's owner. */
 #define CARRYSTEP_REASON_SESSION 3u
+/* An axis that it names has hit the source of its seek, and the host has not ended the seek. */
+#define CARRYSTEP_REASON_SEEK ENDED 4u
 
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
@@ -186,8 +219,8 @@
 #define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 255u))
 /* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
-/* the axes that still wait for their limit, one bit each */
-#define CARRYSTEP_ANSWER_HOMING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
+/* the axes that wait for the source of their seek, one bit each */
+#define CARRYSTEP_ANSWER_SEEKING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
 /* the cause of the stop, if `fault` is set; otherwise 0 */
 #define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)((answer)[7] >> 0 & 15u))
 /* why the request was refused; 0 if it was not */

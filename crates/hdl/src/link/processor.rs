@@ -402,7 +402,11 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             & self.code.val().get_bit(6)
             & self.code.val().get_bit(7)
             & self.code.val().get_bit(8);
-        self.latch_arm.next = self.kick.val() & self.code.val().get_bit(9);
+        self.latch_arm.next = self.does.val()
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(9)
+            & !self.code.val().get_bit(6)
+            & !self.code.val().get_bit(8);
         self.kick.next = self.does.val()
             & self.code.val().get_bit(7)
             & !self.code.val().get_bit(6)
