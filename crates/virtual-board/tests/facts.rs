@@ -157,7 +157,7 @@ fn watchdog<B: Kind>() {
         assert_eq!(talk.read(POSITION).refusal, None, "a read of anyone, which does not feed it");
         noise.iter().for_each(|&byte| talk.board.say(byte));
     }
-    talk.rest(OVER / 5);
+    talk.rest(OVER / 3);
     let answer = talk.read(POSITION);
     assert_eq!((answer.fault, answer.cause), (true, Cause::Watchdog as u8), "{answer:?}");
 }

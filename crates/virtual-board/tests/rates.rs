@@ -87,7 +87,7 @@ fn spi_carries_1000_segments_per_second_for_six_axes() {
 
 #[test]
 fn uart_at_3_megabaud_carries_1000_segments_per_second_for_six_axes() {
-    carries::<ModelBoard>(3_000_000, 1000, 1500, 5);
+    carries::<ModelBoard>(3_000_000, 1000, 1500, 4);
 }
 
 /// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a

@@ -77,7 +77,7 @@ fn start<B: Kind>(talk: &mut Talk<B>, moves: &[Vec<Cubic>]) -> u32 {
 fn compare<B: Kind>(talk: &mut Talk<B>, moves: &[Vec<Cubic>], started: u32) -> u32 {
     let before = (talk.board.cycle() / TICK) as u32;
     let answer = talk.write(SNAPSHOT, 0);
-    assert!(answer.written && !answer.fault && !answer.refused);
+    assert!(answer.written && !answer.fault && answer.refusal.is_none());
     let ticks = talk.read(SNAPSHOT_TICKS).data;
     assert!(ticks > before && ticks <= (talk.board.cycle() / TICK) as u32);
     for (axis, segments) in (0..).zip(moves) {

@@ -105,6 +105,7 @@ struct Stranger {
     answers: u64,
     /// Number of answers lost per hundred.
     lost: u64,
+    is_open: bool,
     random: u64,
     next: u8,
     under_way: VecDeque<Written>,
@@ -129,6 +130,7 @@ impl Stranger {
             came: Vec::new(),
             answers: 0,
             lost,
+            is_open: false,
             random: 0x1234_5678_9abc_def1,
             next: 0,
             under_way: VecDeque::new(),
@@ -157,7 +159,9 @@ impl Stranger {
     fn read(&mut self, address: u8) {
         if self.asked.is_none_or(|asked| self.board.cycle() - asked > 2 * MS) {
             self.asked = Some(self.board.cycle());
-            self.say(&on_the_line(&[0, address, SESSION[0], SESSION[1]]));
+            // Before OPEN a read without a session, then those of the owner, which feed the watchdog.
+            let session = if self.is_open { &SESSION[..] } else { &[] };
+            self.say(&on_the_line(&[&[0, address], session].concat()));
         }
     }
 
@@ -288,6 +292,7 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
         stranger.say(&on_the_line(&[0, 0xa5, SESSION[0], SESSION[1], 0, 0, 0, 0]));
         (0..20).for_each(|_| stranger.pass());
     }
+    stranger.is_open = true;
     stranger.write(0xa0, &[1], None);
     stranger.until(|answer| answer.ready);
     let mut sums = [0_i128; AXES];
