@@ -68,7 +68,7 @@ impl SegmentSource for Slow {
 
 /// Streams for `CARRYSTEP_CLOCK_SECONDS` of the board's time, usually ten minutes.
 fn compares(ppm: i64) {
-    let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
+    let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
     let seconds = asked("CARRYSTEP_CLOCK_SECONDS", 600);
     let end = End::<ModelBoard>::new(uart, Faults::default(), 1);
     let host = Skewed { end: end.clone(), ppm };
