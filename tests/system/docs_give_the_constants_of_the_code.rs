@@ -162,7 +162,7 @@ fn pages_give_the_default_time_between_power_and_start() {
 
 #[test]
 fn specification_gives_the_beats_of_the_model() {
-    let sample = constant("crates/model/src/engine/motion/limits.rs", "SAMPLE_BEAT");
+    let sample = constant("crates/model/src/engine/motion/switches.rs", "SAMPLE_BEAT");
     says(
         "docs/clock-by-clock.md",
         &[format!("The sample is the level of the pin in beat {sample}.")],

@@ -3,8 +3,8 @@
 
 use carrystep_core::build::{MIN_CLOCKS_PER_TICK, check_parallel_axes};
 use carrystep_core::engine::{
-    COMMIT, ENGINE_PORTS, EngineBuild, Guard, MAX_AXES, MAX_ROUND, PUT_BEAT, SEGMENT_WORDS,
-    StateItem, TIME_SLOT_CLOCKS, least_clocks,
+    COMMIT, ENGINE_PORTS, EngineBuild, Guard, InputRow, MAX_AXES, MAX_ROUND, PUT_BEAT,
+    SEGMENT_WORDS, SWITCH_ROWS, StateItem, TIME_SLOT_CLOCKS, least_clocks,
 };
 use carrystep_core::link::{ANSWER, SEGMENT_FRAME_WORDS};
 use carrystep_core::ports::Width;
@@ -107,27 +107,21 @@ fn specification_gives_the_beats_of_the_layout() {
 fn specification_gives_the_samples_of_a_round() {
     let machine = moves::shipped("demo").0.machine;
     let engine = machine.engine();
-    let accepted = |round: u32| {
-        let guard = Guard { round, ..engine.guard.clone() };
-        EngineBuild { guard, ..engine.clone() }.check().is_ok()
+    let least = |inputs: [InputRow; 2]| {
+        let accepted = |round: &u32| {
+            let guard = Guard { round: *round, inputs, ..engine.guard.clone() };
+            EngineBuild { guard, ..engine.clone() }.check().is_ok()
+        };
+        (0..=MAX_ROUND).find(accepted).expect("a round")
     };
-    let least = (0..=MAX_ROUND).find(|&round| accepted(round)).expect("a round");
-    // The model compares the tick of the round with the number of the one that samples the highs.
-    let high = whole(behind(
-        "crates/model/src/engine/motion/limits.rs",
-        "let pins = if tick_of_round == ",
-    ));
-    let low = whole(behind(
-        "crates/model/src/engine/motion/limits.rs",
-        "(self.supervisor.tick_of_round == ",
-    ));
-    assert!(high < u64::from(least), "each round samples both ends");
+    let limits = least([InputRow::default(); 2]);
+    let inputs = least([InputRow { exist: 1, low: 0 }; 2]);
+    assert!(limits >= 2 && inputs >= SWITCH_ROWS.into(), "each round samples all rows");
     says(
         "docs/clock-by-clock.md",
         &[
-            format!("`R` (a power of two, at least {least})"),
-            format!("`limit_min` in the tick with tick_of_round {low},"),
-            format!("`limit_max` in the tick with tick_of_round {high}."),
+            format!("`R` (a power of two, at least {limits})"),
+            format!("R is at least {inputs} then"),
         ],
     );
 }
