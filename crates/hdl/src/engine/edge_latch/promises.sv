@@ -1,4 +1,4 @@
-// Proves promises 13, 15 and 16 of the latch, without a bound on time: which edge of its pin it
+// Proves promises 13 and 15 of the latch, without a bound on time: which edge of its pin it
 // latches, and in which tick.
 //
 //   parameters   LOOKS: number of consecutive strobes that must find the pin active; 0: no latch
