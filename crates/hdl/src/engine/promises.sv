@@ -107,7 +107,7 @@ module promises (
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
     reg was_wrong = 0, was_right = 0, was_ending = 0, was_clearing = 0, was_begins_round = 0;
-    reg was_dropped = 0, was_resetting = 0;
+    reg was_dropped = 0, was_resetting = 0, before_resetting = 0;
     reg [1:0] was_row = 0;
     reg [`AXES-1:0] was_step = 0;
     reg [12:0] was_beat = 0;
@@ -119,6 +119,7 @@ module promises (
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_begins_round, was_row, was_resetting} <= {begins_round, row, resetting};
         was_dropped <= strobe & drops;
+        before_resetting <= was_resetting;
         latched <= strobe ? comes : latched;
         found_before <= strobe ? found_now : found_before;
         if (start) asked <= (start_mask >> who) & 1;
@@ -252,16 +253,19 @@ module promises (
         invariant_13: assert (!going || !halted && !armed);
         invariant_14: assert ((!(halted || all_ramp || frozen) || fault) && (!found_freezing || found));
         invariant_15: assert (!clearing || settled && halted);
-        invariant_16: assert ((!settled || halted) && (!halted || all_ramp || frozen));
+        invariant_16: assert ((!settled || halted) && (!halted || all_ramp));
         invariant_17: assert (!halted || !ran);
         invariant_19: assert (!(mine && committed && at % TIME_SLOT_CLOCKS >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
-        invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]) || was_resetting);
+        invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]) || was_resetting && !before_resetting);
         invariant_22: assert (!was_beat[12] || at % TIME_SLOT_CLOCKS == 0 && at != 0 && at <= ALL_TIME_SLOTS);
         invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && frozen && !wiping && !armed
             && !(stage_1 && stage_2));
         invariant_24: assert (!(stage_2 && had_time_slot) || quiet);
         invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
         invariant_28: assert (!mine || beat[0] || full == (word[5:3] + 3'd1 == word[2:0] + {2'd0, starts}));
+        invariant_29: assert ((!was_resetting || before_resetting || at == 1 && resetting)
+            && (!resetting || was_resetting || at == 0));
+        invariant_30: assert (!was_resetting || slowing == 0 && seeking == 0);
         invariant_26: assert (!(takes && found_before));
         invariant_27: assert (!word[19] || (had_time_slot ? found_now : found_before));
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, drops, word[19]} && quiet);
