@@ -195,21 +195,21 @@ fn verilog_homes_in_the_same_clock_as_the_model() {
 
 const BUGS: [planted::Bug; 5] = [
     (
-        "a limit that is waited for stops all",
-        "limits_hit & !homing_control_waits &",
-        "limits_hit &",
+        "a limit of the seek stops all",
+        "switches_found & !seek_control_forgives",
+        "switches_found",
     ),
-    ("the limit is met once more on the way", "& !homing_control_slows", ""),
+    ("the limit is met once more on the way", "(mine | mine_slows)", "mine"),
     (
         "all axes slow down",
-        "mine_slows <= (slowing & axis_one_hot_next)",
-        "mine_slows <= (slowing)",
+        "(slowing & axis_one_hot_next)",
+        "(slowing)",
     ),
     ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
     (
-        "a start does not wait for an axis that slows",
-        "queue_goes_on | homing_control_slows",
-        "queue_goes_on",
+        "a start does not notice an axis that slows",
+        "drops <= drops | (masked & seek_control_slows);",
+        "drops <= drops;",
     ),
 ];
 

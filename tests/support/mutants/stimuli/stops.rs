@@ -8,7 +8,16 @@ use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 
 /// The modules on the path from a limit switch to the stop.
-const GUARDS: [&str; 6] = ["limits", "switches", "stops", "supervisor", "time_slot", "engine"];
+const GUARDS: [&str; 8] = [
+    "switches",
+    "switch_memory",
+    "seek_control",
+    "edge_latch",
+    "stops",
+    "supervisor",
+    "time_slot",
+    "engine",
+];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     let mut all = vec![
