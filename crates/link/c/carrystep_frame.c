@@ -104,7 +104,7 @@ static bool take(const uint8_t *frame, uint8_t length, carrystep_answer *answer)
     answer->reason = CARRYSTEP_ANSWER_REASON(frame);
     answer->written = CARRYSTEP_ANSWER_WRITTEN(frame) != 0;
     answer->culprits = CARRYSTEP_ANSWER_CULPRITS(frame);
-    answer->homing = CARRYSTEP_ANSWER_HOMING(frame);
+    answer->seeking = CARRYSTEP_ANSWER_SEEKING(frame);
     answer->data = word_at(frame, CARRYSTEP_ANSWER_DATA);
     return true;
 }

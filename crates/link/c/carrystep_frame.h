@@ -51,7 +51,7 @@ typedef struct {
     uint8_t reason;
     bool written; /* the request was a write */
     uint8_t culprits;
-    uint8_t homing;
+    uint8_t seeking;
     uint32_t data;
 } carrystep_answer;
 

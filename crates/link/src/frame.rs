@@ -293,8 +293,8 @@ pub struct Answer {
     pub written: bool,
     /// Mask of the axes that caused the stop.
     pub culprits: u8,
-    /// Mask of the axes that still wait for their limit.
-    pub homing: u8,
+    /// Mask of the axes that wait for the source of their seek.
+    pub seeking: u8,
     /// Value of the register that was read; after a write, the position of the addressed axis.
     pub data: u32,
 }
@@ -322,7 +322,7 @@ impl Answer {
             refusal: Refusal::from_number(map::reason(bytes)),
             written: map::written(bytes),
             culprits: map::culprits(bytes),
-            homing: map::homing(bytes),
+            seeking: map::seeking(bytes),
             data: word_at(bytes, ANSWER_DATA),
         })
     }

@@ -8,7 +8,7 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::END;
 use carrystep_core::link::registers::{REGISTERS, RegisterAccess};
 use carrystep_link::registers::{
-    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, HOME, MOST_AXES, OPEN, POSITION, SEGMENT,
+    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, SEEK, MOST_AXES, OPEN, POSITION, SEGMENT,
     SNAPSHOT, START, STOP, WRITE,
 };
 use carrystep_link::{Patience, Refusal, frame};
@@ -66,7 +66,7 @@ fn reads<B: Kind>() {
 /// is not answered.
 fn writes<B: Kind>() {
     let mut talk = filled::<B>();
-    let known = [CONTROL, START, CLEAR, HOME, SNAPSHOT, OPEN, STOP];
+    let known = [CONTROL, START, CLEAR, SEEK, SNAPSHOT, OPEN, STOP];
     for address in (0..0x40_u8).filter(|address| !known.contains(address)) {
         let answer = talk.write(address, 0xffff_ffff);
         let state = (
@@ -76,7 +76,7 @@ fn writes<B: Kind>() {
             answer.refusal,
             answer.ready,
             answer.armed,
-            answer.homing,
+            answer.seeking,
         );
         assert_eq!(state, (7, 0, false, None, true, false, 0), "{address:02x}");
     }

@@ -74,7 +74,7 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
     let Homed::At(edges) = homed else { panic!("{what}: stopped") };
     let answer = host.read_status().unwrap().answer;
-    assert!(answer.idle && !answer.fault && answer.homing == 0, "{what}: {answer:?}");
+    assert!(answer.idle && !answer.fault && answer.seeking == 0, "{what}: {answer:?}");
     let guard = &machine.guard;
     for (number, axis) in machine.axes.iter().enumerate() {
         let Some(home) = axis.home else { continue };
@@ -223,7 +223,7 @@ fn fails(
     let homing = homing_of(&machine);
     let error = host.home(&homing.as_homing(), |_, _, _| Wish::GoOn).unwrap_err();
     let answer = host.read_status().unwrap().answer;
-    assert_eq!(answer.homing, 0, "no axis waits for a limit behind the error");
+    assert_eq!(answer.seeking, 0, "no axis waits for a limit behind the error");
     (error, [0, 1].map(|axis| host.status().positions[axis]))
 }
 
@@ -283,7 +283,7 @@ fn estop_and_stop_request_end_homing() {
             );
         assert_eq!(stopped, Ok(Homed::Stopped), "{stage}");
         let answer = host.read_status().unwrap().answer;
-        assert_eq!((answer.cause_name(), answer.homing), (Some("stop"), 0), "{stage}");
+        assert_eq!((answer.cause_name(), answer.seeking), (Some("stop"), 0), "{stage}");
         host.clear().unwrap();
         let pressed = host.home(&homing.as_homing(), |_, now, _| {
             if now == stage {
@@ -296,7 +296,7 @@ fn estop_and_stop_request_end_homing() {
             Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }),
             "{stage}"
         );
-        assert_eq!(host.read_status().unwrap().answer.homing, 0, "{stage}");
+        assert_eq!(host.read_status().unwrap().answer.seeking, 0, "{stage}");
         bench.press_estop(false);
         host.clear().unwrap();
         homes(&bench, &machine, "after stops");

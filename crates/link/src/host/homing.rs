@@ -16,7 +16,7 @@ use crate::command::{ProgramError, Segment};
 use crate::feeder::SegmentSource;
 use crate::frame::of_axis;
 use crate::line::Line;
-use crate::registers::{HOME, LIMIT_POSITION};
+use crate::registers::{SEEK, SEEK_POSITION};
 use crate::travel::Travel;
 
 mod request;
@@ -112,9 +112,14 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         {
             return Ok(None);
         }
-        for group in
-            homing.groups.iter().map(|group| group & homing.known()).filter(|&group| group != 0)
-        {
+        // A seek has one source, and with the wiring `Pair` the two ends have a row each: the axes
+        // of a group whose switches are at low ends home before the others.
+        let ends = |group: u8| match homing.wiring {
+            Wiring::Pair => [group & !homing.toward_max(), group & homing.toward_max()],
+            Wiring::Each | Wiring::One => [group, 0],
+        };
+        let groups = homing.groups.iter().flat_map(|group| ends(group & homing.known()));
+        for group in groups.filter(|&group| group != 0) {
             if !one && self.move_off(homing, group, watch)?.is_none() {
                 return Ok(None);
             }
@@ -241,7 +246,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 
     /// One move of several axes, which all wait for their limits; `None` if it was stopped. A limit
-    /// stops only the axis that meets it. After a move away from the switch, the axes rest until
+    /// stops only the axis that meets it. With one input for both ends of an axis, no axis waits
+    /// while it moves away from its switch, which may still be closed. After a move away from the switch, the axes rest until
     /// the level of the switch is accepted.
     fn leg(
         &mut self,
@@ -265,12 +271,15 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 .for_each(|place| *place = travel);
         }
         let begun = self.read_status()?.positions;
-        self.write(HOME, axes.into())?;
+        let source = homing.source(axes, stage);
+        if let Some(source) = source {
+            self.write(SEEK, u32::from(axes) | u32::from(source) << 8)?;
+        }
         let ended = self.stream(moves, |progress| watch(axes, stage, progress));
-        let waits = self.status.answer.homing & axes;
-        if matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
-            // From here on no axis waits for a limit.
-            self.write(HOME, 0)?;
+        let waits = if source.is_some() { self.status.answer.seeking & axes } else { axes };
+        if source.is_some() && matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
+            // From here on no axis waits for a limit, and those that have met it may move again.
+            self.write(SEEK, 0)?;
         }
         if ended? == Ended::Stopped {
             return Ok(None);
@@ -278,7 +287,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let met = axes & !waits;
         let mut latched = [0; AXES];
         for (axis, place) in (0..).zip(&mut latched).filter(|(axis, _)| met >> axis & 1 == 1) {
-            *place = self.register(of_axis(LIMIT_POSITION, axis))?.cast_signed();
+            *place = self.register(of_axis(SEEK_POSITION, axis))?.cast_signed();
         }
         if met != 0 {
             // An axis that has met its limit rests at any fraction of a step. A clear sets the

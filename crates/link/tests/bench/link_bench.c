@@ -74,7 +74,7 @@ static void put_answer(const carrystep_answer *a)
     snprintf(text, sizeof text, "%02x:%02x:%02x:%c%c%c%c%c%c:%u:%u:%u:%02x:%02x:%08" PRIx32, (unsigned)a->sequence,
              (unsigned)a->address, (unsigned)a->next, a->fault ? 'f' : '.', a->halted ? 'h' : '.', a->idle ? 'i' : '.',
              a->ready ? 'r' : '.', a->armed ? 'a' : '.', a->written ? 'w' : '.', (unsigned)a->reason,
-             (unsigned)a->cause, (unsigned)a->free, (unsigned)a->culprits, (unsigned)a->homing, a->data);
+             (unsigned)a->cause, (unsigned)a->free, (unsigned)a->culprits, (unsigned)a->seeking, a->data);
     put(text);
 }
 

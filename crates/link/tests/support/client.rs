@@ -92,7 +92,7 @@ fn hexadecimal(word: &str) -> u64 {
 }
 
 fn fields(answer: &Answer) -> String {
-    let Answer { sequence, address, next, cause, free, culprits, homing, data, .. } = *answer;
+    let Answer { sequence, address, next, cause, free, culprits, seeking, data, .. } = *answer;
     let flags = [
         (answer.fault, 'f'),
         (answer.halted, 'h'),
@@ -104,7 +104,7 @@ fn fields(answer: &Answer) -> String {
     let flags: String = flags.iter().map(|&(on, letter)| if on { letter } else { '.' }).collect();
     let reason = answer.refusal.map_or(0, Refusal::number);
     format!(
-        "{sequence:02x}:{address:02x}:{next:02x}:{flags}:{reason}:{cause}:{free}:{culprits:02x}:{homing:02x}:{data:08x}"
+        "{sequence:02x}:{address:02x}:{next:02x}:{flags}:{reason}:{cause}:{free}:{culprits:02x}:{seeking:02x}:{data:08x}"
     )
 }
 

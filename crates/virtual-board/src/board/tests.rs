@@ -4,7 +4,7 @@
 use super::*;
 use carrystep_core::engine::{LimitWiring, StatePage};
 use carrystep_core::link::registers::{
-    CLEAR, CONTROL, CONTROL_ENABLE, HOME, OPEN, P_LOW, PHASES, SEGMENT, SEGMENTS, SNAPSHOT, START,
+    CLEAR, CONTROL, CONTROL_ENABLE, SEEK, OPEN, P_LOW, PHASES, SEGMENT, SEGMENTS, SNAPSHOT, START,
     STOP,
 };
 use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC, Refusal, WRITE};
@@ -97,7 +97,7 @@ fn request(random: &mut SplitMix64, axes: u8, answers: &Answers, filled: &mut u3
         5 => (CONTROL, vec![CONTROL_ENABLE]),
         6..10 if *filled != 0 => (START, vec![std::mem::take(filled)]),
         6 => (START, vec![below(256) as u32]),
-        12 => (HOME, vec![mask]),
+        12 => (SEEK, vec![mask]),
         10..12 => (SNAPSHOT, vec![0]),
         9 => (CLEAR, vec![0]),
         13 | 14 => {
