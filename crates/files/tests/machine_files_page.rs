@@ -155,12 +155,16 @@ fn examples_are_valid_and_the_first_has_every_key() {
     let blocks: Vec<&str> =
         PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     machine(blocks[0]);
-    for heading in
-        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
-    {
+    for heading in [
+        "## `[machine]`",
+        "## `[[machine.axis]]`",
+        "## `[machine.guard]`",
+        "## `[machine.inputs]`",
+        "## `[machine.link]`",
+    ] {
         for row in rows(heading) {
             let key = quoted(row[0]);
-            let table = ["guard", "link", "axis"].contains(&key);
+            let table = ["guard", "inputs", "link", "axis"].contains(&key);
             let there = blocks[0].contains(&if table {
                 format!("machine.{key}]")
             } else {
