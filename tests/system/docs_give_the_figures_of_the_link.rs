@@ -45,7 +45,7 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
             format!("- **`STOP`** (`{:02X}`)", WRITE | STOP),
             format!("the axis in bits 0 to {top} of the address"),
             format!(
-                "After a write below `{segment:02X}` (`CONTROL`, `START`, `CLEAR`, `HOME`, `SNAPSHOT`, `OPEN`, `STOP`)"
+                "After a write below `{segment:02X}` (`CONTROL`, `START`, `CLEAR`, `SEEK`, `SNAPSHOT`, `OPEN`, `STOP`, `LATCH`)"
             ),
             format!("to segments and to reads from `{AXES_AT:02X}` on can"),
             format!("(the answer to its segment, or to a read from `{AXES_AT:02X}` on)"),

@@ -5,7 +5,7 @@
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_core::link::registers::{
-    CLEAR, CONTROL, HOME, OPEN, POSITION, SEGMENT, SEGMENTS, SNAPSHOT, START, STOP, of_axis,
+    CLEAR, CONTROL, OPEN, POSITION, SEEK, SEGMENT, SEGMENTS, SNAPSHOT, START, STOP, of_axis,
 };
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_tests::link_bench::{Host, LinkBench, Said, owners_read, read, wide, write};
@@ -54,7 +54,7 @@ fn requests_of_other_sessions_change_nothing() {
             (CONTROL, &[0][..]),
             (START, &[1]),
             (CLEAR, &[0]),
-            (HOME, &[1]),
+            (SEEK, &[1]),
             (SNAPSHOT, &[0]),
             (of_axis(SEGMENT, 0), &cruise(50, QUARTER)),
             (SEGMENTS, &wide),
@@ -62,7 +62,7 @@ fn requests_of_other_sessions_change_nothing() {
             let said = bench.ask(&write(host.next, register, session, words));
             let Said { next, reason, written, free, .. } = said;
             assert_eq!((next, reason, written), (host.next, SESSION, true), "{said:?}");
-            assert_eq!((free, said.fault, said.homing), (6, None, 0), "{said:?}");
+            assert_eq!((free, said.fault, said.seeking), (6, None, 0), "{said:?}");
         }
         let said = bench.ask(&owners_read(9, POSITION, session));
         assert_eq!((said.reason, said.data, said.written), (SESSION, before.data, false));
@@ -162,7 +162,7 @@ fn open(bench: &mut LinkBench, session: u16, force: bool) -> u8 {
     let said = bench.ask(&write(0x99, OPEN, session, &[force.into()]));
     assert!(said.written);
     if said.reason == 0 {
-        assert_eq!((said.next, said.homing), (0, 0), "{said:?}");
+        assert_eq!((said.next, said.seeking), (0, 0), "{said:?}");
     }
     said.reason
 }
@@ -172,7 +172,7 @@ fn open_is_busy_while_anything_moves_or_waits() {
     let mut bench = bench(false);
     let mut host = Host::powered(&mut bench);
     // Idle: granted, and the power stays.
-    host.write(&mut bench, HOME, &[3]);
+    host.write(&mut bench, SEEK, &[3]);
     assert_eq!(open(&mut bench, 5, false), 0);
     assert!(bench.outputs.enabled);
     assert_eq!(bench.ask(&host.frame(0, SNAPSHOT, &[0])).reason, SESSION, "the owner before");

@@ -1,9 +1,9 @@
 //! The gateware's end of the link does what docs/protocol.md specifies: the page's example frames
 //! byte by byte, and its other promises.
 
-use carrystep_core::engine::{Cause, LimitWiring};
+use carrystep_core::engine::{Cause, LimitWiring, SeekSource};
 use carrystep_core::link::registers::{
-    CLEAR, CONTROL, HOME, LIMIT_POSITION, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP, of_axis,
+    CLEAR, CONTROL, OPEN, POSITION, SEEK, SEEK_POSITION, SEGMENT, SEGMENTS, START, STOP, of_axis,
 };
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
@@ -192,10 +192,12 @@ fn a_second_start_is_refused_as_busy() {
 }
 
 #[test]
-fn a_limit_latches_the_state_of_a_homing_axis() {
+fn a_limit_latches_the_state_of_a_seeking_axis() {
     let mut bench = bench();
     let mut host = Host::powered(&mut bench);
-    assert_eq!(host.write(&mut bench, HOME, &[0b100]).homing, 0b100);
+    let source = SeekSource { axis: 0, row: 0, own: true, level: true };
+    let word = 0b100 | u32::from(source.byte()) << 8;
+    assert_eq!(host.write(&mut bench, SEEK, &[word]).seeking, 0b100);
     host.write(&mut bench, of_axis(SEGMENT, 2), &cruise(100_000, -QUARTER));
     host.write(&mut bench, START, &[0b100]);
     bench.rest(48 * 900);
@@ -203,8 +205,8 @@ fn a_limit_latches_the_state_of_a_homing_axis() {
     while !bench.status().idle {}
     bench.rest(2000);
     let said = bench.read(of_axis(POSITION, 2));
-    assert_eq!((said.fault, said.homing), (None, 0), "{said:?}");
-    let latched = bench.read(of_axis(LIMIT_POSITION, 2)).data.cast_signed();
+    assert_eq!((said.fault, said.seeking), (None, 0), "{said:?}");
+    let latched = bench.read(of_axis(SEEK_POSITION, 2)).data.cast_signed();
     let rest = said.data.cast_signed();
     // The ramp goes from 2^62 down in steps of 2^54: 256 ticks of an eighth of a step on average.
     assert!((-34..=-30).contains(&(rest - latched)), "latched {latched}, at rest at {rest}");
@@ -265,7 +267,7 @@ fn replayed(mut bench: LinkBench, line: LineKind) {
     let mut host = Host::powered(&mut bench);
     let damaged = &host.frame(0, of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..];
     bench.send(&on_the_line(damaged));
-    host.write(&mut bench, HOME, &[0b100]);
+    host.write(&mut bench, SEEK, &[0b100]);
     for axis in 0..AXES as u8 {
         let mut words = cruise(0xc0, -QUARTER);
         words[6] = 0xdbc0_c0db;

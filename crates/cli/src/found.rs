@@ -189,7 +189,8 @@ impl fmt::Display for FoundBoard {
         let in_units = self.axes.iter().any(|axis| axis.place.is_some());
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
-        for AxisFound { axis, position, place, machine, discarded, seeking, culprit } in &self.axes {
+        for AxisFound { axis, position, place, machine, discarded, seeking, culprit } in &self.axes
+        {
             let machine = machine.map_or_else(String::new, |machine| {
                 format!("  homed: at {machine:.4} of the machine")
             });

@@ -8,7 +8,7 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::END;
 use carrystep_core::link::registers::{REGISTERS, RegisterAccess};
 use carrystep_link::registers::{
-    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, SEEK, MOST_AXES, OPEN, POSITION, SEGMENT,
+    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, MOST_AXES, OPEN, POSITION, SEEK, SEGMENT,
     SNAPSHOT, START, STOP, WRITE,
 };
 use carrystep_link::{Patience, Refusal, frame};

@@ -92,14 +92,14 @@ pub struct Said {
     pub reason: u8,
     pub written: bool,
     pub culprits: u8,
-    pub homing: u8,
+    pub seeking: u8,
     pub data: u32,
 }
 
 impl Said {
     /// Decodes a frame without its CRC.
     pub fn of(frame: &[u8]) -> Self {
-        let &[sequence, address, next, flags, free, culprits, homing, why, a, b, c, d] = frame
+        let &[sequence, address, next, flags, free, culprits, seeking, why, a, b, c, d] = frame
         else {
             panic!("{frame:02x?} is not as long as an answer")
         };
@@ -121,7 +121,7 @@ impl Said {
             free,
             reason: why >> 4,
             culprits,
-            homing,
+            seeking,
             data: u32::from_le_bytes([a, b, c, d]),
         }
     }

@@ -53,7 +53,7 @@ impl Host {
     /// # Panics If the gateware refuses it.
     pub fn open(bench: &mut LinkBench, session: u16) -> Self {
         let said = bench.ask(&frames::write(0x5a, OPEN, session, &[0]));
-        assert_eq!((said.reason, said.next, said.homing), (0, 0, 0), "{said:?}");
+        assert_eq!((said.reason, said.next, said.seeking), (0, 0, 0), "{said:?}");
         Self { session, next: 0 }
     }
 

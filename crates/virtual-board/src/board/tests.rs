@@ -4,7 +4,7 @@
 use super::*;
 use carrystep_core::engine::{LimitWiring, StatePage};
 use carrystep_core::link::registers::{
-    CLEAR, CONTROL, CONTROL_ENABLE, SEEK, OPEN, P_LOW, PHASES, SEGMENT, SEGMENTS, SNAPSHOT, START,
+    CLEAR, CONTROL, CONTROL_ENABLE, OPEN, P_LOW, PHASES, SEEK, SEGMENT, SEGMENTS, SNAPSHOT, START,
     STOP,
 };
 use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC, Refusal, WRITE};
