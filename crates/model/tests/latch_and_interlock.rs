@@ -73,13 +73,17 @@ fn latched_words_are_those_of_the_tick_after_the_last_look() {
         let second = at + (looks + 2) * per_tick;
         script.push((second, Act::Latch(false)));
         script.push((second + (looks + 2) * per_tick, Act::Latch(true)));
-        let latched = run(&build, &script, 250);
         // A strobe sees the pin as it was two cycles before.
         let strobe =
             (0..).map(|k| k * per_tick + per_tick - 1).find(|at_strobe| at_strobe - 2 >= at);
         let tick = strobe.unwrap() / per_tick + looks;
+        // The strobe that accepts the edge finds the request for a snapshot, which waits.
+        script.push(((tick - 1) * per_tick + 20, Act::Snapshot));
+        script.sort_by_key(|(at, _)| *at);
+        let latched = run(&build, &script, 250);
         for axis in 0..build.axes() {
             assert_eq!(latched.ticks_on(StatePage::Latch, axis), [tick], "seed {seed}");
+            assert_eq!(latched.ticks_on(StatePage::Snapshot, axis), [tick + 1], "seed {seed}");
             assert_eq!(live.edges(axis), latched.edges(axis), "seed {seed}, axis {axis}");
         }
         assert_kept(&latched, &live, tick, StatePage::Latch);
