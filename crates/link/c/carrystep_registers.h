@@ -193,7 +193,7 @@
 /* The request does not have the session number of the gateware's owner. */
 #define CARRYSTEP_REASON_SESSION 3u
 /* An axis that it names has hit the source of its seek, and the host has not ended the seek. */
-#define CARRYSTEP_REASON_SEEK ENDED 4u
+#define CARRYSTEP_REASON_SEEK_ENDED 4u
 
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 

@@ -180,7 +180,7 @@ pub const REASON_BUSY: u8 = 2;
 /// The request does not have the session number of the gateware's owner.
 pub const REASON_SESSION: u8 = 3;
 /// An axis that it names has hit the source of its seek, and the host has not ended the seek.
-pub const REASON_SEEK ENDED: u8 = 4;
+pub const REASON_SEEK_ENDED: u8 = 4;
 
 /// Of an answer: the sequence number of the request.
 pub const fn sequence(answer: &[u8; ANSWER_BYTES]) -> u8 {

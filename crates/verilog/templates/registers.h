@@ -27,7 +27,7 @@
 /* The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused. */
 {% for row in reasons %}
 /* {{ row.what }} */
-#define CARRYSTEP_REASON_{{ row.name | upper }} {{ row.number }}u
+#define CARRYSTEP_REASON_{{ row.name | upper | replace(" ", "_") }} {{ row.number }}u
 {%- endfor %}
 
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */

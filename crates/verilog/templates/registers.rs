@@ -21,7 +21,7 @@ pub const REASONS: [&str; {{ reasons | length + 1 }}] =
     ["none"{% for row in reasons %}, "{{ row.name }}"{% endfor %}];
 {%- for row in reasons %}
 /// {{ row.what }}
-pub const REASON_{{ row.name | upper }}: u8 = {{ row.number }};
+pub const REASON_{{ row.name | upper | replace(" ", "_") }}: u8 = {{ row.number }};
 {%- endfor %}
 {% for row in fields %}
 /// Of an answer: {{ row.what }}.
