@@ -227,6 +227,8 @@ module carrystep_upduino3_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
+        .inputs_0(6'd0),
+        .inputs_1(6'd0),
         .step(step),
         .dir(dir),
         .enabled(enabled),
