@@ -149,7 +149,7 @@ fn protocol_page_gives_the_time_outs_of_the_rust_client() {
     let (tries, share) = (word(whole((silence / resend).floor())), part(whole(watchdog / period)));
     let serial = constant("crates/link/src/line/serial.rs", "AHEAD_MS");
     // Ten bits for each byte that the client holds, and then the bytes that the system may hold.
-    let held = host("out: [u8; ");
+    let held = host("const OUT: usize = ");
     let wait = |baud: f64| (10.0 * held / baud * 1e3 + serial).round();
     let callers = constant("crates/cli/src/control/control_socket.rs", "CALLERS");
     says(

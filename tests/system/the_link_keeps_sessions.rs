@@ -122,18 +122,6 @@ fn requests_of_others_do_not_feed_the_watchdog() {
     assert!(!feeds(|host| write(0, OPEN, host.session, &[0])), "the owner's own");
 }
 
-/// A granted OPEN restarts the watchdog, but while it is granted nothing waits: this test looks at
-/// the port of the engine.
-#[test]
-fn a_granted_open_restarts_the_watchdog() {
-    let mut bench = bench(true);
-    Host::open(&mut bench, 1);
-    bench.rest(3 * WATCHDOG * TICK);
-    let mut host = Host::open(&mut bench, 2);
-    host.write(&mut bench, SEGMENT, &cruise(50, QUARTER));
-    assert_eq!(bench.status().fault, None);
-}
-
 #[test]
 fn a_stop_of_anyone_is_executed_within_the_owners_stream() {
     let mut bench = bench(false);

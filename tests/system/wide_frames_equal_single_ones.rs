@@ -56,11 +56,7 @@ fn motion(mut bench: LinkBench, mask: u8, in_one: bool) -> (Vec<(u32, u32)>, Vec
             }
         }
     }
-    bench.send(&on_the_line(&host.frame(
-        0,
-        carrystep_core::link::registers::START,
-        &[mask.into()],
-    )));
+    bench.send(&on_the_line(&host.frame(0, START, &[mask.into()])));
     host.next += 1;
     while !bench.outputs.started {
         bench.clock();
