@@ -2,8 +2,9 @@
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
 //! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], and
-//! the [`Plot`]. [`check_beside`] is a checker that uses other cores. The modules are private; the
-//! public items are listed below.
+//! the [`Plot`]. [`check_beside`] is a checker that uses other cores. [`PathChecker`] checks jobs,
+//! whose pulses follow a programmed path. The modules are private; the public items are listed
+//! below.
 
 mod ahead;
 mod axis_check;
@@ -19,6 +20,10 @@ mod gtkw;
 mod ideal;
 mod line_check;
 mod origin;
+mod path_check;
+mod path_follow;
+mod path_leg;
+mod path_report;
 mod pins;
 mod plot;
 mod report;
@@ -49,6 +54,9 @@ pub use follow::{Follower, Pulse};
 pub use fst_out::fst_writer;
 pub use gtkw::save_file;
 pub use origin::Origin;
+pub use path_check::{PathAxis, PathChecker, PathSetup};
+pub use path_leg::PathLeg;
+pub use path_report::{PathAxisReport, PathReport};
 pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
 pub use report::{AxisReport, CheckReport, OriginKind};

@@ -168,7 +168,7 @@ const PINS: [&str; 5] = ["axis", "high", "low", "set-up", "hold"];
 
 /// Writes rows below their headings. Names and columns without a heading are aligned to the left,
 /// numbers to the right.
-fn table<const N: usize>(
+pub(crate) fn table<const N: usize>(
     f: &mut fmt::Formatter<'_>,
     head: [&str; N],
     rows: &[[String; N]],

@@ -4,6 +4,7 @@
 mod machine;
 mod port;
 mod profile;
+mod program;
 mod sweep;
 mod table;
 
@@ -19,6 +20,7 @@ pub use port::{
     HomeArguments, Jog, PeerArguments, PortArguments, RunArguments, StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
+pub use program::ProgramArguments;
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -49,9 +51,11 @@ pub enum Subcommand {
     Profile(ProfileArguments),
     /// Make a C header with a timer compare table for a microcontroller, and the player for it.
     Table(TableArguments),
-    /// Show the integer segments of a move file, the limits reached and the times.
+    /// Show the integer segments of a move file or of a G-code program, the limits reached and the
+    /// times.
     Plan(PlanArguments),
-    /// Run a move file through the gateware, cycle by cycle, and check every pulse.
+    /// Run a move file or a G-code program through the gateware, cycle by cycle, and check every
+    /// pulse.
     Simulate(Simulate),
     /// Check a VCD from any simulator or logic analyser against a move file.
     Check(CheckArguments),
@@ -131,10 +135,14 @@ pub struct Demo {
 
 /// The arguments of `carrystep plan`.
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)] // so that a negative tolerance is refused as one
 pub struct PlanArguments {
-    /// The move file.
-    #[arg(value_name = "MOVE.toml")]
+    /// The move file, or a program in G-code: .ngc, .nc or .gcode.
+    #[arg(value_name = "MOVE.toml|JOB.ngc")]
     pub file: PathBuf,
+    /// The options of programs.
+    #[command(flatten)]
+    pub program: ProgramArguments,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
@@ -142,11 +150,11 @@ pub struct PlanArguments {
     /// List every segment: ticks, V, A, J.
     #[arg(long)]
     pub segments: bool,
-    /// One JSON document, segments included.
+    /// One JSON document, segments included (of a program, only the figures).
     #[arg(long)]
     pub json: bool,
-    /// A JSON document in a line for each move, and one for the whole at the end. No move is kept
-    /// in memory.
+    /// A JSON document in a line for each move (of a program for each row: the segments of all axes
+    /// for the same ticks), and one for the whole at the end. No move is kept in memory.
     #[arg(long, conflicts_with_all = ["json", "segments"])]
     pub json_lines: bool,
 }
@@ -156,9 +164,12 @@ pub struct PlanArguments {
 #[command(group = ArgGroup::new("waves").args(["vcd", "fst"]).multiple(true))]
 #[command(allow_negative_numbers = true)] // so that a negative time is refused as a time
 pub struct Simulate {
-    /// The move file.
-    #[arg(value_name = "MOVE.toml")]
+    /// The move file, or a program in G-code: .ngc, .nc or .gcode.
+    #[arg(value_name = "MOVE.toml|JOB.ngc")]
     pub file: PathBuf,
+    /// The options of programs.
+    #[command(flatten)]
+    pub program: ProgramArguments,
     /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling,
     /// an adder an axis.
     #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
@@ -170,7 +181,8 @@ pub struct Simulate {
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// Write the waveform: pins, position and V beside the float profile.
+    /// Write the waveform: pins, position and V beside the float profile; of a program, pins and
+    /// position.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
     /// Write the same waveform as FST, which has a fraction of the size and opens in GTKWave at
@@ -189,7 +201,7 @@ pub struct Simulate {
     /// The waveform shows only these axes, for example x,y (needs --vcd or --fst).
     #[arg(long, value_name = "AXIS", value_delimiter = ',', requires = "waves")]
     pub axes: Vec<String>,
-    /// Write time, speed and error of each pulse.
+    /// Write time, speed and error of each pulse; of a program, without the error.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Draw speed and error of each axis as SVG.

@@ -9,6 +9,7 @@ pub mod doctor;
 pub mod home;
 pub mod machine;
 pub mod plan;
+pub mod plan_program;
 pub mod profile;
 pub mod run;
 pub mod schemas;

@@ -6,10 +6,10 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, doctor, home, machine, plan, profile, sweep, table, verilog,
+    boards, build, check, doctor, home, machine, plan, plan_program, profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
-use crate::{drive, ending, found, job};
+use crate::{drive, ending, found, job, program_run};
 use schemars::Schema;
 
 macro_rules! documents {
@@ -38,8 +38,11 @@ documents! {
     "plan", 1: plan::Planned<'_>;
     "plan-end", 1: plan::PlanEnd;
     "plan-move", 1: plan::PlannedLine<'_>;
+    "plan-program", 1: plan_program::PlannedProgram;
+    "plan-row", 1: plan_program::PlannedRow<'_>;
     "profile", 1: profile::Profiles<'_>;
     "simulate", 1: job::RunResult;
+    "simulate-program", 1: program_run::ProgramResult;
     "status", 1: found::FoundBoard;
     "sweep", 1: carrystep_sweep::SweepReport;
     "sweep-files", 1: sweep::WrittenForCluster<'_>;

@@ -3,6 +3,7 @@
 use carrystep_boards::BoardError;
 use carrystep_check::TraceError;
 use carrystep_files::InputError;
+use carrystep_program::ProgramError;
 use carrystep_simulators::LevelError;
 use carrystep_tools::SynthesisError;
 use carrystep_verilog::ExportError;
@@ -46,6 +47,12 @@ impl Failure {
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Self::Input(error)
+    }
+}
+
+impl From<ProgramError> for Failure {
+    fn from(error: ProgramError) -> Self {
+        Self::Input(error.into())
     }
 }
 

@@ -13,7 +13,7 @@ use carrystep_check::{
     AxisSetup, AxisWaves, CheckReport, Origin, PinSink, Plot, PlotAxis, PlotSetup, Setup, Tee,
     Waves, check_beside, csv_writer, fst_writer, save_file, vcd_writer,
 };
-use carrystep_core::Segment;
+use carrystep_core::{Segment, Timebase};
 use carrystep_files::MoveSource;
 use carrystep_plan::{Pass, PlannedMove, Survey};
 use carrystep_profile::{Course, Reader, Timeline};
@@ -89,7 +89,7 @@ pub fn survey(
     source: MoveSource,
     mut watch: impl FnMut(&PlannedMove) -> Result<(), Failure>,
 ) -> Result<Survey, Failure> {
-    let mut progress = PlanProgress::new();
+    let mut progress = PlanProgress::of("moves");
     Survey::new(source, |planned| {
         progress.one();
         watch(planned)?;
@@ -124,7 +124,12 @@ pub fn check_setup<'a>(
 
 /// Refuses a plan that is longer than a capture can be.
 pub fn fits_a_capture(survey: &Survey) -> Result<(), Failure> {
-    let ns = u128::from(survey.totals().ticks) * u128::from(survey.build().timebase.tick_ns());
+    fits_into_a_capture(survey.totals().ticks, &survey.build().timebase)
+}
+
+/// Refuses so many ticks if a capture cannot be as long.
+pub fn fits_into_a_capture(ticks: u64, timebase: &Timebase) -> Result<(), Failure> {
+    let ns = u128::from(ticks) * u128::from(timebase.tick_ns());
     if ns <= u128::from(LONGEST_S) * 1_000_000_000 {
         return Ok(());
     }

@@ -26,7 +26,11 @@ mod memory;
 mod operated;
 mod output;
 mod pass;
+mod program;
+mod program_run;
+mod program_table;
 mod progress;
+mod segments;
 #[cfg(unix)]
 mod shipped;
 mod spool;

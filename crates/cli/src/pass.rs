@@ -1,8 +1,9 @@
-//! The commands of a plan, for a simulator that runs it.
+//! The commands of a plan of moves or of a program, for a simulator that runs it.
 
 use carrystep_core::Command;
-use carrystep_plan::{PlannedMove, Survey};
+use carrystep_plan::{self as plan, PlannedMove};
 use carrystep_profile::Reader;
+use carrystep_program::{ProgramError, ProgramFile, Rows, Survey};
 use carrystep_simulators::Commands;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,14 +11,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// pass that others read too.
 #[derive(Debug)]
 pub struct PlanCommands<'a> {
-    survey: &'a Survey,
+    survey: &'a plan::Survey,
     /// The moves of a pass that others read.
     shared: Mutex<Option<Reader<Arc<PlannedMove>>>>,
 }
 
 impl<'a> PlanCommands<'a> {
     /// The commands of this plan.
-    pub fn new(survey: &'a Survey) -> Self {
+    pub fn new(survey: &'a plan::Survey) -> Self {
         Self { survey, shared: Mutex::new(None) }
     }
 
@@ -36,5 +37,69 @@ impl Commands for PlanCommands<'_> {
 
     fn segments(&self) -> u64 {
         self.survey.totals().segments()
+    }
+}
+
+/// The first error of the passes over a program that feed a run. Each pass ends at its error, and
+/// the run is then judged by it.
+#[derive(Debug, Default)]
+pub struct Kept(Mutex<Option<ProgramError>>);
+
+impl Kept {
+    /// What comes before the first error, which is kept.
+    pub fn until_an_error<T>(
+        &self,
+        from: impl Iterator<Item = Result<T, ProgramError>>,
+    ) -> impl Iterator<Item = T> {
+        from.map_while(|one| match one {
+            Ok(one) => Some(one),
+            Err(error) => {
+                self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                None
+            }
+        })
+    }
+
+    /// Fails if there was an error.
+    pub fn error(&self) -> Result<(), ProgramError> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+    }
+}
+
+/// The commands of a planned program, which is planned anew for each run.
+#[derive(Debug)]
+pub struct RowCommands<'a> {
+    file: &'a ProgramFile,
+    survey: &'a Survey,
+    kept: &'a Kept,
+}
+
+impl<'a> RowCommands<'a> {
+    /// The commands of this program; `kept` gets the error that ends them early.
+    pub fn new(file: &'a ProgramFile, survey: &'a Survey, kept: &'a Kept) -> Self {
+        Self { file, survey, kept }
+    }
+}
+
+impl Commands for RowCommands<'_> {
+    fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
+        let (rows, error) = match Rows::new(self.file) {
+            Ok(rows) => (Some(rows), None),
+            Err(error) => (None, Some(Err(error))),
+        };
+        let rows = rows.into_iter().flatten().chain(error);
+        let mut begun = false;
+        Box::new(self.kept.until_an_error(rows).flat_map(move |row| {
+            let count = row.segments.len();
+            let segment = |(axis, segment)| Command::Segment { axis, segment };
+            let segments = (0..).zip(row.segments).map(segment);
+            // All axes start when each has its first segment.
+            let first = !std::mem::replace(&mut begun, true);
+            segments.chain(first.then(|| Command::Start { mask: ((1_u16 << count) - 1) as u8 }))
+        }))
+    }
+
+    fn segments(&self) -> u64 {
+        self.survey.rows * self.survey.axes.len() as u64
     }
 }

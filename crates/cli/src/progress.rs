@@ -105,26 +105,28 @@ fn clock_face(seconds: f64) -> String {
     }
 }
 
-/// The number of moves that have been planned.
+/// The number of moves, or of rows of a program, that have been planned.
 pub struct PlanProgress {
     begun: Instant,
-    moves: u64,
+    what: &'static str,
+    count: u64,
     bar: Option<ProgressBar>,
 }
 
 impl PlanProgress {
     /// A display that appears when planning takes longer than [`SHORT`].
-    pub fn new() -> Self {
-        Self { begun: Instant::now(), moves: 0, bar: None }
+    /// `what` is the word for what is counted.
+    pub fn of(what: &'static str) -> Self {
+        Self { begun: Instant::now(), what, count: 0, bar: None }
     }
 
-    /// Counts a move.
+    /// Counts one.
     pub fn one(&mut self) {
         const NOW_AND_THEN: u64 = 1000;
-        self.moves += 1;
-        if self.moves.is_multiple_of(NOW_AND_THEN) && self.begun.elapsed() >= SHORT {
+        self.count += 1;
+        if self.count.is_multiple_of(NOW_AND_THEN) && self.begun.elapsed() >= SHORT {
             let bar = self.bar.get_or_insert_with(spinner);
-            bar.set_message(format!("{} moves planned", self.moves));
+            bar.set_message(format!("{} {} planned", self.count, self.what));
             bar.tick();
         }
     }

@@ -5,6 +5,7 @@
 //! and the place where the first one begins.
 
 use std::f64::consts::TAU;
+use std::sync::Arc as Shared;
 
 /// Number of axes: x, y, z in mm, then a, b, c in degrees.
 pub const AXES: usize = 6;
@@ -18,6 +19,8 @@ pub type Point = [f64; AXES];
 /// A canonical move or action, and the line of the program that asked for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
+    /// Name of the file, as the caller gave it, or that of a subroutine.
+    pub file: Shared<str>,
     /// Line in the file, from 1.
     pub line: u64,
     /// What is to be done.
@@ -100,6 +103,18 @@ pub enum Canon {
         /// True (M67): it changes with the beginning of the next move. False (M68): at once.
         with_motion: bool,
     },
+    /// M66: the machine rests until an input is as it is wanted, or for this time, and reads it.
+    /// The interpreter assumes that the input becomes what is wanted, and is 0 if nothing is
+    /// wanted, unless [`Interpreter::input_read`](crate::Interpreter::input_read) reports another
+    /// value.
+    ReadInput {
+        /// The input.
+        input: Input,
+        /// What it waits for.
+        until: Until,
+        /// Longest time of waiting in s, greater than 0; 0 for [`Until::Now`].
+        seconds: f64,
+    },
     /// T: the tool that the next [`Canon::ChangeTool`] takes.
     SelectTool {
         /// Number of the tool, 0 for none.
@@ -110,7 +125,7 @@ pub enum Canon {
         /// Number of the tool, 0 for none.
         tool: u32,
     },
-    /// M0, M1: the machine rests until it is resumed.
+    /// M0, M1, M60: the machine rests until it is resumed.
     Pause {
         /// True for M1, which only stops if the operator wants it.
         optional: bool,
@@ -123,6 +138,44 @@ pub enum Canon {
     /// M2, M30 or the end of the file. Spindle and coolant have been switched off, and nothing
     /// follows.
     End,
+}
+
+impl Canon {
+    /// Whether the machine comes to rest after it, and what follows can depend on what happens
+    /// then: a probe, M66, M6, M0, M1 and M60.
+    pub fn is_sync_point(&self) -> bool {
+        matches!(
+            self,
+            Self::Probe { .. }
+                | Self::ReadInput { .. }
+                | Self::ChangeTool { .. }
+                | Self::Pause { .. }
+        )
+    }
+}
+
+/// An input that a program can read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// P of M66: number of a digital input, from 0.
+    Digital(u32),
+    /// E of M66: number of an analog input, from 0.
+    Analog(u32),
+}
+
+/// What M66 waits for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// L0: nothing; the input is only read.
+    Now,
+    /// L1: the input goes from low to high.
+    Rise,
+    /// L2: the input goes from high to low.
+    Fall,
+    /// L3: the input is high.
+    High,
+    /// L4: the input is low.
+    Low,
 }
 
 /// How fast a move is.

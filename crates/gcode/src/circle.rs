@@ -1,5 +1,5 @@
-//! Geometry in a plane: polar coordinates, and of arcs the centre from R, the radii that must agree,
-//! and the angle from start to end. All lengths are in mm.
+//! Geometry in a plane: polar coordinates, and of arcs the centre from R, the radii that must
+//! agree, and the angle from start to end. All lengths are in mm.
 
 use crate::error::ErrorKind;
 use std::f64::consts::TAU;

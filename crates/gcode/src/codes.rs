@@ -41,7 +41,7 @@ pub(crate) enum Group {
     SpindleMode,
     /// M62 to M68.
     Output,
-    /// M0, M1, M2, M30.
+    /// M0, M1, M2, M30, M60, M98, M99.
     Stop,
     /// M6.
     Tool,
@@ -88,7 +88,7 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
         200 | 210 => Group::Units,
         400 => Group::CutterRadius,
         80 => Group::Diameter,
-        431 | 490 => Group::ToolLength,
+        430..=432 | 490 => Group::ToolLength,
         980 | 990 => Group::Retract,
         540 | 550 | 560 | 570 | 580 | 590..=593 => Group::System,
         610 | 611 | 640 => Group::Path,
@@ -96,7 +96,6 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
         410 | 411 | 420 | 421 => {
             return Err(Some("cutter compensation; let the CAM program compute the path"));
         }
-        430 | 432 => return Err(Some("there is no tool table; give the offset with G43.1")),
         330 | 331 => return Err(Some("motion in step with the spindle, which is not measured")),
         760 => return Err(Some("a threading cycle; the spindle is not measured")),
         950 => return Err(Some("feed per turn of the spindle; use G94 or G93")),
@@ -119,21 +118,18 @@ fn g_group(tenths: u16) -> Result<Group, Option<&'static str>> {
 /// The group of an M code, or why it is not done.
 fn m_group(tenths: u16) -> Result<Group, Option<&'static str>> {
     Ok(match tenths {
-        0 | 10 | 20 | 300 => Group::Stop,
+        0 | 10 | 20 | 300 | 600 | 980 | 990 => Group::Stop,
         30 | 40 | 50 => Group::Spindle,
         60 => Group::Tool,
         70 | 80 | 90 => Group::Coolant,
         480 | 490 => Group::Overrides,
-        620 | 630 | 640 | 650 | 670 | 680 => Group::Output,
+        620 | 630 | 640 | 650 | 660 | 670 | 680 => Group::Output,
         190 => return Err(Some("the spindle is not oriented")),
         500 | 510 | 520 | 530 => {
             return Err(Some("single overrides and adaptive feed; use M48 and M49"));
         }
-        600 => return Err(Some("pallets; use M0")),
-        610 => return Err(Some("there is no tool table; use T and M6")),
-        660 => return Err(Some("waiting for an input; use M0")),
+        610 => return Err(Some("a tool without its change; use T and M6")),
         700 | 710 | 720 | 730 => return Err(Some("saved modes; write the modes anew")),
-        980 | 990 => return Err(Some("subroutines by M98; use o100 sub and o100 call")),
         _ if (1000..=1990).contains(&tenths) && tenths.is_multiple_of(10) => {
             return Err(Some("programs of the user are not run"));
         }

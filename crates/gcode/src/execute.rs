@@ -1,13 +1,15 @@
 //! Executes a line, in the order of LinuxCNC whatever the order of its words: feed mode, feed,
 //! spindle speed, tool, outputs, tool change, spindle, coolant, overrides, dwell, plane, units,
 //! distance modes, retract mode, tool length, coordinate system, path mode, stored places and
-//! offsets, motion, stop.
+//! offsets, motion, stop or call.
 
 use crate::canon::{Canon, PathMode, Plane};
 use crate::codes::{Code, Group};
 use crate::error::{ErrorKind, Fault};
-use crate::motion::{FURTHEST, MOST_SECONDS, Moved, Mover};
-use crate::outcome::Outcome;
+use crate::frame::FURTHEST;
+use crate::inputs_outputs;
+use crate::motion::{MOST, MOST_SECONDS, Moved, Mover};
+use crate::outcome::{Jump, Outcome};
 use crate::request::Request;
 use crate::state::{Motion, State, numbers};
 use crate::switches;
@@ -25,7 +27,7 @@ pub(crate) fn execute(
     let inverse_feed = feed(state, request)?;
     switches::spindle_speed(state, request, out)?;
     switches::tool(state, request, out)?;
-    switches::output(request, out)?;
+    inputs_outputs::execute(state, request, out)?;
     switches::change_tool(state, request, out);
     switches::spindle(state, request, out);
     switches::coolant(state, request, out);
@@ -37,9 +39,8 @@ pub(crate) fn execute(
     let mut mover = Mover { state, request, code, inverse_feed };
     path(&mut mover, out)?;
     offsets_and_motion(&mut mover, out)?;
-    request.finish()?;
-    stop(state, request, out);
-    Ok(())
+    stop(state, request, out)?;
+    request.finish()
 }
 
 /// Values of F besides 0. Smaller or greater ones are mistakes, and their times could overflow.
@@ -104,10 +105,10 @@ fn modes(state: &mut State, request: &Request) {
     }
 }
 
-/// G43.1, G49, G54 to G59.3, G61, G61.1 and G64.
+/// G43, G43.1, G43.2, G49, G54 to G59.3, G61, G61.1 and G64.
 fn path(mover: &mut Mover<'_>, out: &mut Outcome) -> Result<(), Fault> {
     if let Some(code) = mover.request.code(Group::ToolLength) {
-        if let Some(other) = uses_axis_words(mover).filter(|_| code.tenths == 431) {
+        if let Some(other) = uses_axis_words(mover).filter(|_| matches!(code.tenths, 431 | 432)) {
             return Err(axes_twice(code, other));
         }
         mover.tool_length(code)?;
@@ -160,7 +161,7 @@ fn offsets_and_motion(mover: &mut Mover<'_>, out: &mut Outcome) -> Result<(), Fa
             return Err(axes_twice(code, motion));
         }
         match code.tenths {
-            100 => mover.set_system(code)?,
+            100 => mover.set_data(code)?,
             280 => out.before.extend(mover.go_home(numbers::HOME_28)?),
             300 => out.before.extend(mover.go_home(numbers::HOME_30)?),
             281 => mover.store_home(numbers::HOME_28),
@@ -224,15 +225,25 @@ fn standing_code(state: &State, request: &Request) -> Code {
     Code { letter: b'g', tenths, column: request.column }
 }
 
-/// M0, M1, M2 and M30.
-fn stop(state: &mut State, request: &Request, out: &mut Outcome) {
-    match request.code(Group::Stop).map(|code| code.tenths) {
-        Some(0) => out.after.push_back(Canon::Pause { optional: false }),
-        Some(10) => out.after.push_back(Canon::Pause { optional: true }),
-        Some(_) => {
+/// M0, M1, M2, M30, M60, M98 and M99.
+fn stop(state: &mut State, request: &mut Request, out: &mut Outcome) -> Result<(), Fault> {
+    let Some(code) = request.code(Group::Stop) else { return Ok(()) };
+    match code.tenths {
+        0 | 600 => out.after.push_back(Canon::Pause { optional: false }),
+        10 => out.after.push_back(Canon::Pause { optional: true }),
+        980 => {
+            let number = request.take_whole(b'p', MOST, "0 to 10^9")?;
+            let word = "P, the number of the subroutine";
+            let missing = ErrorKind::Missing { code: code.to_string(), word };
+            let number = number.ok_or(Fault::new(code.column, missing))?;
+            let times = request.take_whole(b'l', MOST, "0 to 10^9")?.unwrap_or(1);
+            out.jump = Some(Jump::Call { number, times, column: code.column });
+        }
+        990 => out.jump = Some(Jump::Return { column: code.column }),
+        _ => {
             switches::end(state, &mut out.after);
             out.ends = true;
         }
-        None => {}
     }
+    Ok(())
 }

@@ -9,6 +9,9 @@
 
 use crate::canon::Point;
 
+/// A coordinate further from zero than this, in mm or degrees, is a mistake of the program.
+pub(crate) const FURTHEST: f64 = 1e9;
+
 /// The offsets in effect.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Frame {
@@ -16,7 +19,7 @@ pub(crate) struct Frame {
     pub(crate) system: Point,
     /// Offset of G92; zero while it is not in effect.
     pub(crate) g92: Point,
-    /// Offset of the tool (G43.1).
+    /// Offset of the tool (G43, G43.1, G43.2).
     pub(crate) tool: Point,
     /// Sine and cosine of the rotation, if there is one.
     sin_cos: Option<(f64, f64)>,
@@ -48,6 +51,12 @@ impl Frame {
     pub(crate) fn origin_for(&self, machine: &Point, program: &Point) -> Point {
         let place = self.rotated(std::array::from_fn(|axis| program[axis] + self.g92[axis]));
         std::array::from_fn(|axis| machine[axis] - self.tool[axis] - place[axis])
+    }
+
+    /// The tool offset with which a machine place has these program coordinates (G10 L10).
+    pub(crate) fn tool_offset_for(&self, machine: &Point, program: &Point) -> Point {
+        let place = self.rotated(std::array::from_fn(|axis| program[axis] + self.g92[axis]));
+        std::array::from_fn(|axis| machine[axis] - self.system[axis] - place[axis])
     }
 
     fn rotated(&self, place: Point) -> Point {

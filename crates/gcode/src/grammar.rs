@@ -4,7 +4,7 @@
 //! block      = ["/"] ["n" digits] (control | (word | assignment)*)
 //! word       = letter value
 //! assignment = "#" reference "=" value
-//! control    = "o" label o-word value*
+//! control    = "o" label [o-word value*]
 //! label      = digits | "<" name ">" | "#" reference | "[" chain "]"
 //! ```
 //!
@@ -115,6 +115,9 @@ fn control(input: &mut Input<'_>) -> Parsed<Control> {
     let label = label(input)?;
     let at = offset(input);
     let column = input.state.column(at);
+    if input.input.is_empty() {
+        return Ok(Control { label, word: OWord::Program, column, values: Vec::new() });
+    }
     let mut word = None;
     for known in OWord::ALL {
         if opt(literal(known.text())).parse_next(input)?.is_some() {

@@ -1,28 +1,31 @@
 //! Reads a program line by line and gives its canonical moves one by one.
 
+use crate::assign;
 use crate::canon::{Canon, Point, Step};
 use crate::comment;
 use crate::error::{ErrorKind, Fault, GcodeError};
-use crate::evaluate::{LAST_PARAMETER, Values as _, evaluate, parameter_number};
+use crate::evaluate::{LAST_PARAMETER, Values as _};
 use crate::execute;
+use crate::files::{Files, Folder};
 use crate::flow::Flow;
 use crate::grammar::{self, LineKind};
 use crate::motion::record_probe;
 use crate::options::Options;
 use crate::outcome::Outcome;
-use crate::outline::Outline;
 use crate::request::Request;
 use crate::seal::Seal;
-use crate::source::{Place, Source};
 use crate::squeeze::Squeezed;
-use crate::state::State;
+use crate::state::{State, numbers};
 use crate::switches;
-use crate::syntax::{Block, Reference};
-use crate::values;
+use crate::syntax::Block;
+use crate::tools::ToolTable;
 use std::fs::File;
 use std::io::{Read, Seek};
 use std::path::Path;
 use std::sync::Arc;
+
+/// Lines after which the files are checked for changes.
+const LINES_OF_A_CHECK: u32 = 1000;
 
 /// A program that is being read: an iterator over its [`Step`]s.
 ///
@@ -45,11 +48,11 @@ use std::sync::Arc;
 /// ```
 #[derive(Debug)]
 pub struct Interpreter<R> {
-    name: Arc<str>,
-    source: Source<R>,
-    seal: Option<Seal>,
+    files: Files<R>,
     flow: Flow,
     state: State,
+    /// The file of the present line.
+    file: Arc<str>,
     line: Squeezed,
     block: Block,
     /// Steps of the present line that are not given yet.
@@ -58,25 +61,30 @@ pub struct Interpreter<R> {
     /// Lines that may still run again.
     blocks_left: u64,
     blocks: u64,
-    /// The furthest place up to which the program has been read.
-    furthest: Place,
+    /// Lines until the files are checked for changes again.
+    until_check: u32,
+    /// Bytes of the main program up to the furthest line that was executed outside of subroutines.
+    furthest: u64,
+    /// Lines with `%` so far.
     percents: u32,
     is_over: bool,
 }
 
 impl Interpreter<File> {
-    /// Opens a file.
+    /// Opens a file. Subroutines that are not in it are looked for in files of their names beside
+    /// it: `o<name> call` in `name.ngc`.
     ///
     /// # Errors
-    /// As [`Interpreter::new`], and if the file cannot be read. If the file changes before its last
-    /// step has been given, the iterator ends with an error.
+    /// As [`Interpreter::new`], and if the file cannot be read. If one of the files changes before
+    /// the last step has been given, the iterator ends with an error.
     pub fn open(path: &Path, options: &Options) -> Result<Self, GcodeError> {
         let name: Arc<str> = path.display().to_string().into();
         let fail = |kind| GcodeError { file: name.clone(), line: 0, column: 0, kind };
         let (file, seal) = Seal::open(path).map_err(fail)?;
-        let mut this = Self::new(file, &name, options)?;
-        this.seal = Some(seal);
-        Ok(this)
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let folder = Folder { path: folder, open: Seal::open };
+        let files = Files::new(file, name, Some(seal), Some(folder), options.block_delete)?;
+        Ok(Self::with_files(files, options))
     }
 }
 
@@ -88,23 +96,22 @@ impl<R: Read + Seek> Interpreter<R> {
     /// # Errors
     /// The program cannot be read, or an O-word is malformed or without its beginning or end.
     pub fn new(input: R, name: &str, options: &Options) -> Result<Self, GcodeError> {
-        let name: Arc<str> = name.into();
-        let fail = |kind| GcodeError { file: name.clone(), line: 0, column: 0, kind };
-        let mut source = Source::new(input).map_err(fail)?;
-        let outline = Outline::read(&mut source, &name, options.block_delete)?;
-        source.jump(Place::default()).map_err(fail)?;
-        let mut state = State::new(options.start);
+        let files = Files::new(input, name.into(), None, None, options.block_delete)?;
+        Ok(Self::with_files(files, options))
+    }
+
+    fn with_files(files: Files<R>, options: &Options) -> Self {
+        let mut state = State::new(options.start, options.tools.clone());
         for &(number, value) in &options.parameters {
             if (1..=LAST_PARAMETER).contains(&usize::from(number)) && value.is_finite() {
                 state.memory.set(number.into(), value);
             }
         }
         state.refresh_frame();
-        Ok(Self {
-            name,
-            source,
-            seal: None,
-            flow: Flow::new(outline),
+        Self {
+            file: files.name(0).clone(),
+            files,
+            flow: Flow::default(),
             state,
             line: Squeezed::default(),
             block: Block::default(),
@@ -112,10 +119,11 @@ impl<R: Read + Seek> Interpreter<R> {
             block_delete: options.block_delete,
             blocks_left: options.blocks,
             blocks: options.blocks,
-            furthest: Place::default(),
+            until_check: LINES_OF_A_CHECK,
+            furthest: 0,
             percents: 0,
             is_over: false,
-        })
+        }
     }
 
     /// The machine place after the last line that was executed.
@@ -127,6 +135,11 @@ impl<R: Read + Seek> Interpreter<R> {
     /// without a parameter.
     pub fn parameter(&self, number: u16) -> f64 {
         self.state.numbered(number.into())
+    }
+
+    /// The tool table as the program has changed it by G10, if there is one.
+    pub fn tools(&self) -> Option<&ToolTable> {
+        self.state.tools.as_ref()
     }
 
     /// Reports the real machine place after a stop ([`Canon::Pause`] or [`Canon::ChangeTool`]),
@@ -141,6 +154,13 @@ impl<R: Read + Seek> Interpreter<R> {
     pub fn probed(&mut self, at: Point, tripped: bool) {
         self.set_place(at);
         record_probe(&mut self.state, tripped);
+    }
+
+    /// Reports the value at which the last [`Canon::ReadInput`] ended, before the next step is
+    /// asked for: 0 or 1 for digital inputs, any finite value for analog ones, `None` if the input
+    /// did not become what was wanted in time. A program sees it as `#5399`, and `None` as -1.
+    pub fn input_read(&mut self, value: Option<f64>) {
+        self.state.memory.set(numbers::INPUT, value.unwrap_or(-1.0));
     }
 
     /// The next step of the present line.
@@ -166,56 +186,74 @@ impl<R: Read + Seek> Interpreter<R> {
 
     /// Reads and executes lines until there is a step; `None` after the last one.
     fn next_step(&mut self) -> Result<Option<Step>, Fault> {
-        let whole = |kind| Fault::new(0, kind);
         loop {
-            if let Some(canon) = self.pending().map_err(whole)? {
-                return Ok(Some(Step { line: self.state.line, canon }));
+            if let Some(canon) = self.pending().map_err(whole_line)? {
+                if canon.is_sync_point() {
+                    self.until_check = 0;
+                }
+                return Ok(Some(Step { file: self.file.clone(), line: self.state.line, canon }));
             }
             if self.outcome.ends {
                 return Ok(None);
             }
-            let at = self.source.next_place();
-            self.state.line = at.lines + 1;
-            if !self.source.advance().map_err(whole)? {
-                // The end is at the last line, not behind it.
-                self.state.line = at.lines.max(1);
-                self.end();
-                continue;
+            if self.until_check == 0 {
+                self.files.check()?;
+                self.until_check = LINES_OF_A_CHECK;
             }
-            if at.offset < self.furthest.offset {
-                self.count_block().map_err(whole)?;
-            } else {
-                self.furthest = self.source.next_place();
-            }
-            self.line.read(self.source.line())?;
-            match grammar::kind(&self.line) {
-                LineKind::Deletable if self.block_delete => continue,
-                LineKind::Percent => {
-                    self.percents += 1;
-                    if self.percents == 2 {
-                        self.end();
-                    }
-                    continue;
-                }
-                _ => {}
-            }
-            grammar::read(&self.line, &mut self.block)?;
-            for text in &self.line.comments {
-                self.outcome.before.push_back(comment::canon(text, &self.state));
-            }
-            if let Some(control) = &self.block.control {
-                if let Some(next) = self.flow.execute(at.offset, control, &mut self.state)? {
-                    self.source.jump(next).map_err(whole)?;
-                }
-            } else {
-                self.execute()?;
-            }
+            self.until_check -= 1;
+            self.next_line()?;
         }
     }
 
-    fn end(&mut self) {
+    /// Reads and executes a line.
+    fn next_line(&mut self) -> Result<(), Fault> {
+        let at = self.files.next();
+        self.state.line = at.place.lines + 1;
+        self.file.clone_from(self.files.name(at.file));
+        if !self.files.advance().map_err(whole_line)? {
+            // The end is at the last line, not behind it.
+            self.state.line = at.place.lines.max(1);
+            return self.end_of_file();
+        }
+        if self.flow.is_in_call() || at.place.offset < self.furthest {
+            self.count_block().map_err(whole_line)?;
+        } else {
+            self.furthest = self.files.next().place.offset;
+        }
+        self.line.read(self.files.line())?;
+        match grammar::kind(&self.line) {
+            LineKind::Deletable if self.block_delete => return Ok(()),
+            LineKind::Percent => {
+                self.percents += 1;
+                return if self.percents == 2 { self.end_of_file() } else { Ok(()) };
+            }
+            LineKind::Deletable | LineKind::Block => {}
+        }
+        grammar::read(&self.line, &mut self.block)?;
+        for text in &self.line.comments {
+            self.outcome.before.push_back(comment::canon(text, &self.state));
+        }
+        let next = if let Some(control) = &self.block.control {
+            self.flow.execute(&mut self.files, at, control, &mut self.state)?
+        } else {
+            self.execute()?;
+            let following = self.files.next();
+            match self.outcome.jump.take() {
+                None => None,
+                Some(jump) => self.flow.jump(&mut self.files, following, jump, &mut self.state)?,
+            }
+        };
+        next.map_or(Ok(()), |next| self.files.jump(next).map_err(whole_line))
+    }
+
+    /// The end of the file, or the second `%`.
+    fn end_of_file(&mut self) -> Result<(), Fault> {
+        if self.flow.is_in_call() {
+            return Err(Fault::new(0, ErrorKind::NoReturn));
+        }
         switches::end(&mut self.state, &mut self.outcome.after);
         self.outcome.ends = true;
+        Ok(())
     }
 
     /// Executes a line without O-word. Assignments take effect after all values are computed.
@@ -224,49 +262,8 @@ impl<R: Read + Seek> Interpreter<R> {
             return Ok(());
         }
         let mut request = Request::new(&self.block, &self.state)?;
-        self.assign()?;
+        assign::assign(&mut self.state, &self.block.assignments)?;
         execute::execute(&mut self.state, &mut request, &mut self.outcome)
-    }
-
-    fn assign(&mut self) -> Result<(), Fault> {
-        /// What is assigned to.
-        enum Target<'b> {
-            Number(usize),
-            Name(&'b str),
-        }
-        if self.block.assignments.is_empty() {
-            return Ok(());
-        }
-        let mut computed = Vec::with_capacity(self.block.assignments.len());
-        for assignment in &self.block.assignments {
-            let read_only = |name| Fault::new(assignment.column, ErrorKind::ReadOnly(name));
-            let target = match &assignment.reference {
-                Reference::Number(number) => {
-                    let number = parameter_number(number, &self.state)?;
-                    if values::is_read_only(number) {
-                        return Err(read_only(number.to_string()));
-                    }
-                    Target::Number(number)
-                }
-                Reference::Name(name) => {
-                    if values::machine_name(&self.state, name).is_some() {
-                        return Err(read_only(format!("<{name}>")));
-                    }
-                    Target::Name(name)
-                }
-            };
-            computed.push((target, evaluate(&assignment.value, &self.state)?));
-        }
-        for (target, value) in computed {
-            match target {
-                Target::Number(number) => self.state.memory.set(number, value),
-                Target::Name(name) => {
-                    let set = self.state.memory.set_name(name, value);
-                    set.map_err(|kind| Fault::new(0, kind))?;
-                }
-            }
-        }
-        Ok(())
     }
 }
 
@@ -277,23 +274,29 @@ impl<R: Read + Seek> Iterator for Interpreter<R> {
         if self.is_over {
             return None;
         }
-        let step = self.next_step();
-        let is_last = match &step {
+        let mut step = self.next_step();
+        self.is_over = match &step {
             Ok(Some(step)) => step.canon == Canon::End,
             Ok(None) | Err(_) => true,
         };
-        self.is_over = is_last;
-        let changed = || self.seal.as_ref().is_some_and(|seal| !seal.holds());
-        if is_last && changed() {
-            let kind = ErrorKind::Changed;
-            return Some(Err(GcodeError { file: self.name.clone(), line: 0, column: 0, kind }));
+        // A mistake in a file that has changed is none of the program's.
+        if self.is_over
+            && let Err(changed) = self.files.check()
+        {
+            step = Err(changed);
         }
         match step {
             Ok(step) => step.map(Ok),
-            Err(Fault { column, kind }) => {
-                let (file, line) = (self.name.clone(), self.state.line);
+            Err(Fault { column, kind, elsewhere }) => {
+                let here = || (self.file.clone(), self.state.line);
+                let (file, line) = elsewhere.map_or_else(here, |place| *place);
                 Some(Err(GcodeError { file, line, column, kind }))
             }
         }
     }
+}
+
+/// A mistake that belongs to a whole line.
+fn whole_line(kind: ErrorKind) -> Fault {
+    Fault::new(0, kind)
 }

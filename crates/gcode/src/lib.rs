@@ -8,20 +8,23 @@
 //! lines    source     the file, line by line, and jumps
 //!          squeeze    without comments and blanks, with columns
 //!          grammar -> syntax       words, expressions, O-words
-//! control  outline    all O-words and where they lead, before the first line is executed
+//! control  files      the program, and the files beside it whose subroutines it calls
+//!          outline    all O-words and where they lead, before the first line is executed
 //!          flow       which line is next
-//! values   evaluate   expressions; parameters in memory and values
+//! values   evaluate   expressions; parameters in memory and values; assign
 //! words    request    one code of each modal group (codes), one value of each letter
 //!          execute    in the order of LinuxCNC, on a state with a frame of offsets
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
 //!            offsets  coordinate systems and stored places
-//!            switches spindle, coolant, tool, outputs
+//!            tool_length offsets of tools; tools: the tool table
+//!            switches spindle, coolant, tool; inputs_outputs
 //! ```
 //!
 //! The memory is constant, whatever the length of the program, but for the O-words. No program
 //! makes the interpreter panic or run without end: brackets, calls and lines that run again are
 //! limited.
 
+mod assign;
 pub mod canon;
 mod circle;
 mod codes;
@@ -31,9 +34,11 @@ mod drill;
 pub mod error;
 mod evaluate;
 mod execute;
+mod files;
 mod flow;
 mod frame;
 mod grammar;
+mod inputs_outputs;
 mod interpreter;
 mod memory;
 mod motion;
@@ -49,9 +54,14 @@ mod squeeze;
 mod state;
 mod switches;
 mod syntax;
+mod tool_length;
+mod tools;
 mod values;
 
-pub use canon::{AXES, AXIS_LETTERS, Arc, Canon, Pace, PathMode, Plane, Point, Step, Turn};
+pub use canon::{
+    AXES, AXIS_LETTERS, Arc, Canon, Input, Pace, PathMode, Plane, Point, Step, Turn, Until,
+};
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
 pub use options::{DEFAULT_BLOCKS, Options};
+pub use tools::{Tool, ToolTable};

@@ -19,7 +19,8 @@ type Names = HashMap<Box<str>, f64>;
 /// What a call puts aside until its return.
 #[derive(Debug)]
 pub(crate) struct SetAside {
-    arguments: [f64; ARGUMENTS],
+    /// `#1` to `#30`, if the call has its own.
+    arguments: Option<[f64; ARGUMENTS]>,
     names: Names,
 }
 
@@ -78,12 +79,24 @@ impl Memory {
         for (number, place) in self.numbered[1..=ARGUMENTS].iter_mut().enumerate() {
             *place = values.get(number).copied().unwrap_or(0.0);
         }
-        SetAside { arguments, names: std::mem::take(&mut self.local) }
+        SetAside { arguments: Some(arguments), names: std::mem::take(&mut self.local) }
+    }
+
+    /// Begins a call of M98, which has its own names but not its own `#1` to `#30`.
+    pub(crate) fn enter_numbered(&mut self) -> SetAside {
+        SetAside { arguments: None, names: std::mem::take(&mut self.local) }
+    }
+
+    /// Forgets the names of the running call.
+    pub(crate) fn forget_names(&mut self) {
+        self.local.clear();
     }
 
     /// Ends a call.
     pub(crate) fn leave(&mut self, aside: SetAside) {
-        self.numbered[1..=ARGUMENTS].copy_from_slice(&aside.arguments);
+        if let Some(arguments) = aside.arguments {
+            self.numbered[1..=ARGUMENTS].copy_from_slice(&arguments);
+        }
         self.local = aside.names;
     }
 }

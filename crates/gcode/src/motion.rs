@@ -5,16 +5,14 @@ use crate::circle::{self, Vector};
 use crate::codes::{Code, Group};
 use crate::cycle::Cycle;
 use crate::error::{ErrorKind, Fault};
+use crate::frame::FURTHEST;
 use crate::request::Request;
 use crate::state::{Motion, State, numbers};
-
-/// A coordinate further from zero than this, in mm or degrees, is a mistake of the program.
-pub(crate) const FURTHEST: f64 = 1e9;
 
 /// Places that differ by less than this, in mm or degrees, are the same but for rounding.
 const SAME: f64 = 1e-9;
 
-/// Greatest number of turns of an arc and of holes of a line.
+/// Greatest number of turns of an arc, of holes of a line, and of calls of M98.
 pub(crate) const MOST: u32 = 1_000_000_000;
 
 /// Longest rest in s.
@@ -74,10 +72,8 @@ impl Mover<'_> {
             return Err(Fault::new(g53.column, ErrorKind::MachineIncremental));
         }
         let mut machine = self.state.machine;
-        for (axis, &letter) in AXIS_WORDS.iter().enumerate() {
-            if let Some(value) = self.request.take(letter) {
-                machine[axis] = value * self.state.axis_unit(axis);
-            }
+        for (axis, word) in self.axis_values().into_iter().enumerate() {
+            machine[axis] = word.unwrap_or(machine[axis]);
         }
         self.near(&machine)?;
         let program = self.state.frame.to_program(&machine);
@@ -94,12 +90,19 @@ impl Mover<'_> {
         Ok(to)
     }
 
+    /// The values of the axis words, in mm and degrees.
+    pub(crate) fn axis_values(&mut self) -> [Option<f64>; AXES] {
+        std::array::from_fn(|axis| {
+            let value = self.request.take(AXIS_WORDS[axis]);
+            value.map(|value| value * self.state.axis_unit(axis))
+        })
+    }
+
     /// The program place that the axis words of the line give.
     pub(crate) fn axis_words(&mut self) -> Point {
         let mut to = self.state.program;
-        for (axis, &letter) in AXIS_WORDS.iter().enumerate() {
-            if let Some(value) = self.request.take(letter) {
-                let value = value * self.state.axis_unit(axis);
+        for (axis, word) in self.axis_values().into_iter().enumerate() {
+            if let Some(value) = word {
                 to[axis] = if self.state.modal.incremental { to[axis] + value } else { value };
             }
         }

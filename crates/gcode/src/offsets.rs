@@ -1,4 +1,4 @@
-//! Executes the codes that change offsets or go to stored places: G10, G28, G30, G43.1, G49, G54 to
+//! Executes the codes that change coordinate systems or go to stored places: G10, G28, G30, G54 to
 //! G59.3, and G92.
 
 use crate::canon::{AXES, Canon};
@@ -20,38 +20,23 @@ impl Mover<'_> {
         self.state.refresh_frame();
     }
 
-    /// G43.1 and G49.
-    pub(crate) fn tool_length(&mut self, code: Code) -> Result<(), Fault> {
-        if code.tenths == 490 {
-            self.state.frame.tool = [0.0; AXES];
-        } else {
-            if !self.has_axis_words() {
-                return Err(missing(code, "the offset of an axis"));
-            }
-            for (axis, &letter) in AXIS_WORDS.iter().enumerate() {
-                if let Some(value) = self.request.take(letter) {
-                    self.state.frame.tool[axis] = value * self.state.axis_unit(axis);
-                }
-            }
-            let offset = self.state.frame.tool;
-            self.near(&offset)?;
-        }
-        self.state.refresh_frame();
-        Ok(())
-    }
-
     pub(crate) fn has_axis_words(&self) -> bool {
         AXIS_WORDS.iter().any(|&letter| self.request.has(letter))
     }
 
-    /// G10 L2 and L20: the origin of a coordinate system.
-    pub(crate) fn set_system(&mut self, code: Code) -> Result<(), Fault> {
-        let kinds = "2 or 20";
-        let kind = self.request.take_whole(b'l', 20, kinds)?;
-        let kind = kind.ok_or_else(|| missing(code, "L2 or L20"))?;
-        if kind != 2 && kind != 20 {
-            return Err(self.request.out_of_range(b'l', kind.into(), kinds));
+    /// G10.
+    pub(crate) fn set_data(&mut self, code: Code) -> Result<(), Fault> {
+        let kinds = "1, 2, 10 or 20";
+        match self.request.take_whole(b'l', 20, kinds)? {
+            None => Err(missing(code, "L1, L2, L10 or L20")),
+            Some(kind @ (1 | 10)) => self.set_tool(code, kind),
+            Some(kind @ (2 | 20)) => self.set_system(code, kind),
+            Some(kind) => Err(self.request.out_of_range(b'l', kind.into(), kinds)),
         }
+    }
+
+    /// G10 L2 and L20: the origin of a coordinate system.
+    fn set_system(&mut self, code: Code, kind: u32) -> Result<(), Fault> {
         let system = self.request.take_whole(b'p', SYSTEMS, "0 to 9")?;
         let system = match system.ok_or_else(|| missing(code, "P, the coordinate system"))? {
             0 => self.state.modal.system,
@@ -64,12 +49,10 @@ impl Mover<'_> {
             self.state.memory.set(numbers::ROTATION + step, degrees);
         }
         let mut origin = self.state.point(numbers::ORIGIN + step);
-        let words = AXIS_WORDS.map(|letter| self.request.take(letter));
+        let words = self.axis_values();
         if kind == 2 {
             for (axis, word) in words.into_iter().enumerate() {
-                if let Some(value) = word {
-                    origin[axis] = value * self.state.axis_unit(axis);
-                }
+                origin[axis] = word.unwrap_or(origin[axis]);
             }
         } else {
             // The program place that the words leave out is the present one of this system.
@@ -78,9 +61,7 @@ impl Mover<'_> {
             frame.set_rotation(self.state.memory.get(numbers::ROTATION + step));
             let mut program = frame.to_program(&self.state.machine);
             for (axis, word) in words.into_iter().enumerate() {
-                if let Some(value) = word {
-                    program[axis] = value * self.state.axis_unit(axis);
-                }
+                program[axis] = word.unwrap_or(program[axis]);
             }
             let moved = frame.origin_for(&self.state.machine, &program);
             let is_turned = frame.is_rotated() && (words[0].is_some() || words[1].is_some());
@@ -134,9 +115,8 @@ impl Mover<'_> {
             return Err(missing(code, "the coordinate of an axis"));
         }
         let mut offset = self.state.frame.g92;
-        for (axis, &letter) in AXIS_WORDS.iter().enumerate() {
-            if let Some(value) = self.request.take(letter) {
-                let value = value * self.state.axis_unit(axis);
+        for (axis, word) in self.axis_values().into_iter().enumerate() {
+            if let Some(value) = word {
                 offset[axis] += self.state.program[axis] - value;
             }
         }

@@ -1,6 +1,7 @@
 //! How a program is read: where the machine is, what it has kept, and when a loop has no end.
 
 use crate::canon::Point;
+use crate::tools::ToolTable;
 
 /// Lines that loops and subroutines may run by default.
 pub const DEFAULT_BLOCKS: u64 = 10_000_000;
@@ -18,16 +19,20 @@ pub struct Options {
     /// Values of numbered parameters at the beginning, such as offsets that the machine has kept
     /// (`#5221` is X of G54, in mm). Numbers without a parameter are ignored.
     pub parameters: Vec<(u16, f64)>,
+    /// The tools of the machine. Without a table, T takes any number, and G43 is refused.
+    pub tools: Option<ToolTable>,
 }
 
 impl Default for Options {
-    /// Machine zero, lines with `/` are left out, [`DEFAULT_BLOCKS`], no offsets.
+    /// Machine zero, lines with `/` are left out, [`DEFAULT_BLOCKS`], no offsets, no tool
+    /// table.
     fn default() -> Self {
         Self {
             start: Point::default(),
             block_delete: true,
             blocks: DEFAULT_BLOCKS,
             parameters: Vec::new(),
+            tools: None,
         }
     }
 }

@@ -1,4 +1,5 @@
-//! What a line gives: a queue of moves and actions, with a drilling cycle in its middle.
+//! What a line gives: a queue of moves and actions, with a drilling cycle in its middle, and a
+//! jump.
 
 use crate::canon::Canon;
 use crate::cycle::Cycle;
@@ -12,4 +13,15 @@ pub(crate) struct Outcome {
     pub(crate) after: VecDeque<Canon>,
     /// M2 or M30.
     pub(crate) ends: bool,
+    /// M98 or M99.
+    pub(crate) jump: Option<Jump>,
+}
+
+/// A jump by an M code, with the column of the code.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Jump {
+    /// M98: calls subroutine `number`, some times.
+    Call { number: u32, times: u32, column: u32 },
+    /// M99.
+    Return { column: u32 },
 }

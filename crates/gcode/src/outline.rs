@@ -4,20 +4,17 @@
 //! is therefore refused before anything moves, and a loop, branch or call is a jump to a place in
 //! the file that is known. The memory grows with the number of O-words only.
 
-use crate::error::{ErrorKind, Fault, GcodeError};
+mod building;
+
+use crate::error::GcodeError;
 use crate::grammar::{self, LineKind};
+use crate::outline::building::Building;
 use crate::source::{Place, Source};
 use crate::squeeze::Squeezed;
-use crate::syntax::{Block, Label, OWord};
+use crate::syntax::{Block, OWord};
 use std::collections::HashMap;
 use std::io::{Read, Seek};
 use std::sync::Arc;
-
-/// Greatest number of O-words in a file, which bounds the memory.
-const MOST_O_WORDS: usize = 100_000;
-
-/// Greatest depth of blocks in blocks.
-const DEEPEST_BLOCK: usize = 100;
 
 /// An O-word in the file.
 #[derive(Debug, Clone, Copy)]
@@ -40,18 +37,27 @@ pub(crate) struct Node {
 #[derive(Debug, Default)]
 pub(crate) struct Outline {
     pub(crate) nodes: Vec<Node>,
-    /// The subroutines by label.
-    subs: HashMap<Box<str>, usize>,
+    /// The subroutines by style and label.
+    subs: HashMap<(Style, Box<str>), usize>,
 }
 
-/// A block that is not closed yet.
-struct Open {
-    label: Box<str>,
-    /// The O-word that opened it.
-    first: usize,
-    /// Its last branch: the same, or the last `elseif` or `else`.
-    last: usize,
-    line: u64,
+/// How a subroutine is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Style {
+    /// `o100 sub` to `o100 endsub`, called by `o100 call`.
+    Words,
+    /// `O100` to `M99`, called by `M98 P100`, as Fanuc's controls have it.
+    Numbered,
+}
+
+impl Style {
+    /// The beginning of a subroutine, as messages show it.
+    pub(crate) fn text(self, label: &str) -> String {
+        match self {
+            Self::Words => format!("o{label} sub"),
+            Self::Numbered => format!("O{label}"),
+        }
+    }
 }
 
 impl Outline {
@@ -103,8 +109,8 @@ impl Outline {
     }
 
     /// The beginning of a subroutine.
-    pub(crate) fn sub(&self, label: &str) -> Option<usize> {
-        self.subs.get(label).copied()
+    pub(crate) fn sub(&self, style: Style, label: &str) -> Option<usize> {
+        self.subs.get(&(style, label.into())).copied()
     }
 }
 
@@ -123,163 +129,4 @@ fn is_control(text: &[u8]) -> bool {
         None => Some(0),
     };
     number.and_then(|at| text.get(at)) == Some(&b'o')
-}
-
-#[derive(Default)]
-struct Building {
-    outline: Outline,
-    open: Vec<Open>,
-}
-
-impl Building {
-    fn add(&mut self, block: &Block, at: Place, after: Place) -> Result<(), Fault> {
-        let Some(control) = &block.control else {
-            return Ok(());
-        };
-        let word = control.word;
-        let this = self.outline.nodes.len();
-        let fault = |kind| Fault::new(control.column, kind);
-        let label = match &control.label {
-            Label::Fixed(label) => label.clone(),
-            Label::Computed(_) if word == OWord::Call => "".into(),
-            Label::Computed(_) => return Err(fault(ErrorKind::ComputedLabel(word.text()))),
-        };
-        if this >= MOST_O_WORDS {
-            return Err(fault(ErrorKind::TooManyOWords(MOST_O_WORDS)));
-        }
-        if self.open.len() >= DEEPEST_BLOCK {
-            return Err(fault(ErrorKind::BlocksTooDeep(DEEPEST_BLOCK)));
-        }
-        let node = Node { word, at, after, leads_to: this, end: this, ends_do: false };
-        self.outline.nodes.push(node);
-        let line = at.lines + 1;
-        match word {
-            OWord::Call => Ok(()),
-            OWord::Sub => self.begin_sub(label, this, line),
-            OWord::While if self.closes(&label, &[OWord::Do]) => {
-                self.outline.nodes[this].ends_do = true;
-                self.end(this);
-                Ok(())
-            }
-            OWord::If | OWord::While | OWord::Do | OWord::Repeat => {
-                self.open.push(Open { label, first: this, last: this, line });
-                Ok(())
-            }
-            OWord::ElseIf | OWord::Else | OWord::EndIf => self.branch(&label, this),
-            OWord::EndWhile => self.end_of(&label, this, OWord::While),
-            OWord::EndRepeat => self.end_of(&label, this, OWord::Repeat),
-            OWord::EndSub => self.end_of(&label, this, OWord::Sub),
-            OWord::Break | OWord::Continue => {
-                self.inside(&label, this, &[OWord::While, OWord::Do, OWord::Repeat])
-            }
-            // The label of `return` is that of the block around it, or any other: it ends the call.
-            OWord::Return => self.inside_sub(&label, this),
-        }
-        .map_err(fault)
-    }
-
-    fn begin_sub(&mut self, label: Box<str>, this: usize, line: u64) -> Result<(), ErrorKind> {
-        if let Some(open) = self.open.last() {
-            return Err(ErrorKind::SubInside(open.label.to_string()));
-        }
-        if let Some(first) = self.outline.subs.insert(label.clone(), this) {
-            let line = self.outline.nodes[first].at.lines + 1;
-            return Err(ErrorKind::SubTwice { label: label.into(), line });
-        }
-        self.open.push(Open { label, first: this, last: this, line });
-        Ok(())
-    }
-
-    /// Whether the innermost open block has this label and begins with one of these words.
-    fn closes(&self, label: &str, words: &[OWord]) -> bool {
-        self.open.last().is_some_and(|open| self.fits(open, label, words))
-    }
-
-    fn fits(&self, open: &Open, label: &str, words: &[OWord]) -> bool {
-        *open.label == *label && words.contains(&self.outline.nodes[open.first].word)
-    }
-
-    /// The error for a word that fits no open block.
-    fn nothing_open(&self, label: &str, this: usize) -> ErrorKind {
-        let open = match self.open.last() {
-            None => "no block is open".to_owned(),
-            Some(open) => {
-                let word = self.outline.nodes[open.first].word.text();
-                format!(
-                    "the innermost open block is `o{} {word}` in line {}",
-                    open.label, open.line
-                )
-            }
-        };
-        let word = self.outline.nodes[this].word.text();
-        ErrorKind::NothingOpen { word, label: label.to_owned(), open }
-    }
-
-    fn branch(&mut self, label: &str, this: usize) -> Result<(), ErrorKind> {
-        let nodes = &self.outline.nodes;
-        let after_else = self.open.last().is_some_and(|open| nodes[open.last].word == OWord::Else);
-        let is_end = nodes[this].word == OWord::EndIf;
-        if !self.closes(label, &[OWord::If]) || after_else && !is_end {
-            return Err(self.nothing_open(label, this));
-        }
-        let Some(open) = self.open.last_mut() else { return Ok(()) };
-        self.outline.nodes[open.last].leads_to = this;
-        open.last = this;
-        if is_end && let Some(open) = self.open.pop() {
-            let mut branch = open.first;
-            while branch != this {
-                self.outline.nodes[branch].end = this;
-                branch = self.outline.nodes[branch].leads_to;
-            }
-        }
-        Ok(())
-    }
-
-    fn end_of(&mut self, label: &str, this: usize, word: OWord) -> Result<(), ErrorKind> {
-        if !self.closes(label, &[word]) {
-            return Err(self.nothing_open(label, this));
-        }
-        self.end(this);
-        Ok(())
-    }
-
-    /// Closes the innermost block: beginning and end lead to each other.
-    fn end(&mut self, this: usize) {
-        if let Some(open) = self.open.pop() {
-            self.outline.nodes[open.first].leads_to = this;
-            self.outline.nodes[this].leads_to = open.first;
-        }
-    }
-
-    /// A word that leads to the beginning of an open block of its label.
-    fn inside(&mut self, label: &str, this: usize, words: &[OWord]) -> Result<(), ErrorKind> {
-        match self.open.iter().rev().find(|open| self.fits(open, label, words)) {
-            Some(open) => {
-                self.outline.nodes[this].leads_to = open.first;
-                Ok(())
-            }
-            None => Err(self.nothing_open(label, this)),
-        }
-    }
-
-    fn inside_sub(&mut self, label: &str, this: usize) -> Result<(), ErrorKind> {
-        match self.open.first().filter(|open| self.outline.nodes[open.first].word == OWord::Sub) {
-            Some(open) => {
-                self.outline.nodes[this].leads_to = open.first;
-                Ok(())
-            }
-            None => Err(self.nothing_open(label, this)),
-        }
-    }
-
-    fn finish(self, name: &Arc<str>) -> Result<Outline, GcodeError> {
-        match self.open.last() {
-            None => Ok(self.outline),
-            Some(open) => {
-                let word = self.outline.nodes[open.first].word.text();
-                let kind = ErrorKind::NotClosed { word, label: open.label.to_string() };
-                Err(GcodeError { file: name.clone(), line: open.line, column: 1, kind })
-            }
-        }
-    }
 }

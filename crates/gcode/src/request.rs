@@ -39,7 +39,7 @@ impl Request {
                     let code = Code::new(word.letter, value, word.column).map_err(fault)?;
                     request.add_code(code).map_err(fault)?;
                 }
-                b'a'..=b'f' | b'i'..=b'l' | b'p'..=b't' | b'x'..=b'z' | b'@' | b'^'
+                b'a'..=b'f' | b'h'..=b'l' | b'p'..=b't' | b'x'..=b'z' | b'@' | b'^'
                     if word.letter != b'd' =>
                 {
                     let given = Given { value, column: word.column, is_used: false };
@@ -70,7 +70,7 @@ impl Request {
         self.codes[group as usize]
     }
 
-    /// The value of a letter, without using it.
+    /// Whether the line has a letter whose value is not used yet.
     pub(crate) fn has(&self, letter: u8) -> bool {
         self.letters[index(letter)].is_some_and(|given| !given.is_used)
     }

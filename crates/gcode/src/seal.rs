@@ -1,4 +1,4 @@
-//! Notices that a file changes while it is read.
+//! Notices that a file changes while it is read, by its length and the time of its last change.
 
 use crate::error::ErrorKind;
 use crate::source::unreadable;

@@ -75,6 +75,7 @@ impl<R: Read + Seek> Source<R> {
     }
 }
 
+/// The error for a file that the operating system does not let be read.
 pub(crate) fn unreadable(error: &io::Error) -> ErrorKind {
     ErrorKind::Unreadable(error.to_string())
 }

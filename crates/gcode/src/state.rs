@@ -3,6 +3,7 @@
 use crate::canon::{AXES, PathMode, Plane, Point, Turn};
 use crate::frame::Frame;
 use crate::memory::Memory;
+use crate::tools::{Tool, ToolTable};
 
 /// mm in an inch.
 pub(crate) const INCH: f64 = 25.4;
@@ -29,10 +30,14 @@ pub(crate) mod numbers {
     pub(crate) const ROTATION: usize = 5230;
     /// Distance of the parameters of two coordinate systems.
     pub(crate) const SYSTEM_STEP: usize = 20;
+    /// Value of the last input that was read, or -1.
+    pub(crate) const INPUT: usize = 5399;
     /// Number of the tool in the spindle.
     pub(crate) const TOOL: usize = 5400;
-    /// Offset of the tool, six axes.
+    /// Offset of the tool in the spindle as the tool table gives it, six axes.
     pub(crate) const TOOL_OFFSET: usize = 5401;
+    /// Diameter of the tool in the spindle, in mm.
+    pub(crate) const TOOL_DIAMETER: usize = 5410;
     /// Present place, six axes, in units of the program.
     pub(crate) const PLACE: usize = 5420;
 }
@@ -105,6 +110,8 @@ pub(crate) struct State {
     pub(crate) memory: Memory,
     pub(crate) modal: Modal,
     pub(crate) frame: Frame,
+    /// The tool table, if there is one.
+    pub(crate) tools: Option<ToolTable>,
     /// The place in machine coordinates.
     pub(crate) machine: Point,
     /// The same place in program coordinates, in mm and degrees.
@@ -115,7 +122,7 @@ pub(crate) struct State {
 
 impl State {
     /// A machine at this place, with the modes in which LinuxCNC starts in millimetres.
-    pub(crate) fn new(machine: Point) -> Self {
+    pub(crate) fn new(machine: Point, tools: Option<ToolTable>) -> Self {
         let modal = Modal {
             motion: Motion::None,
             plane: Plane::Xy,
@@ -137,7 +144,7 @@ impl State {
             cycle: CycleWords::default(),
         };
         let (memory, frame) = (Memory::new(), Frame::default());
-        Self { memory, modal, frame, machine, program: machine, line: 0, call_level: 0 }
+        Self { memory, modal, frame, tools, machine, program: machine, line: 0, call_level: 0 }
     }
 
     /// mm in a unit of length of the program.
@@ -148,6 +155,12 @@ impl State {
     /// mm or degrees in a unit of an axis of the program.
     pub(crate) fn axis_unit(&self, axis: usize) -> f64 {
         if axis < 3 { self.unit() } else { 1.0 }
+    }
+
+    /// The tool in the spindle; of no length if the table does not have it.
+    pub(crate) fn tool(&self) -> Tool {
+        let tool = self.tools.as_ref().and_then(|tools| tools.get(self.modal.tool));
+        tool.copied().unwrap_or_default()
     }
 
     /// Six parameters from this number on.

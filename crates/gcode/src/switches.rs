@@ -1,4 +1,4 @@
-//! Executes the words that switch something: spindle, coolant, tool, outputs, overrides.
+//! Executes the words that switch something: spindle, coolant, tool, overrides.
 
 use crate::canon::{Canon, Turn};
 use crate::codes::Group;
@@ -6,6 +6,7 @@ use crate::error::{ErrorKind, Fault};
 use crate::outcome::Outcome;
 use crate::request::Request;
 use crate::state::State;
+use crate::tools::{LAST_TOOL, TOOL_RANGE};
 use std::collections::VecDeque;
 
 /// Greatest value of S.
@@ -35,28 +36,15 @@ pub(crate) fn tool(
     request: &mut Request,
     out: &mut Outcome,
 ) -> Result<(), Fault> {
-    if let Some(tool) = request.take_whole(b't', 99_999, "0 to 99999")? {
+    if let Some(tool) = request.take_whole(b't', LAST_TOOL, TOOL_RANGE)? {
+        if let Some(table) = state.tools.as_ref().filter(|_| tool != 0)
+            && table.get(tool).is_none()
+        {
+            return Err(request.fault(b't', ErrorKind::UnknownTool(tool)));
+        }
         state.modal.selected_tool = tool;
         out.before.push_back(Canon::SelectTool { tool });
     }
-    Ok(())
-}
-
-/// M62 to M65, M67 and M68.
-pub(crate) fn output(request: &mut Request, out: &mut Outcome) -> Result<(), Fault> {
-    let Some(code) = request.code(Group::Output) else { return Ok(()) };
-    let with_motion = matches!(code.tenths, 620 | 630 | 670);
-    let missing = |word| ErrorKind::Missing { code: code.to_string(), word };
-    out.before.push_back(if code.tenths >= 670 {
-        let index = request.take_whole(b'e', 255, "0 to 255")?;
-        let index = index.ok_or_else(|| Fault::new(code.column, missing("E, the output")))?;
-        let value = request.need(b'q', code, "Q, the value")?;
-        Canon::AnalogOutput { index, value, with_motion }
-    } else {
-        let index = request.take_whole(b'p', 255, "0 to 255")?;
-        let index = index.ok_or_else(|| Fault::new(code.column, missing("P, the output")))?;
-        Canon::DigitalOutput { index, on: matches!(code.tenths, 620 | 640), with_motion }
-    });
     Ok(())
 }
 

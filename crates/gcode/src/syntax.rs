@@ -134,10 +134,12 @@ pub(crate) enum OWord {
     EndRepeat,
     Break,
     Continue,
+    /// No word: the label is the number of a program, which M98 can call.
+    Program,
 }
 
 impl OWord {
-    /// All of them, longer words before their beginnings.
+    /// All that are written, longer words before their beginnings.
     pub(crate) const ALL: [Self; 15] = [
         Self::EndSub,
         Self::EndIf,
@@ -174,6 +176,7 @@ impl OWord {
             Self::EndRepeat => "endrepeat",
             Self::Break => "break",
             Self::Continue => "continue",
+            Self::Program => "",
         }
     }
 

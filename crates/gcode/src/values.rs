@@ -13,10 +13,11 @@ impl Values for State {
             return in_units(&self.program, axis);
         }
         if let Some(axis) = axis_of(numbers::TOOL_OFFSET) {
-            return in_units(&self.frame.tool, axis);
+            return self.tool().offset[axis];
         }
         match number {
             numbers::TOOL => self.modal.tool.into(),
+            numbers::TOOL_DIAMETER => self.tool().diameter,
             numbers::SYSTEM => self.modal.system as f64,
             _ => self.memory.get(number),
         }

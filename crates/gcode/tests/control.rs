@@ -2,7 +2,7 @@
 
 mod support;
 
-use carrystep_gcode::{Canon, Interpreter, Options, Pace, Step};
+use carrystep_gcode::{Canon, Input, Interpreter, Options, Pace, Step, Until};
 use std::io::Cursor;
 use support::{canons, steps, xs};
 
@@ -110,12 +110,34 @@ fn a_probe_that_trips_early_moves_the_place_and_the_parameters() {
     let probe = program.next().unwrap().unwrap();
     assert!(matches!(
         probe,
-        Step { line: 4, canon: Canon::Probe { contact: true, required: true, .. } }
+        Step { line: 4, canon: Canon::Probe { contact: true, required: true, .. }, .. }
     ));
     program.probed([25.4, 0.0, 0.0, 0.0, 0.0, 0.0], true);
     let rest: Vec<Canon> = program.map(|step| step.unwrap().canon).collect();
     let traverse = |x, y| Canon::Traverse { to: [x, y, 0.0, 0.0, 0.0, 0.0] };
     assert_eq!(rest[..3], [traverse(50.8, 0.0), traverse(25.4, 0.0), traverse(25.4, 25.4)]);
+}
+
+#[test]
+fn inputs_become_what_is_wanted_unless_another_value_is_reported() {
+    let wanted = |l| format!("M66 P3 L{l} Q2.5\nG0 X[#5399+10]");
+    for (l, until, x) in [(1, Until::Rise, 11.0), (2, Until::Fall, 10.0), (3, Until::High, 11.0)] {
+        let found = canons(&wanted(l));
+        let input = Input::Digital(3);
+        assert_eq!(found[0], Canon::ReadInput { input, until, seconds: 2.5 });
+        assert_eq!(xs(&wanted(l)), [x]);
+    }
+    let text = wanted(4) + "\nM66 E2\nX#5399";
+    let mut program = Interpreter::new(Cursor::new(text), "p.ngc", &Options::default()).unwrap();
+    program.next();
+    program.input_read(None);
+    let to = |x| Canon::Traverse { to: [x, 0.0, 0.0, 0.0, 0.0, 0.0] };
+    assert_eq!(program.next().unwrap().unwrap().canon, to(9.0));
+    let (input, until) = (Input::Analog(2), Until::Now);
+    let read = Canon::ReadInput { input, until, seconds: 0.0 };
+    assert_eq!(program.next().unwrap().unwrap().canon, read);
+    program.input_read(Some(-2.5));
+    assert_eq!(program.next().unwrap().unwrap().canon, to(-2.5));
 }
 
 #[test]
@@ -176,6 +198,16 @@ fn moves_that_are_shorter_than_rounding_errors_add_up_to_one() {
     let xs = xs(text);
     assert_eq!(xs.len(), 1 + 10);
     assert!((xs[10] - 1.000_000_01).abs() < 1e-12, "{xs:?}");
+}
+
+#[test]
+fn a_small_peck_does_not_return_above_r() {
+    let z = |canon: &Canon| match canon {
+        Canon::Traverse { to } | Canon::Feed { to, .. } => Some((to[2] * 1000.0).round()),
+        _ => None,
+    };
+    let found: Vec<f64> = canons("F60\nG83 Z-0.5 R0.1 Q0.2").iter().filter_map(z).collect();
+    assert_eq!(found, [100.0, -100.0, 100.0, -300.0, 100.0, -46.0, -500.0, 100.0]);
 }
 
 #[test]

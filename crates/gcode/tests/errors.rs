@@ -85,6 +85,9 @@ fn o_words_without_beginning_or_end_are_refused_before_the_first_line_is_execute
         ("o1 sub\no2 sub\no2 endsub\no1 endsub", "2:4", "inside of `o1`"),
         ("o#1 if [1]\n", "1:5", "a computed label before `if`"),
         ("o1 foo", "1:4", "expected an O-word"),
+        ("O7\nM2\nO07\nM99", "3:4", "subroutine `o7` is already in line 1"),
+        ("o1 while [0]\nO7\no1 endwhile", "2:3", "inside of `o1`"),
+        ("O#1\n", "1:4", "a computed label"),
         ("ox", "1:2", "a label after O"),
         ("o1 if", "1:6", "a value in brackets"),
         ("o1 if [1] G0", "1:11", "nothing more after an O-word"),
@@ -167,8 +170,7 @@ fn words_that_are_unknown_useless_or_missing_are_refused() {
         ("G76", "1:1", "G76: a threading cycle"),
         ("G95", "1:1", "G95: feed per turn"),
         ("G96", "1:1", "G96: constant surface speed"),
-        ("G43 Z1", "1:1", "G43: there is no tool table"),
-        ("M98 P1", "1:1", "M98: subroutines by M98"),
+        ("G43 Z1", "1:1", "G43 without a tool table"),
         ("G0 G1 X1", "1:4", "G0 and G1 exclude each other"),
         ("M7 M8", "1:4", "M7 and M8 exclude each other"),
         ("M3 M5", "1:4", "M3 and M5 exclude each other"),
@@ -177,13 +179,21 @@ fn words_that_are_unknown_useless_or_missing_are_refused() {
         ("G0 X1 P2", "1:7", "nothing in this line uses P"),
         ("G17 R1", "1:5", "nothing in this line uses R"),
         ("X1", "1:1", "axis words without a G code"),
+        ("G0 X1\nG80\nX2", "3:1", "axis words without a G code"),
         ("G4", "1:1", "G4 needs P"),
         ("G4 P-1", "1:4", "P is -1, out of its range"),
         ("G92", "1:1", "G92 needs the coordinate"),
-        ("G10 P1 X1", "1:1", "G10 needs L2 or L20"),
+        ("G10 P1 X1", "1:1", "G10 needs L1, L2, L10 or L20"),
         ("G10 L3 P1 X1", "1:5", "L is 3, out of its range"),
         ("G10 L2 P10 X1", "1:8", "P is 10, out of its range"),
         ("M62 P1.5", "1:5", "P is 1.5, which is not a whole number"),
+        ("M66", "1:1", "M66 needs P or E"),
+        ("M66 P1 E1", "1:5", "nothing in this line uses P"),
+        ("M66 P256", "1:5", "P is 256"),
+        ("M66 P1 L5", "1:8", "L is 5"),
+        ("M66 P1 L3", "1:1", "M66 needs Q"),
+        ("M66 P1 L3 Q0", "1:11", "Q is 0"),
+        ("M66 E1 L3 Q1", "1:8", "waits for an analog input"),
         ("T-1", "1:1", "T is -1, out of its range"),
         ("S-1", "1:1", "S is -1"),
         ("G53 G2 X1 I1", "1:1", "G53 with G2"),
@@ -204,6 +214,7 @@ fn feed_moves_need_a_feed_above_zero() {
         ("G93 G1 X1", "1:5", "G1 in inverse time (G93) without F"),
         ("G93 G1 X1 F1\nX2", "2:1", "without F in its line"),
         ("F1 G93\nG1 X1 F1\nG94 G1 X2", "3:5", "G1 without a feed"),
+        ("F1\nG93\nG1 X1 F1\nG94 G1 X2", "4:5", "G1 without a feed"),
         ("G93 F1 G81 X1 Z-1 R1", "1:8", "G81 in inverse time"),
         ("G93 F1 G38.2 X1", "1:8", "G38.2 in inverse time"),
         ("G20 F10", "1:5", "changes the units"),
@@ -280,6 +291,22 @@ fn a_file_that_changes_while_it_is_read_is_refused() {
     let last = rest.last().unwrap().as_ref().unwrap_err();
     assert_eq!(last.kind, ErrorKind::Changed);
     assert!(rest.iter().flatten().all(|step| step.canon != Canon::End));
+}
+
+#[test]
+fn a_change_of_the_file_is_noticed_after_a_thousand_lines_or_at_the_next_stop() {
+    let text = |begin: &str| begin.to_owned() + &"G4 P1\n".repeat(5_000);
+    for (begin, most) in [("G4 P1\n", 1_001), ("G4 P1\nM0\n", 1)] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("job.ngc");
+        std::fs::write(&path, text(begin)).unwrap();
+        let mut program = Interpreter::open(&path, &Options::default()).unwrap();
+        assert!(program.next().unwrap().is_ok());
+        std::fs::write(&path, text(begin) + "G4 P2\n").unwrap();
+        let steps = program.by_ref().take_while(Result::is_ok).count();
+        assert!(steps <= most, "{steps}");
+        assert!(program.next().is_none());
+    }
 }
 
 #[test]

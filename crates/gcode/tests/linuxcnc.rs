@@ -15,7 +15,7 @@ use proptest::test_runner::TestRunner;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use support::{files, jobs, programs};
+use support::{files, jobs, main_of_subroutines, programs, tool_table, tools};
 
 /// Greatest difference of two places, in mm or degrees.
 const SAME: f64 = 1e-9;
@@ -25,6 +25,10 @@ const SAME_FEED: f64 = 1e-9;
 
 /// Least number of the package's programs that have to be compared.
 const LEAST: usize = 15;
+
+/// Programs that cannot be compared. After M6 LinuxCNC asks for its place anew, and its preview
+/// leaves the tool offset out, so that the tool seems to jump if an offset is in effect then.
+const OFFSET_AT_TOOL_CHANGE: [&str; 1] = ["skeleton.ngc"];
 
 /// Where the package keeps programs.
 const PACKAGE: [&str; 3] =
@@ -76,7 +80,7 @@ impl Moves {
 
 fn ours(path: &Path) -> Outcome {
     // A probe may trip late, and a program may wait for this in a loop.
-    let options = Options { blocks: 200_000, ..Options::default() };
+    let options = Options { blocks: 200_000, tools: Some(tools()), ..Options::default() };
     let mut moves = Moves::default();
     let mut at = Point::default();
     for step in Interpreter::open(path, &options).map_err(|error| error.to_string())? {
@@ -123,7 +127,10 @@ fn ours(path: &Path) -> Outcome {
 fn linuxcncs(paths: &[PathBuf]) -> Vec<Outcome> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/linuxcnc/canon.py");
     // The module belongs to Debian's Python, which need not be the first one on the path.
-    let output = Command::new("/usr/bin/python3").arg(script).args(paths).output();
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("tools.tbl");
+    std::fs::write(&table, tool_table()).expect("a file");
+    let output = Command::new("/usr/bin/python3").arg(script).arg(&table).args(paths).output();
     let output = output.expect("python3 is missing: sudo apt-get install python3");
     let text = String::from_utf8_lossy(&output.stdout);
     let mut outcomes = Vec::new();
@@ -187,8 +194,10 @@ fn all_programs_have_the_canonical_moves_of_linuxcnc() {
     // Some folders of the package are links to others.
     let package = PACKAGE.iter().flat_map(|folder| files(Path::new(folder)));
     let package: BTreeSet<PathBuf> = package.filter_map(|path| path.canonicalize().ok()).collect();
-    let package: Vec<PathBuf> = package.into_iter().collect();
-    let own: Vec<PathBuf> = [jobs(), programs()].concat();
+    let is_compared =
+        |path: &PathBuf| !OFFSET_AT_TOOL_CHANGE.iter().any(|name| path.ends_with(name));
+    let package: Vec<PathBuf> = package.into_iter().filter(is_compared).collect();
+    let own: Vec<PathBuf> = [jobs(), programs(), vec![main_of_subroutines()]].concat();
     let paths = [package, own.clone()].concat();
     let (mut compared, mut compared_own, mut moves) = (0, 0, 0);
     let mut wrong = Vec::new();

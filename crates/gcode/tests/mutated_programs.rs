@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::io::Cursor;
 use std::sync::OnceLock;
-use support::{jobs, programs};
+use support::{jobs, programs, tools};
 
 /// Most lines of a program that are mutated: the long jobs repeat themselves.
 const LINES: usize = 120;
@@ -60,7 +60,7 @@ const NUMBERS: [&str; 16] = [
     "1000000000",
 ];
 
-const PIECES: [&str; 44] = [
+const PIECES: [&str; 52] = [
     "(",
     ")",
     ";",
@@ -90,6 +90,14 @@ const PIECES: [&str; 44] = [
     "o1 continue\n",
     "o1 return\n",
     "M2\n",
+    "O7\n",
+    "M98 P7 L3\n",
+    "M98 P7 L1000000000\n",
+    "M99\n",
+    "G43 H1",
+    "G43.2 H1",
+    "G10 L10 P1",
+    "T1 M6",
     "G83",
     "L1000000000",
     "P1000000000",
@@ -180,7 +188,7 @@ impl Mutation {
 
 /// Reads a program to its end or its first error. The result is the number of steps.
 fn read(text: Vec<u8>) -> Result<u64, TestCaseError> {
-    let options = Options { blocks: BLOCKS, ..Options::default() };
+    let options = Options { blocks: BLOCKS, tools: Some(tools()), ..Options::default() };
     let lines = text.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
     let program = match Interpreter::new(Cursor::new(text), "mutated.ngc", &options) {
         Ok(program) => program,
@@ -234,7 +242,8 @@ proptest! {
 #[test]
 fn original_programs_are_read_to_their_end() {
     for text in originals() {
-        let program = Interpreter::new(Cursor::new(text), "original.ngc", &Options::default());
+        let options = Options { tools: Some(tools()), ..Options::default() };
+        let program = Interpreter::new(Cursor::new(text), "original.ngc", &options);
         let steps: Vec<_> = program.unwrap().collect::<Result<_, _>>().unwrap();
         assert_eq!(steps.last().map(|step| &step.canon), Some(&Canon::End), "{text}");
     }

@@ -74,14 +74,6 @@ pub enum JobError {
         /// Name of the axis.
         axis: String,
     },
-    /// No motion was found that keeps both limits and tolerance.
-    #[error(
-        "line {line}: no motion keeps the limits within this tolerance; a greater tolerance would do"
-    )]
-    Stuck {
-        /// The source line.
-        line: u64,
-    },
     /// The integers break a rule of the exact check. This is a bug in the planner; the segment is
     /// not given out.
     #[error(
@@ -118,6 +110,9 @@ pub enum Rule {
     /// The integer position and the planned one.
     #[error("the position leaves the plan")]
     Position,
+    /// An edge near a reversal.
+    #[error("DIR set-up or hold does not fit at a reversal")]
+    Direction,
     /// The end of a run.
     #[error("it does not land exactly")]
     Landing,

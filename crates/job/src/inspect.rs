@@ -1,8 +1,9 @@
 //! Measures the emitted curve: speed, acceleration and jerk of each motor, and the distance from
 //! the programmed path.
 
+use crate::cover::{Cover, bezier};
 use crate::limits::Motors;
-use crate::path::{Corner, Path, Place};
+use crate::path::{Corner, MOST_REACH, Path, Place};
 use crate::rough::Knot;
 use crate::speed::Instant;
 use crate::spline::value;
@@ -13,6 +14,11 @@ const LIMIT_PART: f64 = 1.0 - 1e-7;
 /// Part of the tolerance that may be used at the places that are measured; the rest is for the
 /// places between them.
 const TOLERANCE_PART: f64 = 0.97;
+
+/// Least excess of what is found between these places.
+const LEAST_EXCESS: f64 = 1.005;
+/// Greatest excess of a distance from a corner.
+const MOST_EXCESS: f64 = 1.1;
 
 /// Where the distance from the path is measured between two knots, beside the corner.
 const PHASES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
@@ -42,6 +48,7 @@ pub(crate) struct Inspector<const N: usize> {
     /// Parameter and place of the last four control points.
     u: [f64; 4],
     places: [Place; 4],
+    cover: Cover,
 }
 
 impl<const N: usize> Inspector<N> {
@@ -54,6 +61,7 @@ impl<const N: usize> Inspector<N> {
             place: Place::default(),
             u: [0.0; 4],
             places: [Place::default(); 4],
+            cover: Cover::default(),
         }
     }
 
@@ -64,11 +72,22 @@ impl<const N: usize> Inspector<N> {
         self.place = knot.place;
         self.u = [0.0; 4];
         self.places = [knot.place; 4];
+        self.cover = Cover::at(knot.place);
     }
 
     /// Where on the path the curve was at the last measured place.
     pub fn place(&self) -> Place {
         self.place
+    }
+
+    /// The first piece on which the curve may still be.
+    pub fn oldest(&self) -> u64 {
+        self.cover.oldest()
+    }
+
+    /// Where the path goes on from a rest at a point.
+    pub fn leaving(&self, point: &Point<N>, path: &Path<N>) -> Place {
+        self.cover.leaving(point, path)
     }
 
     /// Parameter and acceleration, as a part of its limit, at the last measured knot.
@@ -130,6 +149,7 @@ impl<const N: usize> Inspector<N> {
         if end.place > self.place {
             self.place = end.place;
         }
+        let miss = self.cover.follow(&bezier(&self.letters), self.place, path);
         let measured = |phase: f64, tip: Option<(&Point<N>, f64)>| {
             let here = value(&self.letters, phase);
             let near = path.nearest(&here, before, end.place)?;
@@ -156,7 +176,23 @@ impl<const N: usize> Inspector<N> {
             // Between both sides, the distance grows in proportion to that from the corner.
             measured(high, path.piece(corner.piece).map(|piece| (&piece.end, corner.reach())))
         });
-        let cut = cut.flatten();
+        let cut = cut.flatten().or_else(|| {
+            // What the measured places do not show.
+            let miss = miss?;
+            let here = value(&self.letters, miss.phase);
+            let near = path.nearest(&here, before, end.place)?;
+            let piece = path.piece(miss.piece)?;
+            let off = path.off(&near.point, &here, path.piece(near.place.piece)?).sqrt();
+            let tip = path.off(&piece.end, &here, piece).sqrt() / MOST_REACH;
+            let u = self.u[1] + miss.phase * (self.u[2] - self.u[1]);
+            if off > TOLERANCE_PART || tip <= 1.0 {
+                let excess = (off / TOLERANCE_PART).max(LEAST_EXCESS);
+                return Some(Fault { u, excess, off: Some(from_to(&near.point, &here)) });
+            }
+            // The curve has to go nearer to the corner.
+            let away = from_to(&piece.end, &here).map(|x| x / tip);
+            Some(Fault { u, excess: tip.min(MOST_EXCESS), off: Some(away) })
+        });
         let phases = PHASES.iter();
         let faults = phases.filter_map(|&phase| measured(phase, None)).chain(cut);
         faults.max_by(|a, b| a.excess.total_cmp(&b.excess))

@@ -4,19 +4,19 @@
 use crate::element::{Arc, Element, Item};
 use crate::error::JobError;
 use crate::kinematics::Kinematics;
-use crate::limits::{Limit, Motors};
+use crate::limits::{Motors, of_machine};
 use crate::piece::Piece;
-use crate::rhythm::{Rhythm, SHORTEST};
+use crate::refuse::{coordinates, refuse};
+use crate::rhythm::Rhythm;
 use crate::row::Row;
 use crate::run::Runs;
-use crate::settle::{Emitted, Stuck};
+use crate::settle::Emitted;
 use crate::targets::Targets;
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
-use bigdecimal::ToPrimitive;
 use carrystep_core::Segment;
 use carrystep_files::Machine;
-use carrystep_plan::exact::{ExactLimits, nearest};
+use carrystep_plan::exact::nearest;
 use std::collections::VecDeque;
 use std::fmt::Debug;
 
@@ -90,27 +90,8 @@ impl<const N: usize> Job<N> {
     ) -> Result<Self, JobError> {
         let targets = Targets::new(machine, kinematics)?;
         let tick_seconds = machine.timebase.tick_seconds();
-        let mut limits = [Limit { speed: 0.0, acceleration: 0.0, jerk: 0.0 }; N];
-        let mut exact = Vec::with_capacity(N);
-        for (limit, axis) in limits.iter_mut().zip(&machine.axes) {
-            let float = |value: &carrystep_files::BigDecimal| {
-                value.to_f64().filter(|x| x.is_finite() && *x > 0.0)
-            };
-            let [speed, acceleration] = [&axis.speed_limit, &axis.accel_limit].map(float);
-            let (Some(speed), Some(acceleration)) = (speed, acceleration) else {
-                return Err(JobError::Axes(machine.axes.len()));
-            };
-            let jerk = axis.jerk_limit.as_ref().and_then(float).unwrap_or(acceleration / SHORTEST);
-            *limit = Limit { speed, acceleration, jerk };
-            exact.extend(ExactLimits::new::<f64>(axis, &machine.timebase));
-        }
-        let exact: [ExactLimits; N] =
-            exact.try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
+        let (mut limits, exact) = of_machine(machine)?;
         let rhythm = Rhythm::new(&limits, tick_seconds);
-        let exact = exact.map(|limits| {
-            let jerk = limits.jerk.unwrap_or_else(|| default_jerk(&limits, tick_seconds));
-            ExactLimits { jerk: Some(jerk), ..limits }
-        });
         // From steps to units of the letters.
         for (motor, limit) in limits.iter_mut().enumerate() {
             let steps = targets.steps_per_unit[motor];
@@ -123,10 +104,14 @@ impl<const N: usize> Job<N> {
         let linear = linear.min(N);
         let steps = targets.steps(&start, 0)?;
         let at = targets.letters(&steps);
+        let mut quiet = [0; N];
+        for (quiet, axis) in quiet.iter_mut().zip(&machine.axes) {
+            *quiet = crate::turn::quiet(&axis.pins, &machine.timebase);
+        }
         let units = steps.map(|steps| i128::from(steps) << 64);
         Ok(Self {
             runs: Runs::new(&motors, &rhythm, linear, at),
-            weave: Weave::new(rhythm.ticks, exact, units),
+            weave: Weave::new(rhythm.ticks, exact, quiet, units),
             motors,
             targets,
             linear,
@@ -146,40 +131,15 @@ impl<const N: usize> Job<N> {
     }
 }
 
-/// J = A / 4 ms in 2^-64 step per tick^3, rounded down; the ticks of 4 ms are rounded up.
-fn default_jerk(limits: &ExactLimits, tick_seconds: f64) -> i128 {
-    let ticks = (SHORTEST / tick_seconds * (1.0 - 1e-12)).ceil();
-    limits.acceleration / i128::from(ticks as u64).max(1)
-}
-
-fn coordinates<const N: usize>(values: &[f64], line: u64) -> Result<Point<N>, JobError> {
-    let point: Point<N> = values.try_into().map_err(|_| JobError::Coordinates {
-        line,
-        found: values.len(),
-        axes: N,
-    })?;
-    match point.iter().find(|x| !x.is_finite()) {
-        Some(&value) => {
-            Err(JobError::Number { line, what: "a coordinate", value, help: "it must be finite" })
-        }
-        None => Ok(point),
-    }
-}
-
-/// Refuses what is not a positive finite number.
-fn positive(value: f64, line: u64, what: &'static str, help: &'static str) -> Result<(), JobError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(JobError::Number { line, what, value, help })
-    }
-}
-
 impl<const N: usize> Jobs for Job<N> {
     fn push(&mut self, item: &Item) -> Result<(), JobError> {
         match item {
             Item::Move(element) => {
-                self.refuse(element)?;
+                let from = match &self.pending {
+                    Some(before) => coordinates(&before.to, before.line)?,
+                    None => self.programmed,
+                };
+                refuse(element, &from, &self.targets, self.linear)?;
                 self.flush(None)?;
                 self.pending = Some(element.clone());
             }
@@ -235,52 +195,6 @@ impl<const N: usize> Jobs for Job<N> {
 }
 
 impl<const N: usize> Job<N> {
-    /// Refuses an element that cannot be planned.
-    fn refuse(&self, element: &Element) -> Result<(), JobError> {
-        let line = element.line;
-        let to: Point<N> = coordinates(&element.to, line)?;
-        self.targets.check(&to, line)?;
-        if let Some(feed) = element.feed {
-            positive(feed, line, "the feed", "give a feed above 0")?;
-        }
-        let help = "give a tolerance above 0, or let the path rest at each corner";
-        positive(element.tolerance.linear, line, "the tolerance", help)?;
-        positive(element.tolerance.rotary, line, "the rotary tolerance", help)?;
-        let Some(arc) = &element.arc else { return Ok(()) };
-        let [i, j] = arc.plane;
-        let from: Point<N> = match &self.pending {
-            Some(before) => coordinates(&before.to, line)?,
-            None => self.programmed,
-        };
-        if i == j || i >= self.linear || j >= self.linear {
-            return Err(JobError::Arc { line });
-        }
-        let [start, end] = [&from, &to].map(|p| (p[i] - arc.centre[0]).hypot(p[j] - arc.centre[1]));
-        if !arc.angle.is_finite() || arc.angle == 0.0 || !start.is_finite() || start.min(end) <= 0.0
-        {
-            return Err(JobError::Arc { line });
-        }
-        let differ = (start - end).abs();
-        if differ > 0.5 || (differ > 0.005 && differ > 0.001 * start.max(end)) {
-            return Err(JobError::Radii { line, start, end });
-        }
-        // The extremes of the letters and of sums and differences of two of them.
-        let eighth = std::f64::consts::FRAC_PI_4;
-        let first = (from[j] - arc.centre[1]).atan2(from[i] - arc.centre[0]);
-        let (low, high) = (first.min(first + arc.angle), first.max(first + arc.angle));
-        for turn in 0..8 {
-            let angle = f64::from(turn) * eighth;
-            let whole = ((low - angle) / std::f64::consts::TAU).ceil();
-            if angle + whole * std::f64::consts::TAU <= high {
-                let mut point = to;
-                point[i] = arc.centre[0] + start * angle.cos();
-                point[j] = arc.centre[1] + start * angle.sin();
-                self.targets.check(&point, line)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Stores the element that was held back; with `end`, it ends there instead.
     fn flush(&mut self, end: Option<Point<N>>) -> Result<(), JobError> {
         let Some(element) = self.pending.take() else { return Ok(()) };
@@ -327,7 +241,7 @@ impl<const N: usize> Job<N> {
                 if done == count {
                     self.work.pop_front();
                 }
-                self.runs.push(part, &mut emitted).map_err(stuck)?;
+                self.runs.push(part, &mut emitted);
                 self.weave(&emitted, None)?;
             }
             Some(&mut Work::Mark(mark)) => {
@@ -338,7 +252,7 @@ impl<const N: usize> Job<N> {
                 self.work.pop_front();
                 if self.runs.moving() {
                     let end = *self.runs.end();
-                    self.runs.rest(&mut emitted).map_err(stuck)?;
+                    self.runs.rest(&mut emitted);
                     let target = self.targets.steps(&end, self.line)?;
                     self.weave(&emitted, Some(target.map(|steps| i128::from(steps) << 64)))?;
                 }
@@ -441,8 +355,4 @@ impl<const N: usize> Job<N> {
     fn broken(&self, broken: Broken) -> JobError {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
-}
-
-fn stuck(stuck: Stuck) -> JobError {
-    JobError::Stuck { line: stuck.line }
 }

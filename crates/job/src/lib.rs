@@ -18,10 +18,13 @@
 //! Memory does not grow with the length of a job: each stage holds a window as long as the machine
 //! needs to stop.
 
+mod attempt;
 mod banded;
+mod cover;
 mod element;
 mod error;
 mod filter;
+mod halt;
 mod inspect;
 mod job;
 mod kinematics;
@@ -29,6 +32,7 @@ mod limits;
 mod path;
 mod piece;
 mod planner;
+mod refuse;
 mod retime;
 mod rhythm;
 mod rough;
@@ -39,6 +43,7 @@ mod smooth;
 mod speed;
 mod spline;
 mod targets;
+mod turn;
 mod vector;
 mod weave;
 

@@ -1,6 +1,13 @@
-//! The limits of the motors as floats, for the stages that plan. The exact check has its own.
+//! The limits of the motors: as floats for the stages that plan, and exact for the check.
 
+use crate::error::JobError;
 use crate::vector::Point;
+use bigdecimal::ToPrimitive;
+use carrystep_files::Machine;
+use carrystep_plan::exact::ExactLimits;
+
+/// Shortest time between knots, seconds.
+pub(crate) const SHORTEST: f64 = 0.004;
 
 /// What one motor may do, in its unit and seconds.
 #[derive(Debug, Clone, Copy)]
@@ -40,4 +47,42 @@ impl<const N: usize> Motors<N> {
         let direction = std::array::from_fn(|i| f64::from(u8::from(i == letter)));
         self.greatest(&direction, |limit| limit.acceleration)
     }
+}
+
+/// The limits of a machine's motors in steps and seconds, and in exact integers. Without
+/// `jerk_limit`, J is A / 4 ms.
+///
+/// # Errors
+/// [`JobError::Axes`].
+pub(crate) fn of_machine<const N: usize>(
+    machine: &Machine,
+) -> Result<([Limit; N], [ExactLimits; N]), JobError> {
+    let tick_seconds = machine.timebase.tick_seconds();
+    let mut limits = [Limit { speed: 0.0, acceleration: 0.0, jerk: 0.0 }; N];
+    let mut exact = Vec::with_capacity(N);
+    for (limit, axis) in limits.iter_mut().zip(&machine.axes) {
+        let float = |value: &carrystep_files::BigDecimal| {
+            value.to_f64().filter(|x| x.is_finite() && *x > 0.0)
+        };
+        let [speed, acceleration] = [&axis.speed_limit, &axis.accel_limit].map(float);
+        let (Some(speed), Some(acceleration)) = (speed, acceleration) else {
+            return Err(JobError::Axes(machine.axes.len()));
+        };
+        let jerk = axis.jerk_limit.as_ref().and_then(float).unwrap_or(acceleration / SHORTEST);
+        *limit = Limit { speed, acceleration, jerk };
+        exact.extend(ExactLimits::new::<f64>(axis, &machine.timebase));
+    }
+    let exact: [ExactLimits; N] =
+        exact.try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
+    let exact = exact.map(|limits| {
+        let jerk = limits.jerk.unwrap_or_else(|| default_jerk(&limits, tick_seconds));
+        ExactLimits { jerk: Some(jerk), ..limits }
+    });
+    Ok((limits, exact))
+}
+
+/// J = A / 4 ms in 2^-64 step per tick^3, rounded down; the ticks of 4 ms are rounded up.
+fn default_jerk(limits: &ExactLimits, tick_seconds: f64) -> i128 {
+    let ticks = (SHORTEST / tick_seconds * (1.0 - 1e-12)).ceil();
+    limits.acceleration / i128::from(ticks as u64).max(1)
 }

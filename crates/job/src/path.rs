@@ -44,7 +44,7 @@ impl Corner {
 }
 
 /// The greatest distance from the tip of an acute corner, as a multiple of the tolerance.
-const MOST_REACH: f64 = 2.0;
+pub(crate) const MOST_REACH: f64 = 2.0;
 
 /// Two directions are a corner if their scalar product is below this.
 const STRAIGHT: f64 = 1.0 - 1e-9;

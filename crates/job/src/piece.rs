@@ -125,8 +125,27 @@ impl<const N: usize> Piece<N> {
         self.bend.map(|bend| bend.radius[0].min(bend.radius[1]))
     }
 
+    /// Bounds on the second and third derivative of the point by length.
+    pub fn bends(&self) -> [f64; 2] {
+        let Some(bend) = &self.bend else { return [0.0; 2] };
+        let turn = bend.angle.abs() / self.length;
+        let grow = (bend.radius[1] - bend.radius[0]).abs() / self.length;
+        let round = turn * bend.radius[0].max(bend.radius[1]);
+        [turn * (2.0 * grow + round), turn * turn * (3.0 * grow + round)]
+    }
+
+    /// How far a part of this length may be from its chord, at most.
+    pub fn bow(&self, length: f64) -> f64 {
+        self.bends()[0] * length * length / 8.0
+    }
+
     /// The length from `from` to `to` whose point is nearest to `point`, a point near the piece.
     pub fn nearest(&self, point: &Point<N>, from: f64, to: f64) -> f64 {
+        self.nearest_around(point, from, (from, to))
+    }
+
+    /// The same; on an arc, it is the one in the turn around length `here`.
+    pub fn nearest_around(&self, point: &Point<N>, here: f64, (from, to): (f64, f64)) -> f64 {
         let low = from.min(self.length);
         let high = to.min(self.length).max(low);
         let rise = dot(&self.along, &self.along);
@@ -138,8 +157,8 @@ impl<const N: usize> Piece<N> {
             dot(&from_to(&self.start, point), &self.along) / rise
         } else {
             let angle = (point[j] - bend.centre[1]).atan2(point[i] - bend.centre[0]);
-            // The angle nearest to `from`, counted in the direction of the arc.
-            let here = from / self.length * bend.angle.abs();
+            // The angle nearest to that at `here`, counted in the direction of the arc.
+            let here = here / self.length * bend.angle.abs();
             let turn = std::f64::consts::TAU;
             let raw = (angle - bend.from) * bend.angle.signum() - here;
             (here + raw - turn * (raw / turn).round()) / bend.angle.abs() * self.length

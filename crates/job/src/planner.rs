@@ -68,7 +68,7 @@ impl Planner {
     /// The next row, or `None` if more items are needed (after [`Planner::finish`]: at the end).
     ///
     /// # Errors
-    /// [`JobError::Stuck`] and [`JobError::Broken`]. No row comes after an error.
+    /// [`JobError::Broken`]. No row comes after an error.
     pub fn next_row(&mut self) -> Result<Option<Row>, JobError> {
         let row = self.job.next_row();
         if row.is_err() {

@@ -5,10 +5,8 @@
 //! time 2 A / J with knots, fewer longer ones or more shorter ones, the one is taken whose curve
 //! moves less towards the acceleration.
 
-use crate::limits::Limit;
+use crate::limits::{Limit, SHORTEST};
 
-/// Shortest time between knots, seconds.
-pub(crate) const SHORTEST: f64 = 0.004;
 /// Longest filter, knots: it bounds the work for a very low jerk limit. Knots then get longer.
 const MOST_AVERAGED: f64 = 4096.0;
 

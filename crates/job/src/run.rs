@@ -8,7 +8,7 @@ use crate::piece::Piece;
 use crate::retime::Retime;
 use crate::rhythm::Rhythm;
 use crate::rough::{Knot, Rough};
-use crate::settle::{Emitted, Settle, Stuck};
+use crate::settle::{Emitted, Settle};
 use crate::smooth::{RESTING, Smooth};
 use crate::speed::Rules;
 use crate::vector::Point;
@@ -91,7 +91,7 @@ impl<const N: usize> Runs<N> {
     }
 
     /// Adds a piece that begins where the one before ends.
-    pub fn push(&mut self, piece: Piece<N>, out: &mut Vec<Emitted<N>>) -> Result<(), Stuck> {
+    pub fn push(&mut self, piece: Piece<N>, out: &mut Vec<Emitted<N>>) {
         let number = self.path.end();
         let mut knots = Vec::new();
         if !self.started {
@@ -103,13 +103,13 @@ impl<const N: usize> Runs<N> {
         self.rough.push(number, &piece, &mut knots);
         self.end = piece.end;
         self.path.push(piece);
-        self.pass(knots, out)
+        self.pass(knots, out);
     }
 
     /// The run ends at rest where the last piece ends.
-    pub fn rest(&mut self, out: &mut Vec<Emitted<N>>) -> Result<(), Stuck> {
+    pub fn rest(&mut self, out: &mut Vec<Emitted<N>>) {
         if !self.started {
-            return Ok(());
+            return;
         }
         let mut knots = Vec::new();
         self.rough.finish(&mut knots);
@@ -129,19 +129,18 @@ impl<const N: usize> Runs<N> {
                 retime.finish(&self.path, &mut knots);
             } else {
                 for knot in smooth {
-                    self.settle.push(knot, &self.path, out)?;
+                    self.settle.push(knot, &self.path, out);
                 }
-                self.settle.finish(&self.path, out)?;
+                self.settle.finish(&self.path, out);
             }
         }
         self.started = false;
-        Ok(())
     }
 
-    fn pass(&mut self, mut knots: Vec<Knot<N>>, out: &mut Vec<Emitted<N>>) -> Result<(), Stuck> {
+    fn pass(&mut self, mut knots: Vec<Knot<N>>, out: &mut Vec<Emitted<N>>) {
         for round in 0..ROUNDS {
             if knots.is_empty() {
-                return Ok(());
+                return;
             }
             let mut smooth = Vec::new();
             for knot in knots.drain(..) {
@@ -153,13 +152,12 @@ impl<const N: usize> Runs<N> {
                 }
             } else {
                 for knot in smooth {
-                    self.settle.push(knot, &self.path, out)?;
+                    self.settle.push(knot, &self.path, out);
                 }
             }
         }
-        if let Some(last) = out.last() {
-            self.path.forget_before(last.place.piece);
+        if !out.is_empty() {
+            self.path.forget_before(self.settle.oldest());
         }
-        Ok(())
     }
 }

@@ -7,10 +7,13 @@
 //! segment's distance. The rounding of A and J moves P inside a segment by less than
 //! n^2/2 + n^3/6 units, which is 10^-9 step for n = 4000.
 //!
+//! Where an axis reverses near a step's place, P is moved a little (`turn.rs`).
+//!
 //! A run ends with a segment of n + 1 ticks. Because n and n + 1 have no common divisor, taking r
 //! from the V before it and adding r to its own V moves the end by r units, whatever r is.
 
 use crate::error::Rule;
+use crate::turn::Pair;
 use carrystep_core::Segment;
 use carrystep_plan::exact::{ExactLimits, speeds, travel};
 
@@ -18,6 +21,9 @@ use carrystep_plan::exact::{ExactLimits, speeds, travel};
 const JUMP: i128 = 50;
 /// Greatest distance between P and the spline at a knot, 2^-64 step: a quarter of a step.
 const QUARTER: i128 = 1 << 62;
+
+/// How often the distance is doubled by which P is moved before a reversal.
+const TURNS: u32 = 8;
 
 /// The segments of all motors between two knots.
 #[derive(Debug, Clone)]
@@ -38,6 +44,8 @@ pub(crate) struct Weave<const N: usize> {
     /// A in the last tick of the span before.
     acceleration: [i128; N],
     held: Option<Span<N>>,
+    /// For each motor, the ticks around a reversal that have to be free of edges.
+    quiet: [u32; N],
 }
 
 /// A rule that the segment of a motor breaks.
@@ -49,8 +57,8 @@ pub(crate) struct Broken {
 
 impl<const N: usize> Weave<N> {
     /// All motors rest at these whole positions, in units of 2^-64 step.
-    pub fn new(ticks: u32, limits: [ExactLimits; N], at: [i128; N]) -> Self {
-        Self { ticks, limits, control: [at; 3], at, acceleration: [0; N], held: None }
+    pub fn new(ticks: u32, limits: [ExactLimits; N], quiet: [u32; N], at: [i128; N]) -> Self {
+        Self { ticks, limits, control: [at; 3], at, acceleration: [0; N], held: None, quiet }
     }
 
     /// Whether the next control point leaves the place of rest.
@@ -105,6 +113,7 @@ impl<const N: usize> Weave<N> {
             let goal = (c1 + 4 * c2 + c3).div_euclid(6);
             let left = goal - self.at[axis] - travel(segment, u64::from(ticks));
             segment.v = register((left + n / 2).div_euclid(n))?;
+            self.turn(axis, segment)?;
             self.at[axis] += travel(segment, u64::from(ticks));
             if (goal - self.at[axis]).abs() > QUARTER {
                 return Err(Broken { axis, rule: Rule::Position });
@@ -112,6 +121,36 @@ impl<const N: usize> Weave<N> {
         }
         self.control = [self.control[1], self.control[2], point];
         Ok(Span { ticks, segments })
+    }
+
+    /// Keeps edges away from the reversals of a motor in a segment: moves P by the segment before.
+    fn turn(&mut self, axis: usize, segment: &Segment) -> Result<(), Broken> {
+        let Some(held) = &mut self.held else { return Ok(()) };
+        let before = &mut held.segments[axis];
+        let quiet = self.quiet[axis];
+        let start = self.at[axis] - travel(before, u64::from(before.ticks));
+        let pair = |before: &Segment| Pair { at: start, before, now: segment }.is_quiet(quiet);
+        if pair(before) {
+            return Ok(());
+        }
+        // What the motor can go at its acceleration in this time.
+        let far = self.limits[axis].acceleration * i128::from(quiet) * i128::from(quiet);
+        for part in 0..TURNS {
+            for sign in [1, -1] {
+                let moved = sign * (far << part) / i128::from(before.ticks);
+                let Some(v) = i64::try_from(moved).ok().and_then(|v| before.v.checked_add(v))
+                else {
+                    continue;
+                };
+                let other = Segment { v, ..*before };
+                if pair(&other) {
+                    *before = other;
+                    self.at[axis] = start + travel(before, u64::from(before.ticks));
+                    return Ok(());
+                }
+            }
+        }
+        Err(Broken { axis, rule: Rule::Direction })
     }
 
     /// Checks a finished span, in integers, at its ends and extremes.

@@ -6,16 +6,13 @@
 mod common;
 
 use carrystep_job::Item;
-use common::distance::Follow;
-use common::measure::{planned, times};
+use common::follow::within;
+use common::measure::{planned, programmed, times};
 use common::reader;
 use common::replay::Replay;
 
 const PROGRAMS: [&str; 4] =
     ["square_and_arc.ngc", "chords_and_star.ngc", "trochoid.ngc", "relief.ngc"];
-
-/// Places of each row at which the distance from the path is measured.
-const PLACES: u32 = 16;
 
 #[test]
 fn programs_keep_limits_rhythm_and_tolerance_and_land_exactly() {
@@ -24,18 +21,14 @@ fn programs_keep_limits_rhythm_and_tolerance_and_land_exactly() {
         let items = reader::read(&reader::file(name));
         let rows = planned(&machine, &items);
         let mut replay = Replay::new(&machine);
-        let mut follow = Follow::new(&[0.0; 3], &items);
-        let mut worst = 0.0_f64;
         for row in &rows {
             assert!((4000..=16_000).contains(&row.ticks), "{name}: {} ticks", row.ticks);
-            for place in 0..PLACES {
-                worst = worst.max(follow.off(&replay.at(row, row.ticks / PLACES * place)));
-            }
             replay.run(row);
         }
-        assert!(worst <= 1.0, "{name}: {worst} of the tolerance");
-        assert!(worst > 0.5, "{name}: the tolerance is not used: {worst}");
-        assert!(follow.reached + 2 >= follow.elements(), "{name}");
+        let path = programmed(&machine, &items);
+        let kept = |scale: f64| within(&machine, &path, &rows, scale, &|motors| motors);
+        assert_eq!(kept(1.0), Ok(()), "{name}");
+        assert!(kept(0.5).is_err(), "{name}: the tolerance is not used");
         replay.assert_limits(&machine);
         let Some(Item::Move(last)) = items.last() else { panic!("{name} has moves") };
         for ((axis, to), steps) in replay.axes.iter().zip(&last.to).zip([80.0, 80.0, 400.0]) {

@@ -1,15 +1,18 @@
 //! `carrystep plan`: the integer segments of a move file, or the reason why it cannot be planned.
 
 use crate::arguments::PlanArguments as Arguments;
+use crate::commands::plan_program;
 use crate::failure::Failure;
+use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
 use crate::table::{self, LimitsJson};
 use crate::{interrupt, job, output};
 use carrystep_core::Segment;
 use carrystep_files::{Axis, Machine, MoveSource};
 use carrystep_plan::{PlannedMove, Survey};
+use carrystep_program::is_program;
 use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::fmt::Write as _;
 
 /// What `--json` prints.
@@ -61,30 +64,12 @@ struct AxisJson<'a> {
     segments: &'a [Segment],
 }
 
-/// Numbers of 64 bits are strings, because many JSON readers keep only 53 bits.
-#[derive(JsonSchema, Serialize)]
-struct SegmentJson {
-    ticks: u32,
-    v: String,
-    a: String,
-    j: String,
-    last: bool,
-}
-
-/// Writes the segments one after another. All of them as text would need several times the memory
-/// of the plan.
-fn segments<S: Serializer>(segments: &[Segment], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(segments.iter().map(|s| SegmentJson {
-        ticks: s.ticks,
-        v: s.v.to_string(),
-        a: s.a.to_string(),
-        j: s.j.to_string(),
-        last: s.last,
-    }))
-}
-
-/// Plans a move file and shows the plan.
+/// Plans a move file or a program and shows the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if is_program(&arguments.file) {
+        return plan_program::run(arguments);
+    }
+    arguments.program.refuse_for_moves()?;
     let source = job::load(&arguments.file, arguments.fit_ns)?;
     if arguments.json_lines {
         lines(source)
@@ -197,13 +182,9 @@ fn add_move(
     let _ = table::columns(text, head, cells, |column| column == 0 || column == 3);
     for (planned, axis) in rows {
         text.push_str(&rounded(axis, planned.rounding_steps));
-        for (index, Segment { ticks, v, a, j, last }) in
-            planned.segments.iter().filter(|_| segments).enumerate()
-        {
+        for (index, segment) in planned.segments.iter().filter(|_| segments).enumerate() {
             let name = if index == 0 { axis.name.as_str() } else { "" };
-            let mark = if *last { "  last" } else { "" };
-            let _ =
-                writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
+            add_segment(text, name, segment);
         }
     }
 }

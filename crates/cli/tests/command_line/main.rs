@@ -43,6 +43,7 @@ mod outputs;
 mod peak;
 mod plots;
 mod profile;
+mod programs;
 mod schemas;
 mod shard_merges;
 #[cfg(unix)]

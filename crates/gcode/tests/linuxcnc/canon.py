@@ -1,6 +1,6 @@
 """Prints the canonical moves of G-code programs as LinuxCNC's interpreter gives them.
 
-usage: /usr/bin/python3 canon.py PROGRAM...    (LinuxCNC 2.9)
+usage: /usr/bin/python3 canon.py TOOLS PROGRAM...    (LinuxCNC 2.9)
 
 For each program: `@program PATH`, a line for each move, and `@end` or `@refused REASON`. Lines
 without `@` are from LinuxCNC itself. Places are in machine coordinates, X, Y and Z in mm. Each
@@ -14,24 +14,30 @@ import sys
 import tempfile
 
 SECONDS = 10
-TOOLS = 99
 
 
-def make_tool_table(folder):
-    """Makes the tool table that the interpreter expects in the user's folder: tools of no length."""
+def load_tool_table(folder, table):
+    """Loads the tool table into shared memory, where the interpreter looks for it."""
     os.environ["HOME"] = folder
     tools = ctypes.CDLL("libtooldata.so.0", mode=ctypes.RTLD_GLOBAL)
     status = ctypes.create_string_buffer(1 << 16)
     tools._Z17tool_mmap_creatorPK13EMC_TOOL_STATi(status, 0)
     tools._Z13tooldata_initb(False)
-    table = os.path.join(folder, "tools.tbl")
-    with open(table, "w") as file:
-        for tool in range(1, TOOLS):
-            file.write("T%d P%d Z0 D0\n" % (tool, tool))
     tools._Z13tooldata_loadPKcPPc(table.encode(), None)
 
 
-def canon_class():
+def tools_of(table):
+    """All tools of the table as the interpreter asks for them: number, nine offsets, diameter."""
+    tools = [(0,) + (0.0,) * 12 + (0,)]
+    with open(table) as file:
+        for line in file:
+            words = {word[0]: float(word[1:]) for word in line.split()}
+            offset = tuple(words.get(letter, 0.0) for letter in "XYZABCUVW")
+            tools.append((int(words["T"]),) + offset + (words.get("D", 0.0), 0.0, 0.0, 0))
+    return tools
+
+
+def canon_class(tools):
     """The canon; its base class needs the module `gcode`, which needs the tool table."""
     from rs274.interpret import Translated
 
@@ -39,6 +45,7 @@ def canon_class():
         def __init__(self, parameter_file):
             self.parameter_file = parameter_file
             self.tool = (0.0,) * 9
+            self.in_spindle = 0
             self.plane = 1
             self.line = 0
             self.set_xy_rotation(0)
@@ -104,35 +111,41 @@ def canon_class():
         def get_block_delete(self):
             return 1
 
-        def get_tool(self, _):
-            return (-1,) + (0.0,) * 12 + (0,)
+        def change_tool(self, index):
+            self.in_spindle = index
+
+        def get_tool(self, index):
+            # Index 0 is the spindle.
+            index = index or self.in_spindle
+            return tools[index] if index < len(tools) else (-1,) + (0.0,) * 12 + (0,)
 
     return Canon
 
 
-def run(path, folder):
+def run(path, folder, table):
     """Reads one program and prints its moves."""
-    make_tool_table(folder)
+    load_tool_table(folder, table)
     import gcode
 
     parameters = os.path.join(folder, "parameters")
     open(parameters, "w").close()
     os.chdir(os.path.dirname(os.path.abspath(path)))
-    result, line = gcode.parse(path, canon_class()(parameters), "G21", "")
+    result, line = gcode.parse(path, canon_class(tools_of(table))(parameters), "G21", "")
     if result > gcode.MIN_ERROR:
         print("@refused line", line, gcode.strerror(result).replace("\n", " "))
     else:
         print("@end")
 
 
-for program in map(os.path.abspath, sys.argv[1:]):
+table, *programs = map(os.path.abspath, sys.argv[1:])
+for program in programs:
     print("@program", program, flush=True)
     with tempfile.TemporaryDirectory() as folder:
         child = os.fork()
         if child == 0:
             signal.alarm(SECONDS)
             try:
-                run(program, folder)
+                run(program, folder, table)
             except BaseException as error:
                 print("@refused", type(error).__name__, str(error).replace("\n", " "))
             sys.stdout.flush()

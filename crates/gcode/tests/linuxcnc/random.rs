@@ -42,10 +42,13 @@ fn line(kind: Kind) -> BoxedStrategy<String> {
         Kind::Units | Kind::Tools => (3, Just(0).boxed()),
     };
     let offsets = point().prop_map(|to| format!("G43.1 X{} Y{} Z{}", to[0], to[1], to[2]));
+    // Every seventh tool has an offset of A.
+    let table = (select(&["G43", "G43.2"][..]), 0_u32..14, 1_u32..7)
+        .prop_map(|(code, sevens, tool)| format!("{code} H{}", 7 * sevens + tool));
     let special = match kind {
         Kind::Units => select(&["G20", "G21"][..]).prop_map(str::to_owned).boxed(),
         Kind::Rotation => Just("G91.1".to_owned()).boxed(),
-        Kind::Tools => prop_oneof![offsets, Just("G49".to_owned())].boxed(),
+        Kind::Tools => prop_oneof![offsets, table, Just("G49".to_owned())].boxed(),
     };
     let g92 = match kind {
         Kind::Rotation => Just("G64".to_owned()).boxed(),

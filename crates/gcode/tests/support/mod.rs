@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
-use carrystep_gcode::{Canon, GcodeError, Interpreter, Options, Point, Step};
+use carrystep_gcode::{Canon, GcodeError, Interpreter, Options, Point, Step, ToolTable};
 use proptest::prelude::*;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -30,6 +30,26 @@ pub fn jobs() -> Vec<PathBuf> {
 /// The programs of `tests/programs`, which use each part of the language.
 pub fn programs() -> Vec<PathBuf> {
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs"))
+}
+
+/// A program whose subroutines are in other files.
+pub fn main_of_subroutines() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/subroutines/main.ngc")
+}
+
+/// The text of a tool table: a line for each tool.
+pub fn tool_table() -> String {
+    let line = |tool: u32| {
+        let n = f64::from(tool);
+        let turned = if tool.is_multiple_of(7) { n } else { 0.0 };
+        format!("T{tool} P{tool} X{} Z{} A{turned} D{}\n", n / 8.0, 2.5 * n, n / 4.0)
+    };
+    (1..99).map(line).collect()
+}
+
+/// The tools of [`tool_table`].
+pub fn tools() -> ToolTable {
+    ToolTable::read(Cursor::new(tool_table()), "tools.tbl").expect("a tool table")
 }
 
 /// The steps of a program.

@@ -2,7 +2,6 @@
 
 use super::reader;
 use super::reference::{Limits, Sample, grbl, least_time};
-use super::replay::Replay;
 use carrystep_files::Machine;
 use carrystep_job::{Cartesian, Item, Planner, Row, rows};
 
@@ -99,17 +98,16 @@ pub fn program(name: &str) -> Vec<Item> {
     reader::read(&text)
 }
 
-/// The greatest distance from the path as a part of the tolerance.
+/// The least multiple of the tolerance that the rows keep.
 pub fn deviation(machine: &Machine, items: &[Item], rows: &[Row]) -> f64 {
-    let mut replay = Replay::new(machine);
-    let mut follow = super::distance::Follow::new(&[0.0; 3], items);
-    let mut worst = 0.0_f64;
-    for row in rows {
-        for k in 0..8 {
-            worst = worst.max(follow.off(&replay.at(row, row.ticks / 8 * k)));
-        }
-        replay.run(row);
-    }
-    replay.assert_limits(machine);
-    worst
+    super::follow::deviation(machine, &programmed(machine, items), rows, &|motors| motors)
+}
+
+/// The path of a program, whose end is rounded to whole steps.
+pub fn programmed(machine: &Machine, items: &[Item]) -> super::free_space::Programmed {
+    let steps: Vec<f64> =
+        machine.axes.iter().map(|a| a.steps_per_unit.to_string().parse().unwrap()).collect();
+    let landed =
+        |letters: &[f64]| letters.iter().zip(&steps).map(|(x, s)| (x * s).round() / s).collect();
+    super::free_space::Programmed::new(&[0.0; 3], items, 3, landed)
 }

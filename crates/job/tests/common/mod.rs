@@ -1,7 +1,8 @@
 //! What the tests of jobs share.
 #![allow(dead_code, reason = "each test uses a part")]
 
-pub mod distance;
+pub mod follow;
+pub mod free_space;
 pub mod measure;
 pub mod reader;
 pub mod reference;

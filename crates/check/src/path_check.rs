@@ -1,0 +1,219 @@
+//! The checker of jobs: rebuilds the tool from the pulses alone and compares it with the programmed
+//! path. It knows nothing of the plan.
+//!
+//! Each rising edge of STEP moves one letter of the tool by one step. After each of them, the tool
+//! must be within the tolerance and one step of each axis of the programmed path, in its order
+//! (`path_follow.rs`). At the end, all counts must be exact. The pins must keep the times of their
+//! drivers, and no pulse may come before the start or after the end of the job.
+
+use crate::edge::{PinChange, PinSink};
+use crate::error::TraceError;
+use crate::path_follow::{Lost, Off, PathFollow};
+use crate::path_leg::{LETTERS, PathLeg, Place};
+use crate::path_report::{PathAxisReport, PathReport, minimum};
+use crate::pins::PinWatch;
+use carrystep_core::build::PinTimes;
+use std::fmt;
+
+const PS: f64 = 1e12;
+
+/// One axis of a job.
+#[derive(Debug, Clone)]
+pub struct PathAxis<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The letter that it moves: 0 to 2 for x, y, z, 3 to 5 for a, b, c.
+    pub letter: usize,
+    /// One step, mm or degrees.
+    pub step: f64,
+    /// Machine place at the beginning, steps.
+    pub start_steps: i64,
+    /// Steps forward minus steps backward that the program requires.
+    pub steps: i64,
+    /// Minimum times of the driver.
+    pub pins_ns: PinTimes,
+}
+
+/// What a capture of a job is compared with.
+#[derive(Debug, Clone)]
+pub struct PathSetup<'a> {
+    /// The axes, in the order of their numbers.
+    pub axes: Vec<PathAxis<'a>>,
+    /// The place where the program begins: x, y, z in mm, a, b, c in degrees.
+    pub start: [f64; LETTERS],
+    /// The start of the job plus the latency L, ps of the capture.
+    pub origin_ps: u64,
+    /// Length of the job, ps.
+    pub total_ps: u64,
+}
+
+/// Checks a capture of a job from a stream of pin changes, in constant memory.
+pub struct PathChecker<'a> {
+    setup: PathSetup<'a>,
+    follow: PathFollow<'a>,
+    place: Place,
+    positions: Vec<i64>,
+    watches: Vec<PinWatch>,
+    worst: Option<(Off, u64)>,
+    lost: Option<(Lost, u64)>,
+    /// Times of the first and the last pulse, ps.
+    times: Option<[u64; 2]>,
+}
+
+impl fmt::Debug for PathChecker<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PathChecker").field("place", &self.place).finish_non_exhaustive()
+    }
+}
+
+impl<'a> PathChecker<'a> {
+    /// A checker that has not seen any change. `legs` is the programmed path.
+    pub fn new(setup: PathSetup<'a>, legs: Box<dyn Iterator<Item = PathLeg> + 'a>) -> Self {
+        let mut step = [0.0; LETTERS];
+        for axis in &setup.axes {
+            step[axis.letter] = axis.step;
+        }
+        let follow = PathFollow::new(legs, setup.start, step);
+        let count = setup.axes.len();
+        let mut this = Self {
+            place: setup.start,
+            positions: vec![0; count],
+            watches: vec![PinWatch::default(); count],
+            follow,
+            worst: None,
+            lost: None,
+            times: None,
+            setup,
+        };
+        for axis in 0..count {
+            this.stand(axis);
+        }
+        this.follow(this.setup.origin_ps);
+        this
+    }
+
+    /// Puts the tool where the position of an axis says.
+    fn stand(&mut self, axis: usize) {
+        let PathAxis { letter, step, start_steps, .. } = self.setup.axes[axis];
+        self.place[letter] = (start_steps + self.positions[axis]) as f64 * step;
+    }
+
+    fn follow(&mut self, ps: u64) {
+        if self.lost.is_some() {
+            return;
+        }
+        match self.follow.go(&self.place) {
+            Ok(Some(off)) => {
+                if self.worst.as_ref().is_none_or(|(worst, _)| off.part() > worst.part()) {
+                    self.worst = Some((off, ps));
+                }
+            }
+            Ok(None) => {}
+            Err(lost) => self.lost = Some((lost, ps)),
+        }
+    }
+
+    /// Seconds from the start of the job.
+    fn seconds(&self, ps: u64) -> f64 {
+        (i128::from(ps) - i128::from(self.setup.origin_ps)) as f64 / PS
+    }
+
+    /// Ends the check and returns the report.
+    pub fn finish(mut self) -> PathReport {
+        let mut failures = Vec::new();
+        if let Some((Lost { off }, ps)) = self.lost {
+            failures.push(format!(
+                "the tool leaves the path at {:.6} s, near line {}: {} from it, {} allowed",
+                self.seconds(ps),
+                off.line,
+                distance(&off, off.linear, off.rotary),
+                distance(&off, off.linear_bound, off.rotary_bound)
+            ));
+        } else if !self.follow.is_at_the_end() {
+            let line = self.follow.line().unwrap_or(0);
+            failures.push(format!("the pulses end before the path does, near line {line}"));
+        }
+        if let Some([first, last]) = self.times {
+            let end = self.setup.origin_ps + self.setup.total_ps;
+            if first < self.setup.origin_ps || last > end {
+                failures.push(format!(
+                    "there are pulses from {:.9} s to {:.9} s, and the job lasts {:.9} s",
+                    self.seconds(first),
+                    self.seconds(last),
+                    self.setup.total_ps as f64 / PS
+                ));
+            }
+        }
+        let axes = self.setup.axes.iter().zip(&self.watches).zip(&self.positions);
+        let axes: Vec<PathAxisReport> = axes
+            .map(|((axis, watch), &position)| {
+                let shortest = watch.shortest();
+                let report = PathAxisReport {
+                    axis: axis.name.to_owned(),
+                    pulses: watch.pulses(),
+                    position_expected: axis.steps,
+                    position_found: position,
+                    step_high_min_ns: minimum(shortest.step_high),
+                    step_high_required_ns: axis.pins_ns.step_high as f64,
+                    step_low_min_ns: minimum(shortest.step_low),
+                    step_low_required_ns: axis.pins_ns.step_low as f64,
+                    dir_setup_min_ns: minimum(shortest.dir_setup),
+                    dir_setup_required_ns: axis.pins_ns.dir_setup as f64,
+                    dir_hold_min_ns: minimum(shortest.dir_hold),
+                    dir_hold_required_ns: axis.pins_ns.dir_hold as f64,
+                };
+                failures.extend(report.failures());
+                report
+            })
+            .collect();
+        let (worst, at) = match self.worst {
+            Some((off, ps)) => (off, Some(self.seconds(ps))),
+            None => (
+                Off { linear: 0.0, rotary: 0.0, linear_bound: 0.0, rotary_bound: 0.0, line: 0 },
+                None,
+            ),
+        };
+        PathReport {
+            passed: failures.is_empty(),
+            deviation_mm: worst.linear,
+            deviation_bound_mm: worst.linear_bound,
+            deviation_deg: worst.rotary,
+            deviation_bound_deg: worst.rotary_bound,
+            deviation_line: at.map(|_| worst.line),
+            deviation_at_s: at,
+            axes,
+            failures,
+        }
+    }
+}
+
+/// The distance that is too great: over x, y and z, or of a rotary letter.
+fn distance(off: &Off, linear: f64, rotary: f64) -> String {
+    if off.linear / off.linear_bound >= off.rotary / off.rotary_bound {
+        format!("{linear:.6} mm")
+    } else {
+        format!("{rotary:.6} degrees")
+    }
+}
+
+impl PinSink for PathChecker<'_> {
+    fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
+        if let Some(watch) = self.watches.get_mut(usize::from(level.axis)) {
+            watch.initial(level.pin, level.level);
+        }
+        Ok(())
+    }
+
+    fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
+        let axis = usize::from(change.axis);
+        let Some(watch) = self.watches.get_mut(axis) else { return Ok(()) };
+        if watch.change(change) {
+            self.positions[axis] += if watch.backward() { -1 } else { 1 };
+            let first = self.times.map_or(change.ps, |[first, _]| first);
+            self.times = Some([first, change.ps]);
+            self.stand(axis);
+            self.follow(change.ps);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,65 @@
+//! The options of programs in G-code, which `plan` and `simulate` share.
+
+use crate::failure::Failure;
+use carrystep_program::AXIS_LETTERS;
+use clap::Args;
+use std::path::PathBuf;
+
+/// The heading of these options in the help.
+const HEADING: &str = "Options of G-code programs";
+
+/// The options of programs in G-code.
+#[derive(Debug, Args)]
+pub struct ProgramArguments {
+    /// The machine file. Its axes are called x, y, z, a, b or c.
+    #[arg(long, help_heading = HEADING, value_name = "MACHINE.toml")]
+    pub machine: Option<PathBuf>,
+    /// How far the tool may be from the programmed path, mm; overrides G64 P. Default: G64 P of the
+    /// program, otherwise 0.01.
+    #[arg(long, help_heading = HEADING, value_name = "MM", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+    /// The machine place where the program begins, mm or degrees, for example x=10,z=-2. Default: 0.
+    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
+    pub at: Vec<(usize, f64)>,
+    /// How many lines loops and subroutines may run again. Default: 10000000.
+    #[arg(long, help_heading = HEADING, value_name = "LINES")]
+    pub blocks: Option<u64>,
+}
+
+/// Reads a tolerance, mm.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected a number of mm".to_owned())?;
+    if (1e-6..=1e3).contains(&value) {
+        Ok(value)
+    } else {
+        Err("expected a tolerance from 0.000001 to 1000 mm".to_owned())
+    }
+}
+
+/// Reads the place of a letter, as the letter's number and mm or degrees.
+fn place(text: &str) -> Result<(usize, f64), String> {
+    let read = text.split_once('=').and_then(|(name, value)| {
+        let mut letters = AXIS_LETTERS.iter();
+        let letter = letters.position(|letter| name.eq_ignore_ascii_case(&letter.to_string()))?;
+        Some((letter, value.parse::<f64>().ok().filter(|value| value.abs() <= 1e9)?))
+    });
+    read.ok_or_else(|| "expected a letter of x, y, z, a, b, c and a place: x=12.5".to_owned())
+}
+
+impl ProgramArguments {
+    /// Refuses options of programs for a move file.
+    pub fn refuse_for_moves(&self) -> Result<(), Failure> {
+        let given = [
+            ("--machine", self.machine.is_some()),
+            ("--tolerance", self.tolerance.is_some()),
+            ("--at", !self.at.is_empty()),
+            ("--blocks", self.blocks.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            None => Ok(()),
+            Some((option, _)) => Err(Failure::input(format!(
+                "{option} is an option of G-code programs: their names end in .ngc, .nc or .gcode"
+            ))),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `carrystep plan` for a G-code program: its figures, the limits reached, and on request the
+//! segments.
+
+use crate::arguments::PlanArguments;
+use crate::failure::Failure;
+use crate::program_table::ProgramFigures;
+use crate::segments::{SegmentJson, add_segment, segments};
+use crate::spool::Spool;
+use crate::{output, program};
+use carrystep_core::Segment;
+use carrystep_program::{ProgramFile, Row};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// What `--json` prints, and `--json-lines` at the end.
+#[derive(JsonSchema, Serialize)]
+pub struct PlannedProgram {
+    passed: bool,
+    #[serde(flatten)]
+    figures: ProgramFigures,
+}
+
+/// What `--json-lines` prints for each row: segments of all axes for the same ticks.
+#[derive(JsonSchema, Serialize)]
+pub struct PlannedRow<'a> {
+    /// The number of the row, counted from 1.
+    number: u64,
+    /// The line of the program that the path has reached at the end of the row.
+    line: u64,
+    /// A segment for each axis, in the order of the machine file.
+    #[serde(serialize_with = "segments")]
+    #[schemars(with = "Vec<SegmentJson>")]
+    segments: &'a [Segment],
+}
+
+/// Plans a program and shows the plan.
+pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
+    program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
+    let file = program::load(&arguments.file, &arguments.program)?;
+    let (mut text, mut number) = (Spool::new(), 0);
+    let survey = program::survey(&file, |row| {
+        number += 1;
+        if arguments.json_lines {
+            let Row { line, segments, .. } = row;
+            return output::print_json_line(&PlannedRow { number, line: *line, segments });
+        }
+        if arguments.segments { text.add(|text| add_row(text, &file, row)) } else { Ok(()) }
+    })?;
+    let figures = ProgramFigures::new(&file, &survey);
+    if arguments.json || arguments.json_lines {
+        return output::print_json(&PlannedProgram { passed: true, figures });
+    }
+    text.print()?;
+    output::print(&figures.to_string())
+}
+
+/// Adds the segments of a row.
+fn add_row(text: &mut String, file: &ProgramFile, row: &Row) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "line {}", row.line);
+    for (axis, segment) in file.machine().axes.iter().zip(&row.segments) {
+        add_segment(text, &axis.name, segment);
+    }
+}

@@ -1,0 +1,50 @@
+//! Opens a G-code program for a machine, and plans it once to its end.
+
+use crate::arguments::ProgramArguments;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::progress::PlanProgress;
+use carrystep_files::{InputError, Machine};
+use carrystep_program::{ProgramFile, Row, Settings, Survey};
+use std::path::Path;
+
+/// Opens a program.
+pub fn load(path: &Path, arguments: &ProgramArguments) -> Result<ProgramFile, Failure> {
+    let Some(machine_path) = &arguments.machine else {
+        let message = format!("{}: a G-code program needs a machine", path.display());
+        return Err(InputError::new(message).help("add --machine MACHINE.toml").into());
+    };
+    let machine = Machine::load(machine_path)?;
+    let mut settings = Settings { tolerance_mm: arguments.tolerance, ..Settings::default() };
+    for &(letter, at) in &arguments.at {
+        settings.start[letter] = at;
+    }
+    settings.blocks = arguments.blocks.unwrap_or(settings.blocks);
+    Ok(ProgramFile::open(path, machine, machine_path, settings)?)
+}
+
+/// Plans a program to its end, so that a mistake is found before anything is written. `watch` sees
+/// each row.
+pub fn survey(
+    file: &ProgramFile,
+    mut watch: impl FnMut(&Row) -> Result<(), Failure>,
+) -> Result<Survey, Failure> {
+    let mut progress = PlanProgress::of("rows");
+    let survey = Survey::new(file, |row| {
+        progress.one();
+        watch(row)?;
+        interrupt::check()
+    })?;
+    file.same()?;
+    Ok(survey)
+}
+
+/// Refuses options of move files for a program.
+pub fn refuse(options: &[(&str, bool)]) -> Result<(), Failure> {
+    match options.iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((option, _)) => {
+            Err(Failure::input(format!("{option} is not available for G-code programs")))
+        }
+    }
+}

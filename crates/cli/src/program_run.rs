@@ -1,0 +1,195 @@
+//! Runs a planned program at one level: it opens the outputs, runs the gateware, rebuilds the tool
+//! from the pulses, and collects the results.
+
+use crate::arguments::Core;
+use crate::failure::Failure;
+use crate::gateware::{self, CorePlan};
+use crate::interrupt;
+use crate::pass::{Kept, RowCommands};
+use crate::program_table::ProgramFigures;
+use crate::progress::RunProgress;
+use crate::wanted::Wanted;
+use carrystep_check::{
+    OwnCapture, PathAxis, PathChecker, PathReport, PathSetup, PinSink, PinsVcd, Tee, csv_writer,
+};
+use carrystep_core::Timebase;
+use carrystep_profile::{Leg, Timeline};
+use carrystep_program::{Legs, ProgramFile, Survey};
+use carrystep_simulators::engine::run::EngineJob;
+use carrystep_simulators::pins::PinFeed;
+use carrystep_simulators::{Job, Level, LevelError};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// The result of a run; `--json` prints it as it is.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct ProgramResult {
+    /// True if everything below holds.
+    pub passed: bool,
+    /// The gateware.
+    pub core: &'static str,
+    /// Where it ran.
+    pub level: &'static str,
+    /// Clock cycles simulated.
+    pub clocks: u64,
+    /// Seconds that the simulation took, planning and sinks included.
+    pub run_s: f64,
+    /// The faults that the gateware latched; "none" if there are none.
+    pub faults: String,
+    /// Position registers at the end, steps from the start.
+    pub positions: Vec<i32>,
+    /// The plan.
+    pub plan: ProgramFigures,
+    /// The pulses against the program.
+    pub check: PathReport,
+    /// The files that were written.
+    pub files: Vec<PathBuf>,
+}
+
+impl ProgramResult {
+    /// Returns the failure if anything does not hold; the report has been printed already.
+    pub fn verdict(&self) -> Result<(), Failure> {
+        if self.passed { Ok(()) } else { Err(Failure::Check) }
+    }
+}
+
+impl fmt::Display for ProgramResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.plan, self.check)?;
+        for file in &self.files {
+            writeln!(f, "wrote {}", file.display())?;
+        }
+        let Self { core, level, clocks, faults, .. } = self;
+        writeln!(f, "{core}, {level}: {clocks} clocks, faults: {faults}")?;
+        f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
+    }
+}
+
+/// Runs a planned program on a core at a level, checks every pulse and writes what is wanted.
+pub fn run(
+    file: &ProgramFile,
+    survey: &Survey,
+    (core, level): (Core, Level),
+    wanted: &Wanted,
+) -> Result<ProgramResult, Failure> {
+    let machine = file.machine();
+    let title = file.path().display().to_string();
+    let too_many = |error: carrystep_files::TooManyAxes| Failure::input(error.to_string());
+    let build = machine.build().map_err(too_many)?;
+    let engine = match core {
+        Core::Engine => Some(gateware::engine(machine, &title)?),
+        Core::Parallel => None,
+    };
+    carrystep_simulators::available(level)?;
+    crate::job::fits_into_a_capture(survey.ticks, &build.timebase)?;
+    let mut files = wanted.begin()?;
+    let kept = Kept::default();
+    let program = RowCommands::new(file, survey, &kept);
+    // Set when an output fails, so that the run ends early.
+    let deaf = AtomicBool::new(false);
+    let halt = &[interrupt::watch(), &deaf];
+    let timebase = build.timebase;
+    let progress = RunProgress::new(level, survey.ticks * u64::from(timebase.clocks_per_tick()));
+    let how_far = Some(progress.how_far());
+    let axes = machine.axes.len();
+    let on = match &engine {
+        None => {
+            let job = Job::new(&build, &program, survey.ticks);
+            CorePlan::Parallel(Job { axes, halt, how_far, ..job })
+        }
+        Some(engine) => {
+            let job = EngineJob::new(engine, &program, survey.ticks);
+            CorePlan::Engine(EngineJob { halt, how_far, ..job })
+        }
+    };
+    // A job without motion has no start.
+    let load = if survey.rows > 0 { on.origin()? } else { 0 };
+    let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());
+
+    let mut checker = PathChecker::new(
+        setup(file, survey, origin_ps, &timebase),
+        Box::new(kept.until_an_error(Legs::new(file)?)),
+    );
+    let names = || machine.axes.iter().map(|axis| axis.name.as_str());
+    let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };
+    let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names())).transpose()?;
+    let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();
+    writers.extend(vcd.map(|vcd| Box::new(vcd) as Box<dyn PinSink>));
+    // A job has no profile, so that the column of errors is empty.
+    let none = || Timeline::new(timebase.tick_seconds(), Vec::<Leg>::new());
+    let csv = files.csv.as_mut();
+    writers.extend(csv.map(|out| {
+        let axes = names().map(|name| (name, none()));
+        csv_writer(out, &timebase, build.phase, origin_ps.cast_signed(), axes)
+    }));
+
+    let started = Instant::now();
+    let mut tee = Tee::new();
+    tee.add(&mut checker);
+    writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
+    let mut feed = PinFeed::new(timebase, axes, &mut tee);
+    let outcome = on.run(level, &mut |cycle, step, dir| {
+        progress.how_far().at(cycle);
+        feed.pins(cycle, step, dir);
+        if feed.has_failed() {
+            deaf.store(true, Ordering::Relaxed);
+        }
+    });
+    interrupt::check()?;
+    if let Err(LevelError::Halted) = outcome {
+        // The feed holds the cause.
+        return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
+    }
+    // An error of reading explains whatever the run reports.
+    kept.error()?;
+    file.same()?;
+    let outcome = outcome?;
+    feed.end(outcome.clocks)?;
+    let run_s = started.elapsed().as_secs_f64();
+    drop(progress);
+    drop(writers);
+
+    let check = checker.finish();
+    let plan = ProgramFigures::new(file, survey);
+    let positions: Vec<i32> = outcome.positions.into_iter().take(axes).collect();
+    let landed =
+        positions.iter().zip(&survey.axes).all(|(&found, axis)| i64::from(found) == axis.steps());
+    Ok(ProgramResult {
+        passed: check.passed && plan.landed() && outcome.fault.is_none() && landed,
+        core: core.name(),
+        level: level.name(),
+        clocks: outcome.clocks,
+        run_s,
+        faults: outcome.fault.unwrap_or_else(|| "none".into()),
+        positions,
+        plan,
+        check,
+        files: files.keep()?,
+    })
+}
+
+/// What the checker compares the pulses with.
+fn setup<'a>(
+    file: &'a ProgramFile,
+    survey: &Survey,
+    origin_ps: u64,
+    timebase: &Timebase,
+) -> PathSetup<'a> {
+    let letters = file.letters();
+    let axes = file.machine().axes.iter().zip(letters.of_axes()).zip(&survey.axes);
+    let axes = axes.map(|((axis, &letter), planned)| PathAxis {
+        name: &axis.name,
+        letter,
+        step: letters.step()[letter],
+        start_steps: planned.start_steps,
+        steps: planned.steps(),
+        pins_ns: axis.pins_ns,
+    });
+    let ticks = u128::from(survey.ticks) * u128::from(timebase.tick_ns()) * 1000;
+    let total_ps = u64::try_from(ticks).unwrap_or(u64::MAX);
+    PathSetup { axes: axes.collect(), start: file.settings().start, origin_ps, total_ps }
+}

@@ -1,0 +1,248 @@
+//! Proves that the emitted curve stays within the tolerance of the path, in order along the path.
+//!
+//! The curve between two knots is a cubic, and lies in the convex hull of its four Bezier points.
+//! What is within the tolerance of a line is convex, too: if the four points are within it, the
+//! whole cubic is. An arc deviates from its chord by at most its second derivative times the square
+//! of the length over 8. Where no single piece covers the cubic, a chain of pieces may, by the
+//! triangle inequality; otherwise the cubic is halved.
+//!
+//! The curve may be on several pieces at once, as near a corner. It goes on to a later piece at a
+//! place within the tolerance of both, if it is near all corners between them.
+
+use crate::path::{MOST_REACH, Path, Place};
+use crate::piece::Piece;
+use crate::vector::{Point, dot, from_to, plus};
+
+/// Part of the tolerance that the proof uses; the rest is for rounding.
+pub(crate) const FULL: f64 = 0.9999;
+/// Length of a rest of a piece that is none, mm.
+const NOTHING: f64 = 1e-9;
+/// How often a cubic is halved.
+const HALVINGS: u32 = 14;
+/// Length of the parts near a corner, as a part of the tolerance.
+const FINE: f64 = 0.2;
+
+/// The pieces on which the curve may be at one place, in order.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Cover {
+    on: Vec<u64>,
+    /// The nearest place.
+    place: Place,
+}
+
+/// Where the proof fails, as a part of the cubic.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Miss {
+    pub phase: f64,
+    /// The piece that the curve has left too early, or from too far.
+    pub piece: u64,
+}
+
+impl Cover {
+    /// The curve is at a place of the path.
+    pub fn at(place: Place) -> Self {
+        Self { on: vec![place.piece], place }
+    }
+
+    /// The first piece on which the curve may be.
+    pub fn oldest(&self) -> u64 {
+        self.on.first().map_or(self.place.piece, |on| self.place.piece.min(*on))
+    }
+
+    /// A place of the last piece on which the curve, at rest at a point, may be; where that piece
+    /// ends there, the start of the next one.
+    pub fn leaving<const N: usize>(&self, point: &Point<N>, path: &Path<N>) -> Place {
+        let number = self.on.last().map_or(self.place.piece, |on| *on);
+        let Some(piece) = path.piece(number) else { return self.place };
+        let along = self.near(point, number, piece, path).0;
+        if piece.length - along < NOTHING && number + 1 < path.end() {
+            Place { piece: number + 1, along: 0.0 }
+        } else {
+            Place { piece: number, along }
+        }
+    }
+
+    /// The curve goes on along a cubic with these Bezier points, whose end is nearest to a place.
+    /// After a miss the curve is taken to be on the pieces around that place.
+    pub fn follow<const N: usize>(
+        &mut self,
+        cubic: &[Point<N>; 4],
+        end: Place,
+        path: &Path<N>,
+    ) -> Option<Miss> {
+        let result = self.part(cubic, end, path, (0.0, 1.0), HALVINGS);
+        if result.is_some() {
+            self.on = vec![end.piece];
+        }
+        self.place = end;
+        result
+    }
+
+    fn part<const N: usize>(
+        &mut self,
+        cubic: &[Point<N>; 4],
+        end: Place,
+        path: &Path<N>,
+        (from, to): (f64, f64),
+        left: u32,
+    ) -> Option<Miss> {
+        let kept: Vec<u64> =
+            self.on.iter().copied().filter(|&on| self.covers(cubic, on, path)).collect();
+        let corner = self.near_corner(cubic, path);
+        let chain = corner && self.chain(cubic, end, path);
+        if chain || (!kept.is_empty() && !corner) {
+            self.on = kept;
+            if chain && self.on.last().is_none_or(|last| *last < end.piece) {
+                self.on.push(end.piece);
+            }
+            self.enter(&cubic[3], path);
+            self.place = end;
+            return None;
+        }
+        if left == 0 {
+            return Some(Miss { phase: from, piece: *self.on.last()? });
+        }
+        let [first, second] = halves(cubic);
+        let middle = path.nearest(&first[3], self.place, end).map_or(end, |near| near.place);
+        let half = (from + to) / 2.0;
+        self.part(&first, middle, path, (from, half), left - 1)
+            .or_else(|| self.part(&second, end, path, (half, to), left - 1))
+    }
+
+    /// Where a piece is nearest to a point, as a length along it, and how far away, as a part of the
+    /// tolerance.
+    fn near<const N: usize>(
+        &self,
+        point: &Point<N>,
+        number: u64,
+        piece: &Piece<N>,
+        path: &Path<N>,
+    ) -> (f64, f64) {
+        let here = match number.cmp(&self.place.piece) {
+            std::cmp::Ordering::Less => piece.length,
+            std::cmp::Ordering::Equal => self.place.along,
+            std::cmp::Ordering::Greater => 0.0,
+        };
+        let along = piece.nearest_around(point, here, (0.0, f64::INFINITY));
+        (along, relative(&from_to(&piece.at(along), point), piece, path))
+    }
+
+    /// Whether one piece is within the tolerance of a whole cubic.
+    fn covers<const N: usize>(&self, cubic: &[Point<N>; 4], number: u64, path: &Path<N>) -> bool {
+        let Some(piece) = path.piece(number) else { return false };
+        let (mut low, mut high, mut off) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        for point in cubic {
+            let (along, away) = self.near(point, number, piece, path);
+            (low, high, off) = (low.min(along), high.max(along), off.max(away));
+        }
+        off + piece.bow(high - low) / piece.tolerance.linear <= FULL
+    }
+
+    /// Whether the curve may go on to another piece near a cubic that is too long to tell where.
+    fn near_corner<const N: usize>(&self, cubic: &[Point<N>; 4], path: &Path<N>) -> bool {
+        let Some(on) = self.on.last().and_then(|&on| path.piece(on)) else { return false };
+        let size = cubic[1..].iter().map(|b| relative(&from_to(&cubic[0], b), on, path));
+        let size = size.fold(0.0, f64::max);
+        size > FINE
+            && self.on.iter().any(|&number| {
+                number + 1 < path.end()
+                    && path.piece(number).is_some_and(|piece| {
+                        let off = relative(&from_to(&piece.end, &cubic[0]), piece, path);
+                        off <= MOST_REACH + size
+                    })
+            })
+    }
+
+    /// Whether a part of the path, from the nearest place at the start of a cubic to that at its
+    /// end, is near the cubic as a whole.
+    fn chain<const N: usize>(&self, cubic: &[Point<N>; 4], end: Place, path: &Path<N>) -> bool {
+        let start = self.place;
+        if !self.on.contains(&start.piece) {
+            return false;
+        }
+        let (Some(first), Some(last)) = (path.at(start), path.at(end)) else { return false };
+        let chord = from_to(&first.point, &last.point);
+        let square = dot(&chord, &chord);
+        let bent = |k: usize, b: &Point<N>| {
+            let part = k as f64 / 3.0;
+            from_to(&plus(&cubic[0], part, &from_to(&cubic[0], &cubic[3])), b)
+        };
+        // How far the pieces are from the chord of their part of the path.
+        let (mut reached, mut before) = (0.0_f64, [0.0; N]);
+        for number in start.piece..=end.piece {
+            let Some(piece) = path.piece(number) else { return false };
+            let norm = |d: &Point<N>| relative(d, piece, path);
+            let begin = if number == start.piece { start.along } else { 0.0 };
+            let upto = if number == end.piece { end.along } else { piece.length };
+            let bow = piece.bow(upto - begin) / piece.tolerance.linear;
+            let ends =
+                norm(&from_to(&first.point, &cubic[0])).max(norm(&from_to(&last.point, &cubic[3])));
+            let curved = norm(&bent(1, &cubic[1])).max(norm(&bent(2, &cubic[2])));
+            let mut after = [0.0; N];
+            if number < end.piece {
+                let part = dot(&from_to(&first.point, &piece.end), &chord) / square;
+                if !(reached..=1.0).contains(&part) {
+                    return false;
+                }
+                reached = part;
+                after = from_to(&plus(&first.point, part, &chord), &piece.end);
+            }
+            if ends + curved + norm(&before).max(norm(&after)) + bow > FULL {
+                return false;
+            }
+            before = after;
+        }
+        true
+    }
+
+    /// The curve is at a point: from the pieces on which it is, it may go on to later ones.
+    fn enter<const N: usize>(&mut self, point: &Point<N>, path: &Path<N>) {
+        let Some(&first) = self.on.first() else { return };
+        let last = self.on[self.on.len() - 1];
+        let (mut bridge, mut now) = (false, Vec::with_capacity(self.on.len() + 1));
+        for number in first..path.end() {
+            if number > last && !bridge {
+                break;
+            }
+            let Some(piece) = path.piece(number) else { break };
+            let was = self.on.contains(&number);
+            if was || (bridge && self.near(point, number, piece, path).1 <= FULL) {
+                now.push(number);
+                bridge = true;
+            }
+            bridge =
+                bridge && relative(&from_to(&piece.end, point), piece, path) <= MOST_REACH * FULL;
+        }
+        self.on = now;
+    }
+}
+
+/// A difference as a part of the tolerance of a piece.
+fn relative<const N: usize>(d: &Point<N>, piece: &Piece<N>, path: &Path<N>) -> f64 {
+    path.off(&[0.0; N], d, piece).sqrt()
+}
+
+/// Both halves of a cubic (P. de Casteljau, 1959).
+fn halves<const N: usize>(b: &[Point<N>; 4]) -> [[Point<N>; 4]; 2] {
+    let mean =
+        |p: &Point<N>, q: &Point<N>| -> Point<N> { std::array::from_fn(|i| (p[i] + q[i]) / 2.0) };
+    let [p, q, r] = [mean(&b[0], &b[1]), mean(&b[1], &b[2]), mean(&b[2], &b[3])];
+    let [s, t] = [mean(&p, &q), mean(&q, &r)];
+    let middle = mean(&s, &t);
+    [[b[0], p, s, middle], [middle, t, r, b[3]]]
+}
+
+/// The Bezier points of a uniform cubic spline between the second and third of four control points.
+pub(crate) fn bezier<const N: usize>(c: &[Point<N>; 4]) -> [Point<N>; 4] {
+    std::array::from_fn(|k| {
+        std::array::from_fn(|i| {
+            let [a, b, d, e] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+            match k {
+                0 => (a + 4.0 * b + d) / 6.0,
+                1 => (2.0 * b + d) / 3.0,
+                2 => (b + 2.0 * d) / 3.0,
+                _ => (b + 4.0 * d + e) / 6.0,
+            }
+        })
+    })
+}

@@ -1,0 +1,222 @@
+//! Canonical moves as events for a machine: each move with its start, its feed and the tolerance in
+//! force, rests, and what is switched.
+
+use crate::error::{Fault, ProgramError};
+use crate::file::ProgramFile;
+use crate::letter::LINEAR;
+use crate::letters::Letters;
+use crate::switch::Switch;
+use carrystep_gcode::{
+    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
+};
+use carrystep_job::Tolerance;
+use std::collections::VecDeque;
+use std::fs::File;
+use std::path::PathBuf;
+
+/// Distance from the programmed path that is allowed where the program says nothing, mm and
+/// degrees.
+pub const DEFAULT_TOLERANCE: f64 = 0.01;
+
+/// A part of what a program does. Places are x, y, z in mm, then a, b, c in degrees.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "nearly all events are moves")]
+pub enum Event {
+    /// The tool moves.
+    Move(ProgrammedMove),
+    /// The tool rests.
+    Rest {
+        /// Duration in s, 0 or more.
+        seconds: f64,
+        /// Line of the program.
+        line: u64,
+    },
+    /// Something is switched, or somebody is waited for, at rest.
+    Switch {
+        /// What it is.
+        switch: Switch,
+        /// Line of the program.
+        line: u64,
+    },
+    /// The end of the program.
+    End {
+        /// The last line that was read.
+        line: u64,
+    },
+}
+
+/// A straight move, an arc or a helix.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProgrammedMove {
+    /// The place where it begins.
+    pub from: Point,
+    /// The place where it ends.
+    pub to: Point,
+    /// How it bends; `None` for a straight move.
+    pub arc: Option<Arc>,
+    /// Greatest speed along the path, mm/s (degrees/s if only rotary axes move); `None` for G0.
+    pub feed: Option<f64>,
+    /// How far from the path the tool may be.
+    pub tolerance: Tolerance,
+    /// Line of the program.
+    pub line: u64,
+}
+
+impl ProgrammedMove {
+    /// The length of the path in mm if X, Y or Z moves, otherwise in degrees.
+    pub fn length(&self) -> f64 {
+        let distance = |letters: std::ops::Range<usize>| {
+            letters.map(|i| (self.to[i] - self.from[i]).powi(2)).sum::<f64>().sqrt()
+        };
+        let Some(arc) = &self.arc else {
+            let linear = distance(0..LINEAR);
+            return if linear > 0.0 { linear } else { distance(LINEAR..AXES) };
+        };
+        let [_, _, normal] = arc.plane.axes();
+        let [from, to] = [&self.from, &self.to].map(|place| {
+            let [a, b] = arc.radius_vector(place);
+            a.hypot(b)
+        });
+        let turned = (f64::midpoint(from, to) * arc.sweep).hypot(to - from);
+        turned.hypot(self.to[normal] - self.from[normal])
+    }
+}
+
+/// The events of a program, from its beginning.
+#[derive(Debug)]
+pub struct Events {
+    steps: Interpreter<File>,
+    path: PathBuf,
+    letters: Letters,
+    tolerance_mm: Option<f64>,
+    at: Point,
+    mode: PathMode,
+    /// What the last canonical move gives and has not been taken yet.
+    waiting: VecDeque<Event>,
+}
+
+impl Events {
+    /// Reads a program from its beginning.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not the one that was opened, or its O-words are wrong.
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+        file.same()?;
+        let settings = file.settings();
+        let options =
+            Options { start: settings.start, blocks: settings.blocks, ..Options::default() };
+        let steps = Interpreter::open(file.path(), &options)
+            .map_err(|error| ProgramError::of_gcode(file.path(), error))?;
+        Ok(Self {
+            steps,
+            path: file.path().to_owned(),
+            letters: file.letters().clone(),
+            tolerance_mm: settings.tolerance_mm,
+            at: settings.start,
+            mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
+            waiting: VecDeque::new(),
+        })
+    }
+
+    /// The tolerance in force.
+    fn tolerance(&self) -> Tolerance {
+        let [linear, rotary] = self.letters.finest().map(|step| step.unwrap_or(DEFAULT_TOLERANCE));
+        let exact = Tolerance { linear, rotary };
+        let of_g64 = match self.mode {
+            PathMode::Exact => return exact,
+            PathMode::ExactStop => None,
+            PathMode::Blend { tolerance_mm, .. } => tolerance_mm,
+        };
+        match self.tolerance_mm.or(of_g64) {
+            // G64 P0 rounds nothing.
+            Some(0.0) => exact,
+            linear => {
+                Tolerance { linear: linear.unwrap_or(DEFAULT_TOLERANCE), rotary: DEFAULT_TOLERANCE }
+            }
+        }
+    }
+
+    fn add(&mut self, Step { line, canon, .. }: Step) -> Result<(), Fault> {
+        let rest = Event::Rest { seconds: 0.0, line };
+        match canon {
+            Canon::Traverse { to } => self.go(line, to, None, None)?,
+            Canon::Feed { to, pace } => self.go(line, to, None, Some(pace))?,
+            Canon::Arc(arc) => self.go(line, arc.to, Some(arc), Some(arc.pace))?,
+            Canon::Probe { to, pace, .. } => {
+                let switch = Switch::Probe;
+                self.waiting.push_back(Event::Switch { switch, line });
+                self.go(line, to, None, Some(pace))?;
+                self.waiting.push_back(rest);
+            }
+            Canon::Dwell { seconds } => self.waiting.push_back(Event::Rest { seconds, line }),
+            Canon::Path(mode) => self.mode = mode,
+            Canon::Spindle { .. } => self.switch(Switch::Spindle, line),
+            Canon::Coolant { .. } => self.switch(Switch::Coolant, line),
+            Canon::DigitalOutput { .. } | Canon::AnalogOutput { .. } => {
+                self.switch(Switch::Output, line);
+            }
+            Canon::ReadInput { .. } => self.switch(Switch::Input, line),
+            Canon::ChangeTool { .. } => self.switch(Switch::ToolChange, line),
+            Canon::Pause { .. } => self.switch(Switch::Pause, line),
+            Canon::End => self.waiting.push_back(Event::End { line }),
+            // Nothing overrides a feed in a plan, and the rest is for the operator.
+            Canon::Overrides { .. }
+            | Canon::SelectTool { .. }
+            | Canon::Comment(_)
+            | Canon::Message(_) => {}
+        }
+        Ok(())
+    }
+
+    fn switch(&mut self, switch: Switch, line: u64) {
+        self.waiting.push_back(Event::Switch { switch, line });
+    }
+
+    fn go(
+        &mut self,
+        line: u64,
+        to: Point,
+        arc: Option<Arc>,
+        pace: Option<Pace>,
+    ) -> Result<(), Fault> {
+        let in_plane = |letter| arc.is_some_and(|arc| arc.plane.axes()[..2].contains(&letter));
+        for letter in 0..AXES {
+            let moves = to[letter] != self.at[letter] || in_plane(letter);
+            if moves && self.letters.axis(letter).is_none() {
+                return Err(Fault::NoAxis(AXIS_LETTERS[letter]));
+            }
+        }
+        let from = std::mem::replace(&mut self.at, to);
+        let tolerance = self.tolerance();
+        let mut one = ProgrammedMove { from, to, arc, feed: None, tolerance, line };
+        one.feed = pace.map(|pace| match pace {
+            Pace::PerSecond(speed) => speed,
+            Pace::Seconds(seconds) => one.length() / seconds,
+        });
+        self.waiting.push_back(Event::Move(one));
+        if self.mode == PathMode::ExactStop {
+            self.waiting.push_back(Event::Rest { seconds: 0.0, line });
+        }
+        Ok(())
+    }
+}
+
+impl Iterator for Events {
+    type Item = Result<Event, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(event) = self.waiting.pop_front() {
+                return Some(Ok(event));
+            }
+            let step = match self.steps.next()? {
+                Ok(step) => step,
+                Err(error) => return Some(Err(ProgramError::of_gcode(&self.path, error))),
+            };
+            let line = step.line;
+            if let Err(fault) = self.add(step) {
+                return Some(Err(ProgramError::new(&self.path, line, fault)));
+            }
+        }
+    }
+}

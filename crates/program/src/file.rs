@@ -1,0 +1,135 @@
+//! A program, its machine, and how it is to be run.
+
+use crate::error::{Fault, ProgramError};
+use crate::letter::unit;
+use crate::letters::Letters;
+use carrystep_files::unit::digits;
+use carrystep_files::{InputError, Machine};
+use carrystep_gcode::{DEFAULT_BLOCKS, Point};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Endings of names of programs, without the point, in lower case.
+const ENDINGS: [&str; 3] = ["ngc", "nc", "gcode"];
+
+/// Whether a file is a program, by the ending of its name: `.ngc`, `.nc` or `.gcode`.
+pub fn is_program(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
+/// How a program is to be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Machine place at the beginning: x, y, z in mm, a, b, c in degrees.
+    pub start: Point,
+    /// Tolerance in mm instead of G64's; greater than 0.
+    pub tolerance_mm: Option<f64>,
+    /// Lines that loops and subroutines may run again.
+    pub blocks: u64,
+}
+
+impl Default for Settings {
+    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`].
+    fn default() -> Self {
+        Self { start: Point::default(), tolerance_mm: None, blocks: DEFAULT_BLOCKS }
+    }
+}
+
+/// What shows that a file is still the one that was read first.
+type Signs = (u64, Option<SystemTime>);
+
+/// A program on a machine.
+#[derive(Debug, Clone)]
+pub struct ProgramFile {
+    path: PathBuf,
+    machine: Machine,
+    letters: Letters,
+    settings: Settings,
+    signs: Signs,
+}
+
+impl ProgramFile {
+    /// Opens a program for a machine, and registers it as an input, so that no later output of this
+    /// process replaces it. `machine_path` is the machine's file, for errors.
+    ///
+    /// # Errors
+    /// The file cannot be read, the machine cannot run jobs, or it cannot start at that place.
+    pub fn open(
+        path: &Path,
+        machine: Machine,
+        machine_path: &Path,
+        settings: Settings,
+    ) -> Result<Self, InputError> {
+        let file =
+            carrystep_files::open(path).map_err(|error| InputError::new(error.to_string()))?;
+        let there = file.metadata().map_err(|error| InputError::new(error.to_string()))?;
+        let letters =
+            Letters::new(&machine).map_err(|fault| ProgramError::new(machine_path, 0, fault))?;
+        let signs = (there.len(), there.modified().ok());
+        let this = Self { path: path.to_owned(), machine, letters, settings, signs };
+        this.check_start()?;
+        Ok(this)
+    }
+
+    /// Refuses a start beyond `travel`, or of an axis that does not exist.
+    fn check_start(&self) -> Result<(), InputError> {
+        for (letter, &at) in self.settings.start.iter().enumerate() {
+            let name = carrystep_gcode::AXIS_LETTERS[letter];
+            let Some(axis) = self.letters.axis(letter) else {
+                if at == 0.0 {
+                    continue;
+                }
+                let axes = self.machine.axis_names();
+                return Err(InputError::new(format!(
+                    "the start gives {name}: the axes are {axes}"
+                )));
+            };
+            let axis = &self.machine.axes[axis];
+            let steps = at * axis.unit.steps;
+            if let Some([low, high]) = axis.travel
+                && !(low as f64 - 0.5..=high as f64 + 0.5).contains(&steps)
+            {
+                let [low, high] = [low, high].map(|steps| digits(steps as f64 / axis.unit.steps));
+                let unit = unit(letter);
+                let message = format!(
+                    "the job starts at {name} = {at}, beyond the travel of {low} to {high} {unit}"
+                );
+                return Err(InputError::new(message).help("give another place with --at"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The path of the file, as the user gave it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The letters of the machine's axes.
+    pub fn letters(&self) -> &Letters {
+        &self.letters
+    }
+
+    /// How the program is to be run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Checks that the file is still the one that was opened.
+    ///
+    /// # Errors
+    /// [`Fault::Changed`].
+    pub fn same(&self) -> Result<(), ProgramError> {
+        let now = std::fs::metadata(&self.path).map(|there| (there.len(), there.modified().ok()));
+        match now {
+            Ok(now) if now == self.signs => Ok(()),
+            _ => Err(ProgramError::new(&self.path, 0, Fault::Changed)),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Which axis of the machine is which letter of a program.
+
+use crate::error::Fault;
+use crate::letter::{LINEAR, letter_of, unit};
+use carrystep_core::StartPhase;
+use carrystep_files::{Machine, decimal};
+use carrystep_gcode::{AXES, Point};
+
+/// The letters of a machine's axes.
+#[derive(Debug, Clone)]
+pub struct Letters {
+    /// The letter of each axis in the order of the machine file, as an index of a [`Point`].
+    of_axis: Vec<usize>,
+    /// The axis of each letter.
+    axis_of: [Option<usize>; AXES],
+    /// One step of each letter, mm or degrees; 0 for letters without an axis.
+    step: Point,
+}
+
+impl Letters {
+    /// The letters of a machine.
+    ///
+    /// # Errors
+    /// A [`Fault`] if jobs cannot be planned for this machine: an axis is not called x, y, z, a, b
+    /// or c, has a wrong unit, or is in a wrong order, or moves do not start half a step away from
+    /// the next step.
+    pub fn new(machine: &Machine) -> Result<Self, Fault> {
+        if machine.phase != StartPhase::Half {
+            return Err(Fault::Phase);
+        }
+        let mut letters = Self { of_axis: Vec::new(), axis_of: [None; AXES], step: [0.0; AXES] };
+        for (number, axis) in machine.axes.iter().enumerate() {
+            let letter = letter_of(&axis.name);
+            let letter = letter.ok_or_else(|| Fault::AxisName(axis.name.clone()))?;
+            let wanted = unit(letter);
+            let unit = axis.unit.name.as_str();
+            // An axis without a unit in its file is taken to be in mm or degrees.
+            if unit != wanted && unit != "units" {
+                return Err(Fault::Unit { axis: axis.name.clone(), unit: unit.into(), wanted });
+            }
+            if letter < LINEAR && letters.of_axis.iter().any(|&before| before >= LINEAR) {
+                return Err(Fault::Order(axis.name.clone()));
+            }
+            letters.of_axis.push(letter);
+            letters.axis_of[letter] = Some(number);
+            letters.step[letter] = 1.0 / decimal::to_f64(&axis.steps_per_unit);
+        }
+        Ok(letters)
+    }
+
+    /// The letter of each axis, in the order of the machine file, as an index of a [`Point`].
+    pub fn of_axes(&self) -> &[usize] {
+        &self.of_axis
+    }
+
+    /// The axis of a letter, if the machine has one.
+    pub fn axis(&self, letter: usize) -> Option<usize> {
+        self.axis_of.get(letter).copied().flatten()
+    }
+
+    /// One step of each letter, mm or degrees; 0 for letters without an axis.
+    pub fn step(&self) -> &Point {
+        &self.step
+    }
+
+    /// Number of axes that are in mm; they come first.
+    pub(crate) fn linear(&self) -> usize {
+        self.of_axis.iter().filter(|&&letter| letter < LINEAR).count()
+    }
+
+    /// The coordinates of the machine's axes, in the order of the machine file.
+    pub(crate) fn coordinates(&self, place: &Point) -> Vec<f64> {
+        self.of_axis.iter().map(|&letter| place[letter]).collect()
+    }
+
+    /// The finest step of the axes in mm, and of those in degrees, if there are any.
+    pub(crate) fn finest(&self) -> [Option<f64>; 2] {
+        let least = |steps: &[f64]| steps.iter().copied().filter(|&s| s > 0.0).reduce(f64::min);
+        let (linear, rotary) = self.step.split_at(LINEAR);
+        [least(linear), least(rotary)]
+    }
+}

@@ -1,0 +1,37 @@
+//! G-code programs on a machine.
+//!
+//! A [`ProgramFile`] is a program, its machine, and how it is to be run. It is read as often as
+//! anybody needs it, always from its beginning and in constant memory:
+//!
+//! ```text
+//! file -> gcode: canonical moves -> events: moves with tolerances, rests, switches
+//!                                    |-> rows   the planner's segments -> survey: figures, limits
+//!                                    '-> legs   the programmed path in straight parts, for the checker
+//! ```
+//!
+//! The legs come from the canonical moves and not from the planner, so that the checker judges the
+//! pulses by the program alone.
+
+mod counts;
+mod error;
+mod events;
+mod file;
+mod legs;
+mod letter;
+mod letters;
+mod rows;
+mod survey;
+mod switch;
+
+pub use carrystep_gcode::AXIS_LETTERS;
+pub use carrystep_job::Row;
+pub use counts::{Counts, SwitchCount};
+pub use error::{Fault, ProgramError};
+pub use events::{DEFAULT_TOLERANCE, Event, Events, ProgrammedMove};
+pub use file::{ProgramFile, Settings, is_program};
+pub use legs::Legs;
+pub use letter::unit;
+pub use letters::Letters;
+pub use rows::Rows;
+pub use survey::{AxisSurvey, Survey};
+pub use switch::Switch;

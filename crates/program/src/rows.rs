@@ -1,0 +1,128 @@
+//! The planned segments of a program, row by row.
+
+use crate::counts::Counts;
+use crate::error::ProgramError;
+use crate::events::{Event, Events, ProgrammedMove};
+use crate::file::ProgramFile;
+use crate::letters::Letters;
+use carrystep_files::Machine;
+use carrystep_gcode::Point;
+use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
+use std::path::PathBuf;
+
+/// The rows of a program. After an error there are no more.
+#[derive(Debug)]
+pub struct Rows {
+    events: Events,
+    planner: Planner,
+    counts: Counts,
+    /// The place where the last move that was read ends.
+    end: Point,
+    state: State,
+    path: PathBuf,
+    machine: Machine,
+    letters: Letters,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// The program has more events.
+    Reads,
+    /// The planner has all events.
+    Finishes,
+    /// The last row has been given, or an error.
+    Over,
+}
+
+impl Rows {
+    /// Plans a program from its beginning.
+    ///
+    /// # Errors
+    /// As [`Events::new`]; the planner refuses the machine.
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+        let (machine, letters) = (file.machine().clone(), file.letters().clone());
+        let start = letters.coordinates(&file.settings().start);
+        let planner = Planner::new(&machine, &Cartesian, letters.linear(), &start)
+            .map_err(|error| ProgramError::of_planner(file.path(), &machine, error))?;
+        Ok(Self {
+            events: Events::new(file)?,
+            planner,
+            counts: Counts::default(),
+            end: file.settings().start,
+            state: State::Reads,
+            path: file.path().to_owned(),
+            machine,
+            letters,
+        })
+    }
+
+    /// Figures of what has been read so far: after the last row, of the program.
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// The place where the last move that was read ends, exactly as programmed.
+    pub fn end(&self) -> &Point {
+        &self.end
+    }
+
+    fn row(&mut self) -> Result<Option<Row>, ProgramError> {
+        loop {
+            let row = self.planner.next_row().map_err(|error| self.refused(error))?;
+            if row.is_some() || self.state != State::Reads {
+                return Ok(row);
+            }
+            let Some(event) = self.events.next().transpose()? else {
+                self.state = State::Finishes;
+                self.planner.finish().map_err(|error| self.refused(error))?;
+                continue;
+            };
+            self.counts.add(&event);
+            if let Some(item) = self.item(&event) {
+                self.planner.push(&item).map_err(|error| self.refused(error))?;
+            }
+        }
+    }
+
+    fn refused(&self, error: JobError) -> ProgramError {
+        ProgramError::of_planner(&self.path, &self.machine, error)
+    }
+
+    /// What the planner is given for an event.
+    fn item(&mut self, event: &Event) -> Option<Item> {
+        match event {
+            Event::Move(one) => {
+                self.end = one.to;
+                Some(Item::Move(self.element(one)))
+            }
+            Event::Rest { seconds, line } => Some(Item::Rest { dwell: *seconds, line: *line }),
+            Event::Switch { line, .. } => Some(Item::Rest { dwell: 0.0, line: *line }),
+            Event::End { .. } => None,
+        }
+    }
+
+    fn element(&self, one: &ProgrammedMove) -> Element {
+        let arc = one.arc.and_then(|arc| {
+            let [first, second, _] = arc.plane.axes();
+            let plane = [self.letters.axis(first)?, self.letters.axis(second)?];
+            Some(Arc { plane, centre: arc.centre, angle: arc.sweep })
+        });
+        let to = self.letters.coordinates(&one.to);
+        Element { to, arc, feed: one.feed, tolerance: one.tolerance, line: one.line }
+    }
+}
+
+impl Iterator for Rows {
+    type Item = Result<Row, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.state == State::Over {
+            return None;
+        }
+        let row = self.row();
+        if !matches!(row, Ok(Some(_))) {
+            self.state = State::Over;
+        }
+        row.transpose()
+    }
+}

@@ -1,0 +1,123 @@
+//! Plans a program once to its end, before anything is written or moves, and keeps its figures.
+
+use crate::counts::Counts;
+use crate::error::ProgramError;
+use crate::file::ProgramFile;
+use crate::rows::Rows;
+use bigdecimal::BigDecimal;
+use carrystep_core::Segment;
+use carrystep_files::decimal;
+use carrystep_gcode::Point;
+use carrystep_job::Row;
+use carrystep_plan::Peaks;
+use carrystep_plan::exact::{speeds, travel};
+
+/// A planned program.
+#[derive(Debug, Clone)]
+pub struct Survey {
+    /// Figures of the program.
+    pub counts: Counts,
+    /// Length of the job, ticks.
+    pub ticks: u64,
+    /// Number of rows: segments of each axis.
+    pub rows: u64,
+    /// Each axis, in the order of the machine file.
+    pub axes: Vec<AxisSurvey>,
+}
+
+/// What one axis does in a job, exactly, from the integers of its segments.
+#[derive(Debug, Clone)]
+pub struct AxisSurvey {
+    /// Machine place at the beginning, whole steps.
+    pub start_steps: i64,
+    /// Machine place where the program ends, rounded to whole steps, half away from zero.
+    pub end_steps: i64,
+    /// Distance of all segments, 2^-64 step.
+    pub distance: i128,
+    /// Least and greatest distance from the start at the ends of rows, 2^-64 step.
+    pub extent: [i128; 2],
+    /// Greatest speed, acceleration and jerk.
+    pub peaks: Peaks,
+}
+
+impl AxisSurvey {
+    fn add(&mut self, segment: &Segment) {
+        let last = i128::from(segment.ticks) - 1;
+        let (a, j) = (i128::from(segment.a), i128::from(segment.j));
+        let speed = speeds(segment).map(i128::unsigned_abs).max().unwrap_or(0);
+        let acceleration = a.unsigned_abs().max((a + last * j).unsigned_abs());
+        let units = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
+        self.peaks = self.peaks.with(&Peaks {
+            speed: units(speed),
+            acceleration: units(acceleration),
+            jerk: units(j.unsigned_abs()),
+            start_speed: 0,
+        });
+        self.distance += travel(segment, segment.ticks.into());
+        let [least, most] = self.extent;
+        self.extent = [least.min(self.distance), most.max(self.distance)];
+    }
+
+    /// Steps from the start to the end of the program.
+    pub fn steps(&self) -> i64 {
+        self.end_steps - self.start_steps
+    }
+
+    /// Distance of the segments beyond the steps from start to end, 2^-64 step: exactly 0 if the
+    /// job lands, and then P ends at its start value.
+    pub fn residue(&self) -> i128 {
+        self.distance - (i128::from(self.steps()) << 64)
+    }
+}
+
+impl Survey {
+    /// Plans a program to its end. `watch` sees each row.
+    ///
+    /// # Errors
+    /// The first mistake of the program, the first move that the planner refuses, or the first
+    /// error of `watch`.
+    pub fn new<E: From<ProgramError>>(
+        file: &ProgramFile,
+        mut watch: impl FnMut(&Row) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let start = steps(file, &file.settings().start);
+        let axis = |&start_steps: &i64| AxisSurvey {
+            start_steps,
+            end_steps: start_steps,
+            distance: 0,
+            extent: [0, 0],
+            peaks: Peaks::default(),
+        };
+        let mut axes: Vec<AxisSurvey> = start.iter().map(axis).collect();
+        let (mut ticks, mut count) = (0, 0);
+        let mut rows = Rows::new(file)?;
+        for row in rows.by_ref() {
+            let row = row?;
+            ticks += u64::from(row.ticks);
+            count += 1;
+            for (axis, segment) in axes.iter_mut().zip(&row.segments) {
+                axis.add(segment);
+            }
+            watch(&row)?;
+        }
+        for (axis, end_steps) in axes.iter_mut().zip(steps(file, rows.end())) {
+            axis.end_steps = end_steps;
+        }
+        Ok(Self { counts: rows.counts().clone(), ticks, rows: count, axes })
+    }
+
+    /// Whether every axis ends exactly at its target, P included.
+    pub fn landed(&self) -> bool {
+        self.axes.iter().all(|axis| axis.residue() == 0)
+    }
+}
+
+/// The steps of each axis at a place, rounded half away from zero in exact decimals.
+fn steps(file: &ProgramFile, place: &Point) -> Vec<i64> {
+    let axes = file.machine().axes.iter().zip(file.letters().of_axes());
+    axes.map(|(axis, &letter)| {
+        let exact = BigDecimal::try_from(place[letter]).unwrap_or_default() * &axis.steps_per_unit;
+        decimal::round_half_away(&exact).unwrap_or(i64::MAX)
+    })
+    .collect()
+}

@@ -1,0 +1,64 @@
+//! What a program switches, or waits for, and no gateware does yet.
+
+use std::fmt;
+
+/// Something that a program switches, and that no gateware does yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Switch {
+    /// M0, M1: the machine rests until it is resumed.
+    Pause,
+    /// M6: the machine rests until the tool is changed.
+    ToolChange,
+    /// M3, M4, M5 and S.
+    Spindle,
+    /// M7, M8, M9.
+    Coolant,
+    /// M62 to M68.
+    Output,
+    /// M66: the input is assumed to become what the program waits for.
+    Input,
+    /// G38.2 to G38.5: the probe is assumed to trip at the target.
+    Probe,
+}
+
+impl Switch {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 7] = [
+        Self::Pause,
+        Self::ToolChange,
+        Self::Spindle,
+        Self::Coolant,
+        Self::Output,
+        Self::Input,
+        Self::Probe,
+    ];
+
+    /// Its name in documents.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pause => "pause",
+            Self::ToolChange => "tool change",
+            Self::Spindle => "spindle",
+            Self::Coolant => "coolant",
+            Self::Output => "output",
+            Self::Input => "input",
+            Self::Probe => "probe",
+        }
+    }
+
+    /// What the plan does instead.
+    pub const fn instead(self) -> &'static str {
+        match self {
+            Self::Pause | Self::ToolChange => "the job rests; its time has no waiting",
+            Self::Spindle | Self::Coolant | Self::Output => "the job rests; nothing is switched",
+            Self::Input => "assumed to become what the program waits for",
+            Self::Probe => "assumed to trip at its target",
+        }
+    }
+}
+
+impl fmt::Display for Switch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
