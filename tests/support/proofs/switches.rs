@@ -26,7 +26,7 @@ const BUGS: &[Bug] = &[
         text: "row_written = row | TO_INPUTS;",
         becomes: "row_written = row;",
     },
-    Bug { breaks: "promise_15_levels", text: "before = word[7];", becomes: "before = now;" },
+    Bug { breaks: "promise_15_levels", text: "earlier = word[7];", becomes: "earlier = now;" },
     Bug {
         breaks: "promise_10_stops_by_direction",
         text: "word[6:0] == LAST_SAMPLE",

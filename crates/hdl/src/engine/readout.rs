@@ -61,7 +61,7 @@ pub struct Readout {
     /// The row of that switch.
     pub row: Input<Word<2>>,
     /// In beat 7: the debounced state of that switch, before this sample.
-    pub before: Input<Bit>,
+    pub earlier: Input<Bit>,
     /// In beat 7: the level of its pin.
     pub level: Input<Bit>,
     /// The last two ticks of a reset: no word of a switch is output.
@@ -215,7 +215,7 @@ impl Logic for Readout {
             self.low.next = self.status.val();
         }
         self.levels.next = self.no_status.val();
-        if self.before.val() {
+        if self.earlier.val() {
             self.levels.next = self.state_bit.val();
         }
         if self.level.val() {

@@ -68,7 +68,7 @@ pub struct Switches<const N: usize> {
     /// From beat 2: the level of the switch's pin two clocks ago.
     pub level: Signal<Out, Bit>,
     /// From beat 1: the debounced state of the switch before this sample.
-    pub before: Signal<Out, Bit>,
+    pub earlier: Signal<Out, Bit>,
     /// In the last beat: the debounced state after this sample.
     pub state: Signal<Out, Bit>,
     /// In the last beat: the switch is a limit, and the axis has reached it.
@@ -274,7 +274,7 @@ impl<const N: usize> Logic for Switches<N> {
 
         self.samples.next = self.sampled.val();
         self.level.next = self.now.q.val();
-        self.before.next = self.word.val().get_bit(SWITCH_STATE);
+        self.earlier.next = self.word.val().get_bit(SWITCH_STATE);
         self.state.next = self.state_now.val();
         self.interlock.next = self.open.q.val();
     }

@@ -214,7 +214,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.readout.latches.next = self.edge_latch.latches.val();
         self.readout.samples.next = self.switches.samples.val();
         self.readout.row.next = self.supervisor.row.val();
-        self.readout.before.next = self.switches.before.val();
+        self.readout.earlier.next = self.switches.earlier.val();
         self.readout.level.next = self.switches.level.val();
         self.readout.resetting.next = self.resets.resetting.val();
         self.readout.word.next = self.store.word.val();

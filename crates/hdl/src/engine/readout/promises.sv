@@ -21,7 +21,7 @@ module promises (
     input wire latches,
     input wire samples,
     input wire [1:0] row,
-    input wire before,
+    input wire earlier,
     input wire level,
     input wire resetting,
     input wire [31:0] word,
@@ -80,7 +80,7 @@ module promises (
         promise_15_items: assert (!valid || item == (beat[4] ? 4 : beat[5] ? {2'b00, running} : beat[6] ? 6 : beat[7] ? 2
             : beat[10] ? 5 : beat[11] ? 3 : 7));
         promise_15_words_as_the_memory_has_them: assert (!valid || beat[12] || beat[7] || state == word);
-        promise_15_switches: assert (!valid || !beat[7] || state[7:6] == {before, level});
+        promise_15_switches: assert (!valid || !beat[7] || state[7:6] == {earlier, level});
         promise_15_status: assert (!beat[12] || state[15:0] == {on_way, 3'b000, 3'd7 - room, running, 2'b00, live});
         promise_15_refreshed: assert (refreshed == (beat[12] && is_last && page_now == 1));
         promise_13_inactive: assert (!first_clock || !takes && !all);

@@ -38,7 +38,7 @@ module promises (
     localparam HAS_INPUTS = EXIST_0 != 0 || EXIST_1 != 0;
 
     wire [`AXES-1:0] axis_one_hot = 32'd1 << axis;
-    wire samples, level, before, state, found, interlock;
+    wire samples, level, earlier, state, found, interlock;
     `DUT dut (.*);
 
     reg first_clock = 1, was_begins_round = 0, was_time_slot_ends = 0, was_resetting = 0;
@@ -103,7 +103,7 @@ module promises (
         promise_13_reset_forgets: assert (!was_looks || !was_resetting || memory == 0);
         promise_13_reset_forgets_inputs: assert (!was_forgets || memory == 0);
         promise_13_inactive: assert (!first_clock || (!found || time_slot_ends) && !interlock);
-        promise_15_levels: assert ((!looked_up || was_looks || was_forgets || before == believed) && level == seen);
+        promise_15_levels: assert ((!looked_up || was_looks || was_forgets || earlier == believed) && level == seen);
     end
 
     reg was_looks = 0, was_forgets = 0;
