@@ -1399,7 +1399,7 @@ module carrystep_switches #(
     // From beat 2: the level of the switch's pin two clocks ago.
     output wire         level,
     // From beat 1: the debounced state of the switch before this sample.
-    output wire         before,
+    output wire         earlier,
     // In the last beat: the debounced state after this sample.
     output wire         state,
     // In the last beat: the switch is a limit, and the axis has reached it.
@@ -1478,7 +1478,7 @@ module carrystep_switches #(
 
     assign samples = sampled;
     assign level = now;
-    assign before = word[7];
+    assign earlier = word[7];
     assign state = state_now;
     assign found = sampled & time_slot_ends & goes & state_now & !inputs & (((PAIR != 1'b0) & (back ^ row[0])) | ((PAIR == 1'b0) & flips));
     assign interlock = open;
@@ -1797,7 +1797,7 @@ module carrystep_readout (
     // The row of that switch.
     input  wire   [1:0] row,
     // In beat 7: the debounced state of that switch, before this sample.
-    input  wire         before,
+    input  wire         earlier,
     // In beat 7: the level of its pin.
     input  wire         level,
     // The last two ticks of a reset: no word of a switch is output.
@@ -1914,7 +1914,7 @@ module carrystep_readout (
 
     always @(*) begin
         levels = NO_STATUS;
-        if (before) begin
+        if (earlier) begin
             levels = STATE_BIT;
         end
         if (level) begin
@@ -2755,7 +2755,7 @@ module carrystep_engine #(
     wire [5:0] event_wheel_backward;
     wire switches_samples;
     wire switches_level;
-    wire switches_before;
+    wire switches_earlier;
     wire switches_state;
     wire switches_found;
     wire switches_interlock;
@@ -3135,7 +3135,7 @@ module carrystep_engine #(
         .resetting(resets_resetting),
         .samples(switches_samples),
         .level(switches_level),
-        .before(switches_before),
+        .earlier(switches_earlier),
         .state(switches_state),
         .found(switches_found),
         .interlock(switches_interlock)
@@ -3192,7 +3192,7 @@ module carrystep_engine #(
         .latches(edge_latch_latches),
         .samples(switches_samples),
         .row(supervisor_row),
-        .before(switches_before),
+        .earlier(switches_earlier),
         .level(switches_level),
         .resetting(resets_resetting),
         .word(store_word),
