@@ -116,7 +116,7 @@ fn pages_give_what_the_tests_of_link_and_simulators_do() {
         "docs/protocol.md",
         &[
             format!("at most ({writes} over SPI)"),
-            format!("over SPI have at most {} unacknowledged writes", word(writes)),
+            format!("of unacknowledged writes: {} segments", word(writes)),
         ],
     );
     assert_eq!(whole(behind("tests/support/effort.rs", "{ whole } else { whole / ")), 10);

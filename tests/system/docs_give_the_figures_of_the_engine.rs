@@ -72,7 +72,7 @@ fn specification_gives_the_beats_of_the_layout() {
         "docs/clock-by-clock.md",
         &[
             format!("room_valid in beat {} of its time slot", at("BEAT_PUT")),
-            format!("Instead, after beat {} of its time slot,", at("BEAT_LAST")),
+            format!("as they are in beat {0} of that time slot. After beat {0}:", at("BEAT_LAST")),
             output("BEAT_STATE_P_LOW", StateItem::PLow) + " P, low half |",
             format!(
                 "| {} | {} if the axis runs, else {} |",
@@ -80,6 +80,7 @@ fn specification_gives_the_beats_of_the_layout() {
                 StateItem::Left as u8,
                 StateItem::Discarded as u8
             ),
+            output("BEAT_STATE_SWITCH", StateItem::Switch) + " in a tick in which a switch",
             output("BEAT_STATE_POSITION", StateItem::Position) + " `counted`, the position |",
             output("BEAT_STATE_P_HIGH", StateItem::PHigh) + " P, high half |",
             output("BEAT_STATE_TICK", StateItem::Ticks) + " `ticks` |",

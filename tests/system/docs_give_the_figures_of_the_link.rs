@@ -101,12 +101,6 @@ fn pages_give_the_rates_that_the_test_of_the_link_tries() {
     // The host has its turn after each millisecond of the board's time.
     let turns = behind("crates/virtual-board/tests/support/mod.rs", "MS: u64 = CLOCK_HZ / ");
     assert_eq!(turns, 1000.0);
-    let more =
-        whole(behind("crates/link/src/host/homing/request.rs", "self.debounce.saturating_add("));
-    says(
-        "docs/protocol.md",
-        &[format!("the samples of the debounce time and {} rounds more", word(more))],
-    );
     says("docs/performance.md", &["which runs once per millisecond, as over USB".to_owned()]);
     says("docs/virtual-board.md", &[format!("/dev/pts/3: {DEFAULT_BAUD} baud")]);
 }

@@ -185,7 +185,7 @@ fn engine_page_counts_the_block_rams() {
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),
-        memory("limits.rs", "switches"),
+        memory("switches.rs", "switches"),
         memory("event_wheel.rs", "event_memory"),
     ];
     assert!(others.into_iter().all(|memory| rams(memory) == 1));

@@ -191,13 +191,17 @@ fn a_second_start_is_refused_as_busy() {
     host.write(&mut bench, START, &[2]);
 }
 
+/// The word of SEEK by which each of these axes waits for its own limit at the low end.
+fn own_limits(axes: u32) -> u32 {
+    let source = SeekSource { axis: 0, row: 0, own: true, level: true };
+    axes | u32::from(source.byte()) << 8
+}
+
 #[test]
 fn a_limit_latches_the_state_of_a_seeking_axis() {
     let mut bench = bench();
     let mut host = Host::powered(&mut bench);
-    let source = SeekSource { axis: 0, row: 0, own: true, level: true };
-    let word = 0b100 | u32::from(source.byte()) << 8;
-    assert_eq!(host.write(&mut bench, SEEK, &[word]).seeking, 0b100);
+    assert_eq!(host.write(&mut bench, SEEK, &[own_limits(0b100)]).seeking, 0b100);
     host.write(&mut bench, of_axis(SEGMENT, 2), &cruise(100_000, -QUARTER));
     host.write(&mut bench, START, &[0b100]);
     bench.rest(48 * 900);
@@ -267,7 +271,7 @@ fn replayed(mut bench: LinkBench, line: LineKind) {
     let mut host = Host::powered(&mut bench);
     let damaged = &host.frame(0, of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..];
     bench.send(&on_the_line(damaged));
-    host.write(&mut bench, SEEK, &[0b100]);
+    host.write(&mut bench, SEEK, &[own_limits(0b100)]);
     for axis in 0..AXES as u8 {
         let mut words = cruise(0xc0, -QUARTER);
         words[6] = 0xdbc0_c0db;

@@ -209,7 +209,7 @@ pub fn open(connection: &mut Connection) -> Result<(), Failure> {
         control.wish(progress.status)
     });
     match ended.map_err(|error| broken(&error, axes))? {
-        Ended::Done => stopped(board.status()),
+        Ended::Done | Ended::SeekEnded => stopped(board.status()),
         Ended::Stopped => Err(Failure::Run(
             "stopped while it waited for the axes of another host; nothing was sent".to_owned(),
         )),

@@ -127,6 +127,10 @@ pub fn drive(
     into_limit: bool,
 ) -> Result<Driven, Failure> {
     let mut memory = BoardMemory::recall(&mut connection);
+    if !into_limit {
+        // Before the session is opened: a refusal leaves the board and its memory as they are.
+        streamed.check_limits(&memory, connection.board.status(), &connection.axes)?;
+    }
     connection::open(&mut connection)?;
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
@@ -135,9 +139,6 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    if !into_limit {
-        streamed.check_limits(&memory, &start, &axes)?;
-    }
     let program = PlannedProgram::new(&streamed.survey);
     let line = Line::new(&axes, streamed.seconds);
     let mut ways = Ways::default();
@@ -149,7 +150,7 @@ pub fn drive(
     };
     let outcome = match powered {
         Ended::Stopped => Ok(Ended::Stopped),
-        Ended::Done => board.stream(program, &mut watch),
+        Ended::Done | Ended::SeekEnded => board.stream(program, &mut watch),
     };
     drop(line);
     let ended = match outcome {

@@ -38,6 +38,7 @@ static void own(carrystep_session *session, uint16_t number)
     session->busy = false;
     session->starting = false;
     session->powering = false;
+    session->seek_ended = false;
     memset(session->under_way, 0, sizeof session->under_way);
     memset(session->room, 0, sizeof session->room);
 }
@@ -93,6 +94,8 @@ static bool push(carrystep_session *session, const carrystep_request *request)
         }
     } else if (request->address == WRITES(CARRYSTEP_START)) {
         session->starting = true;
+    } else if (request->address == WRITES(CARRYSTEP_SEEK)) {
+        session->seek_ended = false;
     } else if (request->address == WRITES(CARRYSTEP_CONTROL)) {
         session->powering = (request->word & CARRYSTEP_CONTROL_ENABLE) != 0;
     }
@@ -128,6 +131,11 @@ void carrystep_withdraw(carrystep_session *session)
         session->length--;
         settle(session, &session->slots[slot(session, session->length)]);
     }
+}
+
+bool carrystep_seek_ended(const carrystep_session *session)
+{
+    return session->seek_ended;
 }
 
 static size_t send_write(carrystep_session *session, uint32_t now, uint8_t *line)
@@ -182,6 +190,7 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
     uint8_t advance = (uint8_t)(answer->next - session->first);
     bool busy = answer->reason == CARRYSTEP_REASON_BUSY;
     bool refused = (busy || answer->reason == CARRYSTEP_REASON_SEQUENCE) && answers(session, answer);
+    bool ends_seek = answer->reason == CARRYSTEP_REASON_SEEK_ENDED && answers(session, answer);
     if (advance > session->reached) {
         return;
     }
@@ -197,6 +206,15 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
         session->since = now;
         session->has_refused = false;
         session->busy = false;
+    }
+    if (ends_seek) {
+        /* The gateware has executed none of these writes, and the next one has the number of the
+         * first of them. */
+        session->reached = 0;
+        session->sent = 0;
+        session->has_refused = false;
+        carrystep_withdraw(session);
+        session->seek_ended = true;
     }
     if (refused) {
         refusal(session, (uint8_t)(answer->sequence - answer->next), busy, now);

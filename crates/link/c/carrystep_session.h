@@ -65,6 +65,7 @@ typedef struct {
     bool armed;
     bool unpowered; /* the last answer came from drivers without power */
     bool powering;  /* this host has asked for power */
+    bool seek_ended;
 } carrystep_session;
 
 typedef enum {
@@ -129,6 +130,11 @@ bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_seg
 /* Whether any answer is outstanding; whether any write is unacknowledged. */
 bool carrystep_waiting(const carrystep_session *session);
 bool carrystep_writing(const carrystep_session *session);
+
+/* Whether the gateware has refused a segment or a START because one of its axes has hit the source
+ * of its seek. That write and all behind it were removed, since none of them can be executed, and
+ * carrystep_feed queues nothing until this host writes SEEK. */
+bool carrystep_seek_ended(const carrystep_session *session);
 
 /* Removes the writes that were never sent, so that the next one is sent at once. */
 void carrystep_withdraw(carrystep_session *session);

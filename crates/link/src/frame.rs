@@ -231,6 +231,8 @@ pub enum Refusal {
     Busy,
     /// The request does not belong to the session that owns the gateware.
     Session,
+    /// The request names an axis that has hit the source of its seek, and the seek is not ended.
+    SeekEnded,
     /// A reason that this version does not know, by its number.
     Other(u8),
 }
@@ -243,6 +245,7 @@ impl Refusal {
             map::REASON_SEQUENCE => Some(Self::Sequence),
             map::REASON_BUSY => Some(Self::Busy),
             map::REASON_SESSION => Some(Self::Session),
+            map::REASON_SEEK_ENDED => Some(Self::SeekEnded),
             other => Some(Self::Other(other)),
         }
     }
@@ -253,6 +256,7 @@ impl Refusal {
             Self::Sequence => map::REASON_SEQUENCE,
             Self::Busy => map::REASON_BUSY,
             Self::Session => map::REASON_SESSION,
+            Self::SeekEnded => map::REASON_SEEK_ENDED,
             Self::Other(number) => number,
         }
     }

@@ -2,6 +2,7 @@
 //! blocks until it has finished. A host that only looks or stops needs no session; all others call
 //! [`Host::open`] first.
 
+mod cancelled;
 mod error;
 mod homing;
 mod motion;

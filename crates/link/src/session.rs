@@ -5,13 +5,16 @@ use crate::command::ProgramError;
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Refusal, Request, of_axis};
 use crate::registers::{
-    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SNAPSHOT, START, STOP,
+    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEEK, SNAPSHOT, START, STOP,
 };
 use crate::singles::Singles;
 use crate::slip::{Decoder, Received};
 use crate::window::{Full, Window};
 use core::num::NonZeroU16;
 use thiserror::Error;
+
+/// Bits of SEEK: the axes that wait for the source.
+const SEEK_AXES: u32 = 0xff;
 
 /// Why a write was not accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -76,6 +79,10 @@ pub struct Session<const N: usize> {
     starting: bool,
     /// Whether a snapshot is unacknowledged.
     capturing: bool,
+    /// Whether a write was refused because the seek of one of its axes has ended.
+    seek_ended: bool,
+    /// Whether the last write of SEEK named an axis.
+    seeking: bool,
     /// Whether a start is armed in the gateware.
     armed: bool,
     /// Whether the last answer reported drivers without power.
@@ -101,6 +108,8 @@ impl<const N: usize> Session<N> {
             room: [0; MOST_AXES as usize],
             starting: false,
             capturing: false,
+            seek_ended: false,
+            seeking: false,
             armed: false,
             unpowered: false,
             powering: false,
@@ -139,6 +148,8 @@ impl<const N: usize> Session<N> {
         self.room = [0; MOST_AXES as usize];
         self.starting = false;
         self.capturing = false;
+        self.seek_ended = false;
+        self.seeking = false;
         self.powering = false;
     }
 
@@ -175,6 +186,18 @@ impl<const N: usize> Session<N> {
     /// Whether a SNAPSHOT is unacknowledged.
     pub const fn capturing(&self) -> bool {
         self.capturing
+    }
+
+    /// Whether the gateware has refused a segment or a START because one of its axes has hit the
+    /// source of its seek. That write and all behind it were removed, since none of them can be
+    /// executed, and [`Self::feed`] queues nothing until this host writes SEEK.
+    pub const fn seek_ended(&self) -> bool {
+        self.seek_ended
+    }
+
+    /// Whether this host has begun a seek and has not ended it.
+    pub const fn seeking(&self) -> bool {
+        self.seeking
     }
 
     /// Starts to read a register; [`Self::receive`] returns the answer.
@@ -215,6 +238,9 @@ impl<const N: usize> Session<N> {
         match body {
             Body::Write { address: START, .. } => self.starting = true,
             Body::Write { address: SNAPSHOT, .. } => self.capturing = true,
+            Body::Write { address: SEEK, word } => {
+                (self.seek_ended, self.seeking) = (false, word & SEEK_AXES != 0);
+            }
             Body::Write { address: CONTROL, word } => self.powering = word & CONTROL_ENABLE != 0,
             _ => {}
         }
@@ -239,7 +265,7 @@ impl<const N: usize> Session<N> {
     /// [`ProgramError`]. After [`ProgramError::NoPower`] the program can continue once CONTROL = 1
     /// was written.
     pub fn feed<S: SegmentSource>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
-        while self.window.room() > 0 {
+        while self.window.room() > 0 && !self.seek_ended {
             let free = !self.starting && !self.armed;
             let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {
                 if free && !self.may_start() && feeder.start_is_due(self.axes)? {
@@ -314,10 +340,16 @@ impl<const N: usize> Session<N> {
             Some(axis) => 1 << axis,
             None => self.window.answered(answer).map_or(0, Body::axes),
         };
+        let ends_seek =
+            answer.refusal == Some(Refusal::SeekEnded) && self.window.answered(answer).is_some();
         let Self { under_way, starting, capturing, .. } = self;
-        let settled = |body: &Body| settle(body, under_way, starting, capturing);
-        if !self.window.answer(answer, now, settled) {
+        let mut settled = |body: &Body| settle(body, under_way, starting, capturing);
+        if !self.window.answer(answer, now, &mut settled) {
             return;
+        }
+        if ends_seek {
+            self.window.clear(settled);
+            self.seek_ended = true;
         }
         // An answer says at least how much room there was, and room only grows until this host
         // sends a segment.

@@ -98,8 +98,16 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// The number and the body of the request to be sent at the time `now`, ms. A new round begins after `resend` ms without
-    /// progress. If the gateware was busy, it begins after `pause` ms.
+    /// Removes all writes; `removed` is called with each. The gateware must have refused the first
+    /// of them: then it has executed none, and the next write has the number of that one.
+    pub fn clear(&mut self, removed: impl FnMut(&Body)) {
+        self.reached = 0;
+        self.withdraw(removed);
+        self.go_back(None);
+    }
+
+    /// The number and the body of the request to be sent at the time `now`, ms. A new round begins
+    /// after `resend` ms without progress. If the gateware was busy, it begins after `pause` ms.
     pub fn transmit(&mut self, now: u32, resend: u32, pause: u32) -> Option<(u8, Body)> {
         let waited = now.wrapping_sub(self.since);
         if self.sent > 0 && self.length > 0 && waited >= resend {
@@ -154,7 +162,7 @@ impl<const N: usize> Window<N> {
         match refusal {
             Some(Refusal::Sequence) => self.refusal(behind, false, now),
             Some(Refusal::Busy) => self.refusal(behind, true, now),
-            Some(Refusal::Session | Refusal::Other(_)) | None => {}
+            Some(Refusal::Session | Refusal::SeekEnded | Refusal::Other(_)) | None => {}
         }
         true
     }

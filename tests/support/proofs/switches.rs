@@ -7,7 +7,7 @@ use carrystep_core::engine::{EngineBuild, LimitWiring};
 const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_10_hits_only_where_it_samples",
-        text: "sampled = begins_round & rows_from_here[0];",
+        text: "sampled = begins_round & is_row;",
         becomes: "sampled = begins_round;",
     },
     Bug { breaks: "promise_10_stops_by_direction", text: "back ^ row[0]", becomes: "back" },

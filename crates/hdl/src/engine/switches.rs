@@ -76,7 +76,7 @@ pub struct Switches<const N: usize> {
     /// The debounced state of the interlock: it is open.
     pub interlock: Signal<Out, Bit>,
     switch_memory: Memory<5, 8>,
-    rows_from_here: Signal<Local, Word<4>>,
+    is_row: Signal<Local, Bit>,
     sampled: Signal<Local, Bit>, // `samples`
     inputs: Signal<Local, Bit>,  // the row is 2 or 3
     pins: Signal<Local, Word<N>>,
@@ -104,6 +104,7 @@ pub struct Switches<const N: usize> {
     low_1: Parameter<N>,
     last_sample: Parameter<7>,
     first_one_hot: Literal<N, 1>,
+    first_row: Literal<4, 1>,
     one: Literal<7, 1>,
     none: Literal<7, 0>,
     active: Literal<8, { 1 << SWITCH_STATE }>,
@@ -192,8 +193,8 @@ impl<const N: usize> Logic for Switches<N> {
         clock!(self, clock, switch_memory);
 
         // Selects and synchronizes the pin of this time slot.
-        self.rows_from_here.next = self.rows.val() >> self.row.val();
-        self.sampled.next = self.begins_round.val() & self.rows_from_here.val().get_bit(ROW_IS_ODD);
+        self.is_row.next = (self.rows.val() & (self.first_row.val() << self.row.val())).any();
+        self.sampled.next = self.begins_round.val() & self.is_row.val();
         self.inputs.next = self.row.val().get_bit(ROW_OF_INPUTS) & self.has_inputs.val().any();
         self.pins.next = self.limit_min.val() ^ self.levels.val();
         if self.row.val().get_bit(ROW_IS_ODD) {

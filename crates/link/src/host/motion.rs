@@ -1,5 +1,6 @@
 //! Motion: streams a program until the machine has executed it, and jogs one axis.
 
+use super::cancelled::CancelledStart;
 use super::snapshot::SnapshotReader;
 use super::{Clock, Host, HostError, Snapshot, Status};
 use crate::command::{ProgramError, Segment};
@@ -43,6 +44,10 @@ pub enum Ended {
     Done,
     /// The caller stopped it. Segments still in the queues were discarded.
     Stopped,
+    /// An axis of the program has hit the source of its seek while segments or a start for it were
+    /// still to be sent. None of them was executed after that; other axes may still move, and their
+    /// queues may hold segments: end the seek, then [`Host::stop`] and [`Host::clear`].
+    SeekEnded,
 }
 
 /// A snapshot of a program that runs.
@@ -113,6 +118,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let mut looks = 0_u32;
         let (mut capture, mut snapshot) = (Capture::None, None);
         let axes = self.axes();
+        let mut cancelled = CancelledStart::default();
         loop {
             capture.advance(&mut self.session, axes);
             let handed_over = match self.session.feed(&mut feeder) {
@@ -127,6 +133,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let mut idle = false;
             self.pump(|answer| {
                 idle = answer.idle;
+                cancelled.hear(answer, axes);
                 if let Capture::Read(reader) = &mut capture {
                     reader.hear(answer);
                 }
@@ -144,6 +151,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
                 self.read_status()?;
                 return Err(HostError::Fault { cause: answer.cause, culprits: answer.culprits });
+            }
+            if self.session.seek_ended() || cancelled.is_certain() {
+                self.read_status()?;
+                return Ok(Ended::SeekEnded);
             }
             if handed_over && idle {
                 self.read_status()?;
@@ -179,6 +190,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 looks = looks.wrapping_add(1);
                 for axis in 0..axes {
                     let _ = self.session.read(of_axis(POSITION, axis));
+                }
+                if handed_over && self.session.seeking() {
+                    cancelled.ask(&mut self.session, axes);
                 }
             }
         }

@@ -171,6 +171,8 @@ static void obey(char *words)
         carrystep_open(&session, (uint16_t)a[0], (uint8_t)a[1]);
     } else if (strcmp(verb, "owns") == 0) {
         put(yes(carrystep_owns(&session)));
+    } else if (strcmp(verb, "seek-ended") == 0) {
+        put(yes(carrystep_seek_ended(&session)));
     } else if (strcmp(verb, "stop") == 0) {
         carrystep_stop(&session);
     } else if (strcmp(verb, "read") == 0) {

@@ -159,6 +159,7 @@ impl Client for RustClient {
                 nothing
             }
             ("owns", []) => yes(self.session.number().is_some()),
+            ("seek-ended", []) => yes(self.session.seek_ended()),
             ("stop", []) => {
                 self.session.stop();
                 nothing
