@@ -1420,6 +1420,7 @@ module carrystep_switches #(
     localparam [5:0] LOW_1 = INPUTS_1_LOW[5:0];
     localparam [6:0] LAST_SAMPLE = DEBOUNCE_SAMPLES[6:0] - 7'd1;
     localparam [5:0] FIRST_ONE_HOT = 6'd1;
+    localparam [3:0] FIRST_ROW = 4'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
     localparam [7:0] ACTIVE = 8'd128;
@@ -1468,8 +1469,8 @@ module carrystep_switches #(
 
     wire [7:0] switch_memory_read_data;
 
-    wire [3:0] rows_from_here = ROWS >> row;
-    wire sampled = begins_round & rows_from_here[0];
+    wire is_row = (ROWS & (FIRST_ROW << row)) != 4'd0;
+    wire sampled = begins_round & is_row;
     wire inputs = row[1] & (HAS_INPUTS != 1'b0);
     wire [7:0] word = switch_memory_read_data;
     wire differs = now ^ word[7];

@@ -232,21 +232,20 @@ fn missing_switch_is_named_and_no_axis_exceeds_max_travel() {
     for limits in ["pair", "each", "one"] {
         let (error, [x, y]) = fails(limits, |bench| bench.remove(1));
         assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound }, "{limits}");
-        // 15 units off the switch, then 220 toward it, with 4 steps each.
-        assert_eq!(y, (220 - 15) * 4, "{limits}");
-        let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
-        assert_eq!(x, if limits == "one" { moved_off } else { 0 }, "{limits}");
+        // 220 units of 4 steps each toward the switch; x has not moved yet.
+        assert_eq!((x, y), (0, 220 * 4), "{limits}");
     }
 }
 
 #[test]
-fn switch_that_stays_closed_is_detected_with_a_pair() {
-    let (error, [_, y]) = fails("pair", |bench| bench.stick(1));
-    assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::StillClosed });
-    assert!((-62..=-55).contains(&y), "it goes no further than to the first look: {y}");
-    // The other wirings cannot detect it, as docs/homing.md says: the search ends without a limit.
-    let (error, _) = fails("each", |bench| bench.stick(1));
-    assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound });
+fn switch_that_stays_closed_is_detected_before_the_search() {
+    for (limits, axes) in [("pair", 2), ("each", 2), ("one", 3)] {
+        let (error, [x, y]) = fails(limits, |bench| bench.stick(1));
+        assert_eq!(error, HostError::Homing { axes, why: HomingFault::StillClosed }, "{limits}");
+        // With one input for all, x moves off too.
+        let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
+        assert_eq!((x, y), (if limits == "one" { moved_off } else { 0 }, -15 * 4), "{limits}");
+    }
 }
 
 #[test]

@@ -10,12 +10,12 @@ const BUGS: &[Bug] = &[
         becomes: "page = LIVE_PAGE;",
     },
     Bug {
-        breaks: "promise_15_one_page_in_a_tick",
+        breaks: "promise_15_a_snapshot_is_of_all_axes",
         text: "if (strobe) begin\n            takes",
         becomes: "if (strobe | beat[12]) begin\n            takes",
     },
     Bug {
-        breaks: "promise_15_a_snapshot_is_of_all_axes",
+        breaks: "promise_15_one_page_in_a_tick",
         text: "takes <= asked & !taken;",
         becomes: "takes <= asked;",
     },

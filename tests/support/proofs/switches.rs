@@ -8,7 +8,7 @@ const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_10_hits_only_where_it_samples",
         text: "sampled = begins_round & is_row;",
-        becomes: "sampled = begins_round;",
+        becomes: "sampled = is_row;",
     },
     Bug { breaks: "promise_10_stops_by_direction", text: "back ^ row[0]", becomes: "back" },
     Bug {

@@ -67,13 +67,20 @@ module promises (
     wire captured = met | all;
     wire of_switch = beat[7] & samples & !resetting;
     wire [1:0] page_now = latches ? 3 : captured ? 0 : takes ? 2 : 1;
-    wire in_time_slot = beat[12:0] != 0;
+
+    // The words of this tick that were output so far: some belong to a snapshot, some do not.
+
+    reg some_of_snapshot = 0, some_others = 0;
+    always @(posedge clock) begin
+        some_of_snapshot <= !strobe & (some_of_snapshot | valid & !of_switch & page == 2);
+        some_others <= !strobe & (some_others | valid & !of_switch & page != 2);
+    end
 
     // ---- The promises.
 
     always_comb begin
         promise_15_one_page_in_a_tick: assert (!valid || page == (of_switch ? row : page_now));
-        promise_15_a_snapshot_is_of_all_axes: assert (!(takes && (captured || latches)));
+        promise_15_a_snapshot_is_of_all_axes: assert (!(some_of_snapshot && some_others));
         promise_15_a_hit_waits_for_the_latch: assert (meets == again && (!(strobe && all && latches) || taken));
         promise_15_each_word_once: assert (valid == (beat[4] | (beat[5] & page_now != 0) | beat[6] | of_switch | beat[10] | beat[11]
             | beat[12]));
@@ -83,7 +90,7 @@ module promises (
         promise_15_switches: assert (!valid || !beat[7] || state[7:6] == {earlier, level});
         promise_15_status: assert (!beat[12] || state[15:0] == {on_way, 3'b000, 3'd7 - room, running, 2'b00, live});
         promise_15_refreshed: assert (refreshed == (beat[12] && is_last && page_now == 1));
-        promise_13_inactive: assert (!first_clock || !takes && !all);
+        promise_13_inactive: assert (!first_clock || !valid || of_switch || page == 1);
     end
 
     // ---- The invariants that make the promises inductive.
@@ -97,6 +104,7 @@ module promises (
     always_comb begin
         invariant_1: assert (dut_asked == asked && dut_takes == takes && dut_found == finds && dut_swept == all);
         invariant_2: assert (!(takes && (found || all || latched)));
+        invariant_3: assert ((!some_of_snapshot || takes) && (!some_others || !takes));
     end
 `endif
 
