@@ -210,13 +210,23 @@ fn random_machines_home_with_one_input_for_all() {
     random_machines("one", 2);
 }
 
-/// The error of homing with the switches changed by `change`, and the final positions.
+/// The error of homing with the switches changed by `change`, and the final positions. All switches
+/// are open at the start.
 fn fails(
     limits: &str,
     change: impl FnOnce(&Bench<ModelBoard>),
 ) -> (HostError<axes::Never>, [i32; 2]) {
+    fails_from(limits, Start::Open, change)
+}
+
+/// The same with another start of the axis y.
+fn fails_from(
+    limits: &str,
+    start: Start,
+    change: impl FnOnce(&Bench<ModelBoard>),
+) -> (HostError<axes::Never>, [i32; 2]) {
     let machine = two(limits, "ramp", "high");
-    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, start], 3);
     change(&bench);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
@@ -232,8 +242,12 @@ fn missing_switch_is_named_and_no_axis_exceeds_max_travel() {
     for limits in ["pair", "each", "one"] {
         let (error, [x, y]) = fails(limits, |bench| bench.remove(1));
         assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound }, "{limits}");
-        // 220 units of 4 steps each toward the switch; x has not moved yet.
-        assert_eq!((x, y), (0, 220 * 4), "{limits}");
+        // 220 units of 4 steps each toward the switch. With one input for all, both axes have moved
+        // off before, y by 15 units.
+        let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
+        let one = limits == "one";
+        let places = (if one { moved_off } else { 0 }, (220 - if one { 15 } else { 0 }) * 4);
+        assert_eq!((x, y), places, "{limits}");
     }
 }
 
@@ -250,9 +264,10 @@ fn switch_that_stays_closed_is_detected_before_the_search() {
 
 #[test]
 fn limit_that_closes_while_moving_away_is_an_error_except_at_the_far_end() {
-    // With one input for all, every moving axis has met the limit.
+    // The axis stands on its home switch and moves away from it. With one input for all, every
+    // moving axis has met the limit.
     for (limits, axes) in [("each", 2), ("one", 3)] {
-        let (error, _) = fails(limits, |bench| bench.far(1, -20));
+        let (error, _) = fails_from(limits, Start::Closed, |bench| bench.far(1, -40));
         assert_eq!(error, HostError::Homing { axes, why: HomingFault::Closed }, "{limits}");
     }
     let machine = two("pair", "freeze", "high");

@@ -24,6 +24,9 @@ mod request;
 use request::{AXES, each};
 pub use request::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 
+/// Index of the limit in [`CAUSES`](crate::registers::CAUSES).
+const LIMIT: u8 = 5;
+
 /// Result of one move of homing.
 struct Leg {
     /// Mask of the axes that met their limit.
@@ -73,7 +76,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// The debounced states of the switches are read first. An axis whose switch is closed moves away
     /// from it, and the switch must be open afterwards ([`HomingFault::StillClosed`]). With the
-    /// wiring `One` a closed switch may be that of any axis, so all of them move away.
+    /// wiring `One` a closed switch may be that of any axis, so all of them move away, in any case.
     ///
     /// # Errors
     /// [`HostError::Homing`] gives the axes and the reason. Other errors are those of
@@ -104,8 +107,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
-        // With one input for all switches, a closed switch of any axis would hide the others.
-        if one && self.closed(homing, homing.mask())? != 0 {
+        // With one input for all switches, a closed switch of any axis would hide the others, and a
+        // switch that bounces may look open: all axes move away from theirs in any case.
+        if one {
             let axes = homing.mask() | homing.others & homing.known();
             if self.move_off(homing, axes, watch)?.is_none() {
                 return Ok(None);
@@ -293,6 +297,14 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 // From here on no axis waits for a limit, and those that have met it may move
                 // again.
                 self.write(SEEK, 0)?;
+            }
+            if let Err(HostError::Fault { cause: LIMIT, culprits }) = ended
+                && source.is_none()
+            {
+                self.clear()?;
+                // One input for all does not tell whose switch it is.
+                let axes = if homing.wiring == Wiring::One { left } else { culprits };
+                return Err(HostError::Homing { axes, why: HomingFault::Closed });
             }
             let ended = ended?;
             if ended == Ended::Stopped {
