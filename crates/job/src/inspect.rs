@@ -7,13 +7,17 @@ use crate::path::{Corner, MOST_REACH, Path, Place};
 use crate::rough::Knot;
 use crate::speed::Instant;
 use crate::spline::value;
-use crate::vector::{Point, from_to};
+use crate::vector::{Point, dot, from_to, norm, plus};
+use std::cell::Cell;
 
 /// Part of the limits that may be used; the rest is for rounding to integers.
 const LIMIT_PART: f64 = 1.0 - 1e-7;
 /// Part of the tolerance that may be used at the places that are measured; the rest is for the
 /// places between them.
 const TOLERANCE_PART: f64 = 0.97;
+
+/// The square of a way in one knot time below which the curve is at rest, mm^2.
+const NOTHING: f64 = 1e-18;
 
 /// Least excess of what is found between these places.
 const LEAST_EXCESS: f64 = 1.005;
@@ -49,6 +53,9 @@ pub(crate) struct Inspector<const N: usize> {
     u: [f64; 4],
     places: [Place; 4],
     cover: Cover,
+    /// The greatest distance from the path between the last two measured knots, as a part of the
+    /// tolerance.
+    measured: f64,
 }
 
 impl<const N: usize> Inspector<N> {
@@ -62,6 +69,7 @@ impl<const N: usize> Inspector<N> {
             u: [0.0; 4],
             places: [Place::default(); 4],
             cover: Cover::default(),
+            measured: 0.0,
         }
     }
 
@@ -73,11 +81,31 @@ impl<const N: usize> Inspector<N> {
         self.u = [0.0; 4];
         self.places = [knot.place; 4];
         self.cover = Cover::at(knot.place);
+        self.measured = 0.0;
     }
 
     /// Where on the path the curve was at the last measured place.
     pub fn place(&self) -> Place {
         self.place
+    }
+
+    /// The greatest distance from the path at the places that were measured last, as a part of the
+    /// tolerance.
+    pub fn measured(&self) -> f64 {
+        self.measured
+    }
+
+    /// The curvature of the emitted curve in the middle between the last two measured knots, 1/mm; 0
+    /// where the curve is at rest.
+    pub fn curvature(&self) -> f64 {
+        let [a, b, c, d] = &self.letters;
+        let first = from_to(b, c);
+        let second: Point<N> = std::array::from_fn(|i| (d[i] - c[i] - b[i] + a[i]) / 2.0);
+        let square = dot(&first, &first);
+        if square <= NOTHING {
+            return 0.0;
+        }
+        norm(&plus(&second, -dot(&first, &second) / square, &first)) / square
     }
 
     /// The first piece on which the curve may still be.
@@ -150,11 +178,14 @@ impl<const N: usize> Inspector<N> {
             self.place = end.place;
         }
         let miss = self.cover.follow(&bezier(&self.letters), self.place, path);
+        let greatest = Cell::new(0.0_f64);
         let measured = |phase: f64, tip: Option<(&Point<N>, f64)>| {
             let here = value(&self.letters, phase);
             let near = path.nearest(&here, before, end.place)?;
             let piece = path.piece(near.place.piece)?;
-            let mut excess = path.off(&near.point, &here, piece).sqrt() / TOLERANCE_PART;
+            let off = path.off(&near.point, &here, piece).sqrt();
+            greatest.set(greatest.get().max(off));
+            let mut excess = off / TOLERANCE_PART;
             if let Some((tip, reach)) = tip {
                 excess = excess.max(path.off(tip, &here, piece).sqrt() / (TOLERANCE_PART * reach));
             }
@@ -195,6 +226,8 @@ impl<const N: usize> Inspector<N> {
         });
         let phases = PHASES.iter();
         let faults = phases.filter_map(|&phase| measured(phase, None)).chain(cut);
-        faults.max_by(|a, b| a.excess.total_cmp(&b.excess))
+        let worst = faults.max_by(|a, b| a.excess.total_cmp(&b.excess));
+        self.measured = greatest.get();
+        worst
     }
 }

@@ -10,7 +10,7 @@ use crate::refuse::{coordinates, refuse};
 use crate::rhythm::Rhythm;
 use crate::row::Row;
 use crate::run::Runs;
-use crate::settle::Emitted;
+use crate::settle::{Emitted, Passed};
 use crate::targets::Targets;
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
@@ -64,6 +64,8 @@ pub(crate) struct Job<const N: usize> {
     tick_seconds: f64,
     runs: Runs<N>,
     weave: Weave<N>,
+    /// What the path has passed at the end of the span that the weave holds.
+    held: Option<Passed>,
     /// The last element, which is held back until it is known whether the path rests behind it.
     pending: Option<Element>,
     /// Marks behind it.
@@ -112,6 +114,7 @@ impl<const N: usize> Job<N> {
         Ok(Self {
             runs: Runs::new(&motors, &rhythm, linear, at),
             weave: Weave::new(rhythm.ticks, exact, quiet, units),
+            held: None,
             motors,
             targets,
             linear,
@@ -291,7 +294,9 @@ impl<const N: usize> Job<N> {
     fn rest(&mut self, ticks: u32) {
         if ticks > 0 {
             let segments = [Segment { ticks, v: 0, a: 0, j: 0, last: false }; N];
-            self.row(&Span { ticks, segments }, self.reached);
+            let (piece, line) = (self.reached, self.line);
+            let passed = Passed { piece, line, feed: f64::INFINITY, off: 0.0, corner: 0.0 };
+            self.row(&Span { ticks, segments }, &passed);
         }
     }
 
@@ -301,32 +306,36 @@ impl<const N: usize> Job<N> {
         let resting = if target.is_some() { crate::smooth::RESTING } else { 0 };
         let count = emitted.len().saturating_sub(resting);
         for knot in &emitted[..count] {
-            let point = self.units(&knot.point, knot.place.piece)?;
+            let point = self.units(&knot.point, knot.passed.line)?;
             if self.weave.leaves(&point) {
-                let span = self.weave.push(point).map_err(|broken| self.broken(broken))?;
-                self.spans(span, knot.place.piece);
+                self.add(point, knot.passed)?;
             }
         }
         if let (Some(target), Some(last)) = (target, emitted.last()) {
             for _ in 1..resting {
-                let span = self.weave.push(target).map_err(|broken| self.broken(broken))?;
-                self.spans(span, last.place.piece);
+                self.add(target, last.passed)?;
             }
             let spans = self.weave.land(target).map_err(|broken| self.broken(broken))?;
-            self.spans(spans, last.place.piece);
+            for span in spans {
+                let passed = self.held.take().unwrap_or(last.passed);
+                self.row(&span, &passed);
+            }
         }
         Ok(())
     }
 
-    fn spans(&mut self, spans: impl IntoIterator<Item = Span<N>>, piece: u64) {
-        for span in spans {
-            self.line = self.runs.line(piece);
-            self.row(&span, piece);
+    /// Adds a control point, and the row of the span before the one that it completes.
+    fn add(&mut self, point: [i128; N], passed: Passed) -> Result<(), JobError> {
+        let span = self.weave.push(point).map_err(|broken| self.broken(broken))?;
+        let before = self.held.replace(passed);
+        if let (Some(span), Some(before)) = (span, before) {
+            self.row(&span, &before);
         }
+        Ok(())
     }
 
-    /// Adds a row at whose end the path has reached this piece.
-    fn row(&mut self, span: &Span<N>, piece: u64) {
+    /// Adds a row, and what the path has passed at its end.
+    fn row(&mut self, span: &Span<N>, passed: &Passed) {
         let mut marks = Vec::new();
         while let Some(&(before, mark)) = self.marks.front() {
             if before > self.reached {
@@ -335,19 +344,20 @@ impl<const N: usize> Job<N> {
             marks.push(mark);
             self.marks.pop_front();
         }
-        self.reached = self.reached.max(piece);
-        let segments = span.segments.to_vec();
-        self.rows.push_back(Row { ticks: span.ticks, segments, line: self.line, marks });
+        self.reached = self.reached.max(passed.piece);
+        self.line = passed.line;
+        let &Passed { line, feed, off, corner, .. } = passed;
+        let (ticks, segments) = (span.ticks, span.segments.to_vec());
+        self.rows.push_back(Row { ticks, segments, line, feed, off, corner, marks });
     }
 
     /// The motors at a control point, in units of 2^-64 step.
-    fn units(&self, point: &Point<N>, piece: u64) -> Result<[i128; N], JobError> {
+    fn units(&self, point: &Point<N>, line: u64) -> Result<[i128; N], JobError> {
         let motors = self.motors.of(point);
         let mut units = [0; N];
         for (axis, unit) in units.iter_mut().enumerate() {
-            *unit = nearest(motors[axis] * self.targets.steps_per_unit[axis]).ok_or(
-                JobError::Broken { line: self.runs.line(piece), axis, rule: crate::Rule::Range },
-            )?;
+            let steps = nearest(motors[axis] * self.targets.steps_per_unit[axis]);
+            *unit = steps.ok_or(JobError::Broken { line, axis, rule: crate::Rule::Range })?;
         }
         Ok(units)
     }

@@ -3,7 +3,7 @@
 use carrystep_core::Segment;
 
 /// The segments of all axes for the same ticks.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Length in ticks, the same for each axis.
     pub ticks: u32,
@@ -11,6 +11,17 @@ pub struct Row {
     pub segments: Vec<Segment>,
     /// The source line of the element that the path has reached at the end of the row.
     pub line: u64,
+    /// The lowest feed of the elements that the path passes in the row, mm/s (degrees/s where only
+    /// rotary letters move); infinite in rapid moves and at rest.
+    pub feed: f64,
+    /// The greatest distance of the planned curve from the path in the row, as a part of the
+    /// tolerance, from 0 to 1. It is measured at four places of the row.
+    pub off: f64,
+    /// How far a straight line as long as the shortest element of the row would be from a curve
+    /// that bends as the planned curve does, beyond the bend of the element itself, as a part of
+    /// the tolerance. Above 1 the curve rounds a corner within the tolerance; far below 1 it follows
+    /// a path that is itself bent, as chords of a large circle are.
+    pub corner: f64,
     /// The marks ([`Item::Mark`]) that the path has reached at the start of the row.
     pub marks: Vec<u64>,
 }

@@ -85,11 +85,6 @@ impl<const N: usize> Runs<N> {
         self.started
     }
 
-    /// The source line of a piece that is still in the window.
-    pub fn line(&self, piece: u64) -> u64 {
-        self.path.piece(piece).map_or(0, |piece| piece.line)
-    }
-
     /// Adds a piece that begins where the one before ends.
     pub fn push(&mut self, piece: Piece<N>, out: &mut Vec<Emitted<N>>) {
         let number = self.path.end();

@@ -11,11 +11,12 @@ use crate::attempt::{Ease, NONE, Window};
 use crate::filter::Filter;
 use crate::halt::halt;
 use crate::inspect::Inspector;
-use crate::path::{Path, Place};
+use crate::path::Path;
 use crate::rough::Knot;
 use crate::smooth::RESTING;
 use crate::speed::{Instant, MARGIN, Rules, sampled};
 use crate::spline::value;
+use crate::vector::Point;
 use std::collections::VecDeque;
 
 /// Intervals that are passed in one block.
@@ -50,8 +51,47 @@ pub(crate) struct Settle<const N: usize> {
     spread: f64,
 }
 
-/// A point of the emitted curve: a control point, with its place on the path.
-pub(crate) type Emitted<const N: usize> = Knot<N>;
+/// A control point of the emitted curve, and where the curve is at the end of the interval that the
+/// point completes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Emitted<const N: usize> {
+    pub point: Point<N>,
+    pub passed: Passed,
+}
+
+/// What the curve has passed at the end of an interval between two knots.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Passed {
+    /// The piece of the path.
+    pub piece: u64,
+    /// Its source line.
+    pub line: u64,
+    /// The lowest feed of the pieces in the interval.
+    pub feed: f64,
+    /// The greatest measured distance from the path in the interval, as a part of the tolerance.
+    pub off: f64,
+    /// See [`Row::corner`](crate::Row::corner).
+    pub corner: f64,
+}
+
+impl Passed {
+    /// The curve goes from one piece to another. It is this far from the path and has this
+    /// curvature, 1/mm.
+    fn new<const N: usize>(from: u64, to: u64, off: f64, bend: f64, path: &Path<N>) -> Self {
+        let (mut feed, mut length, mut beyond) = (f64::INFINITY, f64::INFINITY, 0.0_f64);
+        let (mut line, mut tolerance) = (0, f64::INFINITY);
+        for piece in (from..=to).filter_map(|piece| path.piece(piece)) {
+            feed = feed.min(piece.feed);
+            length = length.min(piece.length);
+            tolerance = tolerance.min(piece.tolerance.linear);
+            beyond = beyond.max(bend - piece.bends()[0]);
+            line = piece.line;
+        }
+        // The height of an arc over its chord.
+        let corner = beyond * length * length / 8.0 / tolerance;
+        Self { piece: to, line, feed, off, corner }
+    }
+}
 
 impl<const N: usize> Settle<N> {
     pub fn new(rules: Rules<N>, ahead: usize, average: usize) -> Self {
@@ -170,9 +210,10 @@ impl<const N: usize> Settle<N> {
         self.emit(&self.filter.settling(here), path, out);
         let place = self.inspector.leaving(&here.point, path);
         let motion = halt(&here.point, place, path, &self.rules.motors, self.rules.knot_seconds);
-        out.extend(&motion);
         let Some(&last) = motion.last() else { return };
-        out.extend([last; RESTING - 1]);
+        let passed = Passed::new(place.piece, place.piece, 0.0, 0.0, path);
+        let rest = [last; RESTING - 1];
+        out.extend(motion.iter().chain(&rest).map(|knot| Emitted { point: knot.point, passed }));
         self.halted = Some(place.piece);
         self.buffer.retain(|knot| knot.place.piece > place.piece);
         self.begin(last, START);
@@ -195,9 +236,12 @@ impl<const N: usize> Settle<N> {
         for instant in samples {
             let emitted = self.filter.push(instant);
             // What has been found good is measured again only to go on from there.
+            let from = self.inspector.place().piece;
             drop(self.inspector.push(&emitted, path));
-            let place: Place = self.inspector.place();
-            out.push(Knot { place, ..emitted.knot });
+            let to = self.inspector.place().piece;
+            let (off, bend) = (self.inspector.measured(), self.inspector.curvature());
+            let passed = Passed::new(from, to, off, bend, path);
+            out.push(Emitted { point: emitted.knot.point, passed });
         }
     }
 }

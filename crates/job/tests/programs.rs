@@ -71,3 +71,40 @@ fn references_give_the_published_times_of_simple_programs() {
     let stop = grbl(&read("G1 X20 F6000\nG1 Y20"), &limits, 0.0);
     assert!((stop - 0.6).abs() < 1e-9, "{stop}");
 }
+
+#[test]
+fn rows_name_line_feed_and_distance_of_the_place_where_they_end() {
+    let machine = common::machine(&reader::file("machine.toml"));
+    // A staircase whose steps have other feeds, long enough for several windows of the planner.
+    let line = |k: u64| {
+        let (x, y) = (5 * k.div_ceil(2), 5 * (k / 2));
+        format!("G1 X{x} Y{y} F{}\n", 600 + 100 * (k % 7))
+    };
+    let items = reader::read(&(1..=60).map(line).collect::<String>());
+    let rows = planned(&machine, &items);
+    let mut replay = Replay::new(&machine);
+    let (mut most, mut round) = (0.0_f64, 0);
+    for row in &rows {
+        replay.run(row);
+        let place = |axis: usize| replay.axes[axis].distance as f64 / 2_f64.powi(64) / 80.0;
+        let (x, y) = (place(0), place(1));
+        let k = row.line as i64;
+        let from =
+            [5 * (k - 1).div_euclid(2) + 5 * ((k - 1) % 2), 5 * ((k - 1) / 2)].map(|c| c as f64);
+        let to = [5 * (k / 2) + 5 * (k % 2), 5 * (k / 2)].map(|c| c as f64);
+        let beyond = |c: f64, a: f64, b: f64| (a - c).max(c - b).max(0.0);
+        let away = beyond(x, from[0], to[0]).hypot(beyond(y, from[1], to[1]));
+        assert!(away <= 0.02, "line {k} at {x} {y}: {away}");
+        let feed = |k: i64| (600 + 100 * (k % 7)) as f64 / 60.0;
+        assert!(row.feed == feed(k) || row.feed == feed(k - 1), "line {k}: {}", row.feed);
+        assert!((0.0..=1.0).contains(&row.off), "{}", row.off);
+        most = most.max(row.off);
+        let corner = ((x / 5.0).round() * 5.0, (y / 5.0).round() * 5.0);
+        if row.corner > 1.0 && row.off > 0.5 {
+            round += 1;
+            assert!((x - corner.0).hypot(y - corner.1) < 0.5, "no corner at {x} {y}");
+        }
+    }
+    assert!(most > 0.5, "corners use the tolerance: {most}");
+    assert!((59..600).contains(&round), "{round} rows at 59 corners");
+}
