@@ -7,7 +7,7 @@ use crate::kinematics::Kinematics;
 use crate::limits::{Motors, of_machine};
 use crate::piece::Piece;
 use crate::refuse::{coordinates, refuse};
-use crate::rhythm::Rhythm;
+use crate::rhythm::{LONGEST, Rhythm, shortest};
 use crate::row::Row;
 use crate::run::Runs;
 use crate::settle::{Emitted, Passed};
@@ -24,8 +24,6 @@ use std::fmt::Debug;
 const NO_MOVE: f64 = 1e-9;
 /// Longest piece, seconds at its feed: the knots of one piece are made at once.
 const PIECE_SECONDS: f64 = 0.5;
-/// Longest row of a rest, seconds.
-const LONGEST_REST: f64 = 0.016;
 
 /// A job with any number of axes.
 pub(crate) trait Jobs: Debug {
@@ -93,7 +91,9 @@ impl<const N: usize> Job<N> {
         let targets = Targets::new(machine, kinematics)?;
         let tick_seconds = machine.timebase.tick_seconds();
         let (mut limits, exact) = of_machine(machine)?;
-        let rhythm = Rhythm::new(&limits, tick_seconds);
+        let baud = if machine.spi { u32::MAX } else { machine.baud };
+        let shortest = shortest(machine.axes.len(), baud);
+        let rhythm = Rhythm::new(&limits, tick_seconds, shortest);
         // From steps to units of the letters.
         for (motor, limit) in limits.iter_mut().enumerate() {
             let steps = targets.steps_per_unit[motor];
@@ -263,8 +263,7 @@ impl<const N: usize> Job<N> {
                 self.reached = self.runs.next_piece();
             }
             Some(&mut Work::Rest { ticks, line }) => {
-                let longest =
-                    ((LONGEST_REST / self.tick_seconds) as u64).max(self.rhythm.ticks.into());
+                let longest = ((LONGEST / self.tick_seconds) as u64).max(self.rhythm.ticks.into());
                 // Two rows share what is more than one row and less than two.
                 let now = match ticks {
                     t if t <= longest => t,

@@ -1,14 +1,30 @@
 //! The rhythm of a job: the time between knots, and how many samples are averaged.
 //!
-//! The filter over m samples keeps the jerk J if m dt >= 2 A / J (`filter.rs`). A link carries at
-//! most 250 segments a second for each axis, so dt is at least 4 ms. Of the two ways to fill the
-//! time 2 A / J with knots, fewer longer ones or more shorter ones, the one is taken whose curve
-//! moves less towards the acceleration.
+//! The filter over m samples keeps the jerk J if m dt >= 2 A / J (`filter.rs`). Each knot time dt is
+//! a segment of each axis. It is at least 4 ms, so that an axis has at most 250 segments a second
+//! and any eight successive ones last at least 32 ms, which is what the engine's queue holds. On a
+//! slow line it is longer, as far as 16 ms. Of the two ways to fill the time 2 A / J with knots,
+//! fewer longer ones or more shorter ones, the one is taken whose curve moves less towards the
+//! acceleration.
 
 use crate::limits::{Limit, SHORTEST};
 
-/// Longest filter, knots: it bounds the work for a very low jerk limit. Knots then get longer.
+/// Longest filter, knots: it bounds the work for a very low jerk limit. Knots then get longer, up to
+/// [`LONGEST`].
 const MOST_AVERAGED: f64 = 4096.0;
+/// Longest time between knots, seconds: a hold or an override takes effect after the queue. The
+/// last segment of a run is a tick longer.
+pub(crate) const LONGEST: f64 = 0.016;
+/// Bits of a line for each segment that it carries: 40 bytes of ten bits, two and a half times. A
+/// line of 3 Mbaud was measured to carry 3000 segments a second, of 921 600 baud 1200
+/// (`docs/performance.md`); this is 3000 and 921.
+const BITS_A_SEGMENT: f64 = 1000.0;
+
+/// The shortest time between knots in seconds for so many axes on a line of so many baud: 4 ms, or
+/// longer if the line carries fewer segments, but at most 16 ms.
+pub(crate) fn shortest(axes: usize, baud: u32) -> f64 {
+    (axes as f64 * BITS_A_SEGMENT / f64::from(baud)).clamp(SHORTEST, LONGEST * 0.999)
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rhythm {
@@ -21,14 +37,23 @@ pub(crate) struct Rhythm {
 }
 
 impl Rhythm {
-    /// The rhythm for motors with these limits and a tick of so many seconds.
-    pub fn new(limits: &[Limit], tick_seconds: f64) -> Self {
+    /// The rhythm for motors with these limits, a tick of so many seconds, and knots at least
+    /// `shortest` seconds apart.
+    pub fn new(limits: &[Limit], tick_seconds: f64, shortest: f64) -> Self {
         let width = limits.iter().map(|l| 2.0 * l.acceleration / l.jerk).fold(0.0, f64::max);
-        let whole = (width / SHORTEST * (1.0 - 1e-9)).max(0.0);
+        let whole = (width / shortest * (1.0 - 1e-9)).max(0.0);
         let [fewer, more] = [whole.floor(), whole.ceil()].map(|n| n.clamp(1.0, MOST_AVERAGED));
+        let most = ((LONGEST / tick_seconds).floor() - 1.0).max(1.0);
         let choice = |average: f64| {
-            let ticks = ((width / average).max(SHORTEST) / tick_seconds * (1.0 - 1e-12)).ceil();
-            let ticks = ticks.clamp(1.0, f64::from(u32::MAX)) as u32;
+            let ticks = ((width / average).max(shortest) / tick_seconds * (1.0 - 1e-12)).ceil();
+            let ticks = ticks.clamp(1.0, f64::from(u32::MAX));
+            // Knots that would be too long are more ones of the longest time.
+            let (ticks, average) = if ticks > most {
+                (most, (width / (most * tick_seconds)).ceil().max(1.0))
+            } else {
+                (ticks, average)
+            };
+            let ticks = ticks as u32;
             Self { ticks, seconds: f64::from(ticks) * tick_seconds, average: average as usize }
         };
         let [a, b] = [choice(fewer), choice(more)];
@@ -48,7 +73,7 @@ mod tests {
     use super::*;
 
     fn rhythm(acceleration: f64, jerk: f64) -> Rhythm {
-        Rhythm::new(&[Limit { speed: 100.0, acceleration, jerk }], 1e-6)
+        Rhythm::new(&[Limit { speed: 100.0, acceleration, jerk }], 1e-6, SHORTEST)
     }
 
     #[test]
@@ -59,11 +84,24 @@ mod tests {
 
     #[test]
     fn filter_is_as_long_as_the_jerk_limit_needs() {
-        for jerk in [1e3, 1e4, 5e4, 1e5, 2.1e5, 2.5e5, 4e5, 1e6, 1e9] {
+        for jerk in [1.0, 10.0, 1e3, 1e4, 5e4, 1e5, 2.1e5, 2.5e5, 4e5, 1e6, 1e9] {
             let found = rhythm(1000.0, jerk);
             let width = found.seconds * found.average as f64;
             assert!(width * jerk >= 2000.0 * (1.0 - 1e-6), "{jerk}: {found:?}");
             assert!(found.ticks >= 4000 && found.average >= 1, "{jerk}: {found:?}");
+            assert!(found.ticks < 16_000, "{jerk}: {found:?}");
         }
+    }
+
+    #[test]
+    fn a_slow_line_makes_knots_longer() {
+        let ticks = |axes, baud| {
+            let limit = Limit { speed: 100.0, acceleration: 1000.0, jerk: 250_000.0 };
+            Rhythm::new(&[limit], 1e-6, shortest(axes, baud)).ticks
+        };
+        assert_eq!((ticks(6, 3_000_000), ticks(3, 921_600)), (4000, 4000));
+        // 921 segments a second for six axes.
+        assert!((6511..=8000).contains(&ticks(6, 921_600)), "{}", ticks(6, 921_600));
+        assert!((15_000..16_000).contains(&ticks(6, 115_200)), "{}", ticks(6, 115_200));
     }
 }

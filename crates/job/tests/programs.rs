@@ -108,3 +108,34 @@ fn rows_name_line_feed_and_distance_of_the_place_where_they_end() {
     assert!(most > 0.5, "corners use the tolerance: {most}");
     assert!((59..600).contains(&round), "{round} rows at 59 corners");
 }
+
+/// What the engine's queue and the link need of successive rows, whatever the program does.
+#[test]
+fn any_eight_rows_last_32_ms_and_none_more_than_16_ms() {
+    let text = reader::file("machine.toml");
+    let limits = ["", "jerk_limit = 50000\n", "jerk_limit = 10000\n", "jerk_limit = 300\n"];
+    for jerk in limits {
+        let machine = common::machine(&text.replace("driver", &format!("{jerk}driver")));
+        let mut items = Vec::new();
+        // Rests of all lengths around one and two rows, between moves of all lengths.
+        for k in 0..60_u32 {
+            let x = f64::from(k % 2) * 0.001 * 1.17_f64.powi(k as i32);
+            let line = format!("G1 X{x:.4} Y{:.4} F6000\n", f64::from(k) * 0.05);
+            items.extend(reader::read(&line));
+            let dwell = f64::from(k) * 0.0007;
+            if k % 3 != 0 {
+                items.push(Item::Rest { dwell, line: k.into() });
+            }
+        }
+        let rows = planned(&machine, &items);
+        assert!(rows.len() > 100);
+        for row in &rows {
+            assert!((4000..=16_000).contains(&row.ticks), "{jerk}: {}", row.ticks);
+        }
+        for eight in rows.windows(8) {
+            assert!(eight.iter().map(|row| row.ticks).sum::<u32>() >= 32_000, "{jerk}");
+        }
+        let (ticks, count) = (rows.iter().map(|row| row.ticks).sum::<u32>(), rows.len());
+        assert!(count as f64 / (f64::from(ticks) * 1e-6) <= 250.0, "{jerk}");
+    }
+}
