@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod examples;
+mod jobs;
 mod slow;
 mod verify;
 

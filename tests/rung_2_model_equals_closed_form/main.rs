@@ -39,6 +39,44 @@ fn golden_vectors_to_the_last_edge_and_phase() {
     }
 }
 
+/// A program in G-code: P before every tick, all its steps, and P at the end.
+#[test]
+fn job_equals_the_closed_form_and_ends_where_it_began() {
+    let job = carrystep_tests::gcode_job::short();
+    let half = 1_u64 << 63;
+    let mut steps = 0;
+    for axis in 0..job.machine.axes.len() {
+        let segments = job.segments(axis);
+        let (edges, p) = edges(half, &segments);
+        assert_eq!(p, half, "axis {axis}: P at the end");
+        let signed: i64 = edges.iter().map(|&(.., step)| i64::from(step)).sum();
+        assert_eq!(signed, job.survey.axes[axis].steps(), "axis {axis}");
+        steps += edges.len() as u64;
+        // The whole part of P changes exactly in the ticks that have an edge.
+        let (mut at, mut next) = (BigInt::from(half), edges.iter());
+        let mut tick = 0_u64;
+        for s in &segments {
+            for n in 0..s.ticks {
+                tick += 1;
+                let whole = |n| {
+                    num_integer::Integer::div_floor(
+                        &(&at + closed_form::distance(s, n)),
+                        &(BigInt::from(1) << 64),
+                    )
+                };
+                let changed = whole(n + 1) - whole(n);
+                if changed != BigInt::from(0) {
+                    let &(found, _, step) = next.next().expect("an edge");
+                    assert_eq!((found, BigInt::from(step)), (tick, changed), "axis {axis}");
+                }
+            }
+            at += closed_form::distance(s, s.ticks);
+        }
+        assert!(next.next().is_none(), "axis {axis} has too many edges");
+    }
+    assert_eq!(steps, job.steps());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 

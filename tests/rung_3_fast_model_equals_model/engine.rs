@@ -6,7 +6,7 @@ use carrystep_core::{EngineBuild, PinTiming, Program, StartPhase};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_tests::engine_twins::{self, Came};
-use carrystep_tests::{dense, effort, engine_programs, lockstep, moves};
+use carrystep_tests::{dense, effort, engine_programs, gcode_job, lockstep, moves};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
@@ -73,6 +73,13 @@ fn an_engine_of_many_edges() {
     let came = engines(&build, 100, programs);
     let underruns = came.faults[Cause::Underrun as usize];
     assert!(came.edges > 30_000 && underruns > 0, "{came:?}");
+}
+
+#[test]
+fn a_program_in_gcode() {
+    let job = gcode_job::short();
+    let program = (&job.program(), job.survey.ticks);
+    lockstep::assert_engine_runs(Level::Fast, &job.engine(), program, job.steps());
 }
 
 #[test]

@@ -6,7 +6,7 @@ use carrystep_core::StartPhase;
 use carrystep_plan::Plan;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, engine_vectors};
-use carrystep_tests::{axis_bench, effort, lockstep, moves, programs};
+use carrystep_tests::{axis_bench, effort, gcode_job, lockstep, moves, programs};
 use proptest::test_runner::{Config, TestRunner};
 
 fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
@@ -98,6 +98,13 @@ fn the_demo_and_every_profile_on_the_engine_in_verilator() {
     for name in ["demo", "curves"] {
         lockstep::assert_engine_equals_model(Level::Verilator, &moves::on_the_engine(name));
     }
+}
+
+#[test]
+fn a_program_in_gcode_on_the_engine_in_verilator() {
+    let job = gcode_job::short();
+    let program = (&job.program(), job.survey.ticks);
+    lockstep::assert_engine_runs(Level::Verilator, &job.engine(), program, job.steps());
 }
 
 #[test]

@@ -8,6 +8,7 @@ pub mod dense;
 pub mod effort;
 pub mod engine_programs;
 pub mod engine_twins;
+pub mod gcode_job;
 pub mod golden;
 pub mod jobs;
 pub mod link_bench;

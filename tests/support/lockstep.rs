@@ -89,27 +89,31 @@ pub fn assert_random_programs_equal_model(level: Level, axes: usize, phases: u32
 fn engine_record(
     level: Level,
     build: &EngineBuild,
-    plan: &Plan,
+    (program, ticks): (&Program, u64),
 ) -> (Vec<(u64, EngineOutputs)>, EngineOutcome) {
-    let program = plan.program();
     let mut changes: Vec<(u64, EngineOutputs)> = Vec::new();
-    let outcome =
-        EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
-            let told =
-                EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
-            let told = EngineOutputs { room: None, ..told };
-            if changes.last().is_none_or(|(_, before)| *before != told) {
-                changes.push((cycle, told));
-            }
-        });
+    let outcome = EngineJob::new(build, program, ticks).run(level, &mut |cycle, outputs| {
+        let told = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
+        let told = EngineOutputs { room: None, ..told };
+        if changes.last().is_none_or(|(_, before)| *before != told) {
+            changes.push((cycle, told));
+        }
+    });
     (changes, outcome.unwrap_or_else(|error| panic!("{level}: {error}")))
 }
 
 /// Panics at the first clock in which a level of the engine differs from its model on planned
 /// moves. Verilog is compared with it in every output where it runs.
 pub fn assert_engine_equals_model(level: Level, (build, plan): &(EngineBuild, Plan)) {
-    let (expected, ended) = engine_record(Level::Model, build, plan);
-    let (found, found_ended) = engine_record(level, build, plan);
+    let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
+    let steps = axes.map(|axis| axis.steps.unsigned_abs()).sum();
+    assert_engine_runs(level, build, (&plan.program(), plan.total_ticks()), steps);
+}
+
+/// The same for a program of so many ticks that makes so many steps.
+pub fn assert_engine_runs(level: Level, build: &EngineBuild, program: (&Program, u64), steps: u64) {
+    let (expected, ended) = engine_record(Level::Model, build, program);
+    let (found, found_ended) = engine_record(level, build, program);
     if let Some((e, f)) = expected.iter().zip(&found).find(|(e, f)| e != f) {
         panic!("{level} is not the model:\n expected {e:?}\n found    {f:?}");
     }
@@ -118,17 +122,11 @@ pub fn assert_engine_equals_model(level: Level, (build, plan): &(EngineBuild, Pl
         (found.len(), &found_ended),
         "{level}: changes, and the end"
     );
-    let edges: u64 = plan
-        .moves
-        .iter()
-        .flat_map(|planned| &planned.axes)
-        .map(|axis| axis.steps.unsigned_abs())
-        .sum();
     let rising = expected
         .windows(2)
         .map(|pair| u64::from((pair[1].1.step & !pair[0].1.step).count_ones()))
         .sum::<u64>();
-    assert_eq!((rising, ended.fault), (edges, None), "{level}: edges, and no stop");
+    assert_eq!((rising, ended.fault), (steps, None), "{level}: edges, and no stop");
 }
 
 /// A job for a random program: time for whatever the generators make.
