@@ -1,9 +1,10 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], and
-//! the [`Plot`]. [`check_beside`] is a checker that uses other cores. [`PathChecker`] checks jobs,
-//! whose pulses follow a programmed path. The modules are private; the public items are listed
+//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], the [`Plot`]
+//! and the [`ErrorCounter`]. [`check_beside`] is a checker that uses other cores. [`PathChecker`] checks jobs,
+//! whose pulses follow a programmed path,
+//! and [`JobChecker`] a capture of one. The modules are private; the public items are listed
 //! below.
 
 mod ahead;
@@ -11,13 +12,16 @@ mod axis_check;
 mod beside;
 mod checker;
 mod csv_out;
+mod due_pulses;
 mod edge;
 mod error;
+mod error_counts;
 mod exact;
 mod follow;
 mod fst_out;
 mod gtkw;
 mod ideal;
+mod job_check;
 mod line_check;
 mod origin;
 mod path_check;
@@ -26,6 +30,7 @@ mod path_leg;
 mod path_report;
 mod pins;
 mod plot;
+mod pulse_times;
 mod report;
 mod signal_map;
 mod slices;
@@ -50,15 +55,18 @@ pub use checker::{Checker, Part, Setup};
 pub use csv_out::csv_writer;
 pub use edge::{Pin, PinChange, PinSink, Tee};
 pub use error::{ReadError, TraceError};
+pub use error_counts::{ErrorCounter, ErrorCounts};
 pub use follow::{Follower, Pulse};
 pub use fst_out::fst_writer;
 pub use gtkw::save_file;
+pub use job_check::{JobChecker, JobReport};
 pub use origin::Origin;
 pub use path_check::{PathAxis, PathChecker, PathSetup};
 pub use path_leg::PathLeg;
 pub use path_report::{PathAxisReport, PathReport};
 pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
+pub use pulse_times::{PlannedRows, PulseTimesReport};
 pub use report::{AxisReport, CheckReport, OriginKind};
 pub use signal_map::SignalMap;
 pub use slices::{Capture, Merged, Slice};

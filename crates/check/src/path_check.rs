@@ -16,6 +16,8 @@ use carrystep_core::build::PinTimes;
 use std::fmt;
 
 const PS: f64 = 1e12;
+/// Stretches of the distance that is allowed whose pulses are counted.
+const STRETCHES: usize = 40;
 
 /// One axis of a job.
 #[derive(Debug, Clone)]
@@ -43,8 +45,10 @@ pub struct PathSetup<'a> {
     pub start: [f64; LETTERS],
     /// The start of the job plus the latency L, ps of the capture.
     pub origin_ps: u64,
-    /// Length of the job, ps.
+    /// Length of the job, ps; [`u64::MAX`] if it is not known.
     pub total_ps: u64,
+    /// Uncertainty of the capture's times, ps. It widens the bounds of the pin times.
+    pub slack_ps: u64,
 }
 
 /// Checks a capture of a job from a stream of pin changes, in constant memory.
@@ -55,6 +59,8 @@ pub struct PathChecker<'a> {
     positions: Vec<i64>,
     watches: Vec<PinWatch>,
     worst: Option<(Off, u64)>,
+    /// Pulses by distance.
+    counts: Vec<u64>,
     lost: Option<(Lost, u64)>,
     /// Times of the first and the last pulse, ps.
     times: Option<[u64; 2]>,
@@ -81,6 +87,7 @@ impl<'a> PathChecker<'a> {
             watches: vec![PinWatch::default(); count],
             follow,
             worst: None,
+            counts: vec![0; STRETCHES + 1],
             lost: None,
             times: None,
             setup,
@@ -104,6 +111,8 @@ impl<'a> PathChecker<'a> {
         }
         match self.follow.go(&self.place) {
             Ok(Some(off)) => {
+                let stretch = (off.part() * STRETCHES as f64) as usize;
+                self.counts[stretch.min(STRETCHES)] += 1;
                 if self.worst.as_ref().is_none_or(|(worst, _)| off.part() > worst.part()) {
                     self.worst = Some((off, ps));
                 }
@@ -116,6 +125,11 @@ impl<'a> PathChecker<'a> {
     /// Seconds from the start of the job.
     fn seconds(&self, ps: u64) -> f64 {
         (i128::from(ps) - i128::from(self.setup.origin_ps)) as f64 / PS
+    }
+
+    /// Sets the start of the job, where it was not known before.
+    pub(crate) fn begin_at(&mut self, origin_ps: u64) {
+        self.setup.origin_ps = origin_ps;
     }
 
     /// Ends the check and returns the report.
@@ -134,8 +148,11 @@ impl<'a> PathChecker<'a> {
             failures.push(format!("the pulses end before the path does, near line {line}"));
         }
         if let Some([first, last]) = self.times {
-            let end = self.setup.origin_ps + self.setup.total_ps;
-            if first < self.setup.origin_ps || last > end {
+            let slack = self.setup.slack_ps;
+            let end = self.setup.origin_ps.saturating_add(self.setup.total_ps);
+            if first.saturating_add(slack) < self.setup.origin_ps
+                || last > end.saturating_add(slack)
+            {
                 failures.push(format!(
                     "there are pulses from {:.9} s to {:.9} s, and the job lasts {:.9} s",
                     self.seconds(first),
@@ -162,12 +179,12 @@ impl<'a> PathChecker<'a> {
                     dir_hold_min_ns: minimum(shortest.dir_hold),
                     dir_hold_required_ns: axis.pins_ns.dir_hold as f64,
                 };
-                failures.extend(report.failures());
+                failures.extend(report.failures(self.setup.slack_ps as f64 / 1e3));
                 report
             })
             .collect();
         let (worst, at) = match self.worst {
-            Some((off, ps)) => (off, Some(self.seconds(ps))),
+            Some((off, ps)) => (off, Some(self.seconds(ps.max(self.setup.origin_ps)))),
             None => (
                 Off { linear: 0.0, rotary: 0.0, linear_bound: 0.0, rotary_bound: 0.0, line: 0 },
                 None,
@@ -181,6 +198,7 @@ impl<'a> PathChecker<'a> {
             deviation_bound_deg: worst.rotary_bound,
             deviation_line: at.map(|_| worst.line),
             deviation_at_s: at,
+            deviation_counts: self.counts,
             axes,
             failures,
         }

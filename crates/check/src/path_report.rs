@@ -27,6 +27,10 @@ pub struct PathReport {
     pub deviation_line: Option<u64>,
     /// The time at this place, s from the start of the job; none if nothing moves.
     pub deviation_at_s: Option<f64>,
+    /// Number of pulses by the distance of the tool from the programmed path after them, as a part
+    /// of what is allowed there: from 0 to 1/40, from 1/40 to 2/40, and so on. The last number
+    /// counts the pulses beyond what is allowed.
+    pub deviation_counts: Vec<u64>,
     /// Each axis, in the order of the machine file.
     pub axes: Vec<PathAxisReport>,
     /// What is wrong.
@@ -78,8 +82,8 @@ impl PathAxisReport {
         ]
     }
 
-    /// What is wrong with this axis.
-    pub(crate) fn failures(&self) -> Vec<String> {
+    /// What is wrong with this axis, in a capture whose times are uncertain by so many ns.
+    pub(crate) fn failures(&self, slack_ns: f64) -> Vec<String> {
         let Self { axis, position_expected, position_found, .. } = self;
         let mut failures = Vec::new();
         if position_found != position_expected {
@@ -89,7 +93,7 @@ impl PathAxisReport {
             ));
         }
         for (what, found, required) in self.times() {
-            if let Some(found) = found.filter(|found| *found < required) {
+            if let Some(found) = found.filter(|found| *found + slack_ns < required) {
                 failures
                     .push(format!("axis {axis}: {what} {found} ns, {required} ns are required"));
             }

@@ -57,7 +57,7 @@ pub enum Subcommand {
     /// Run a move file or a G-code program through the gateware, cycle by cycle, and check every
     /// pulse.
     Simulate(Simulate),
-    /// Check a VCD from any simulator or logic analyser against a move file.
+    /// Check a VCD from any simulator or logic analyser against a move file or a G-code program.
     Check(CheckArguments),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
@@ -150,6 +150,10 @@ pub struct PlanArguments {
     /// List every segment: ticks, V, A, J.
     #[arg(long)]
     pub segments: bool,
+    /// Write a page: the path by speed and by what binds it, the axes beside their limits, where the
+    /// time goes. It needs no network.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// One JSON document, segments included (of a program, only the figures).
     #[arg(long)]
     pub json: bool,
@@ -207,6 +211,10 @@ pub struct Simulate {
     /// Draw speed and error of each axis as SVG.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Write a page: the path by speed and by what binds it, the axes beside their limits, where the
+    /// time goes. It needs no network.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -228,9 +236,16 @@ pub struct CheckArguments {
     /// The capture: a VCD.
     #[arg(value_name = "CAPTURE.vcd")]
     pub capture: PathBuf,
-    /// The move file that the pulses should follow.
-    #[arg(value_name = "MOVE.toml")]
+    /// The move file that the pulses should follow, or a program in G-code: .ngc, .nc or .gcode.
+    #[arg(value_name = "MOVE.toml|JOB.ngc")]
     pub file: PathBuf,
+    /// The options of programs.
+    #[command(flatten)]
+    pub program: ProgramArguments,
+    /// Do not compare the times of pulses with the plan: for a capture of another controller. Path,
+    /// order, end and pin times are checked.
+    #[arg(long, help_heading = program::HEADING)]
+    pub path_only: bool,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]

@@ -3,6 +3,7 @@
 pub mod boards;
 pub mod build;
 pub mod check;
+pub mod check_program;
 pub mod completions;
 pub mod demo;
 pub mod doctor;

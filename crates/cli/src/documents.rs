@@ -6,7 +6,8 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, doctor, home, machine, plan, plan_program, profile, sweep, table, verilog,
+    boards, build, check, check_program, doctor, home, machine, plan, plan_program, profile, sweep,
+    table, verilog,
 };
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job, program_run};
@@ -30,6 +31,7 @@ documents! {
     "boards", 1: boards::ShownBoards<'_>;
     "build", 1: build::BuildReport;
     "check", 1: check::Checked<'_>;
+    "check-program", 1: check_program::CheckedProgram<'_>;
     "doctor", 1: doctor::Examined;
     "drive", 1: drive::Driven;
     "failure", 1: ending::FailedRun;

@@ -2,21 +2,24 @@
 //! pulse and collects the results.
 
 use crate::arguments::Core;
+use crate::document::Named;
 use crate::failure::Failure;
 use crate::gateware::{self, CorePlan};
 use crate::interrupt;
 use crate::pass::PlanCommands;
 use crate::progress::{PlanProgress, RunProgress};
+use crate::recorded::{self, MoveRecorder, Recorded};
 use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
-    AxisSetup, AxisWaves, CheckReport, Origin, PinSink, Plot, PlotAxis, PlotSetup, Setup, Tee,
-    Waves, check_beside, csv_writer, fst_writer, save_file, vcd_writer,
+    AxisSetup, AxisWaves, CheckReport, ErrorCounter, ErrorCounts, Origin, PinSink, Plot, PlotAxis,
+    PlotSetup, Setup, Tee, Waves, check_beside, csv_writer, fst_writer, save_file, vcd_writer,
 };
 use carrystep_core::{Segment, Timebase};
 use carrystep_files::MoveSource;
 use carrystep_plan::{Pass, PlannedMove, Survey};
 use carrystep_profile::{Course, Reader, Timeline};
+use carrystep_report::{Detail, TimeUse};
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level, LevelError};
@@ -50,6 +53,11 @@ pub struct RunResult {
     pub positions: Vec<i32>,
     /// Speeds and accelerations of the plan against the machine's limits.
     pub limits: LimitsJson,
+    /// Where the time goes.
+    pub time_use: TimeUse,
+    /// Pulses of each axis by their error; only with `--report`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_counts: Option<Vec<ErrorCounts>>,
     /// The pulses against the profile.
     pub check: CheckReport,
     /// The files that were written.
@@ -97,6 +105,20 @@ pub fn survey(
     })
 }
 
+/// The same, and what the moves do with their time.
+pub fn recorded(
+    source: MoveSource,
+    detail: Detail,
+    mut watch: impl FnMut(&PlannedMove) -> Result<(), Failure>,
+) -> Result<(Survey, Recorded), Failure> {
+    let mut recorder = MoveRecorder::new(&source.machine, detail);
+    let survey = survey(source, |planned| {
+        recorder.add(planned);
+        watch(planned)
+    })?;
+    Ok((survey, recorder.finish()))
+}
+
 /// The setup of the checker for a capture of this plan.
 pub fn check_setup<'a>(
     survey: &'a Survey,
@@ -141,7 +163,7 @@ pub fn fits_into_a_capture(ticks: u64, timebase: &Timebase) -> Result<(), Failur
 
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(
-    survey: &Survey,
+    (survey, recorded): (&Survey, &Recorded),
     core: Core,
     level: Level,
     wanted: &Wanted,
@@ -213,6 +235,8 @@ pub fn run(
         let total_ticks = totals.ticks;
         Plot::new(PlotSetup { title: &title, timebase, phase, origin_ps, total_ticks, axes })
     });
+    let mut errors =
+        wanted.report.as_ref().map(|_| ErrorCounter::new(&timebase, phase, origin_ps, named()));
     program.share(moves);
     drop(timelines);
 
@@ -222,6 +246,9 @@ pub fn run(
         tee.add(checker);
         writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
         if let Some(sink) = plot.as_mut() {
+            tee.add(sink);
+        }
+        if let Some(sink) = errors.as_mut() {
             tee.add(sink);
         }
         let mut feed = PinFeed::new(timebase, machine.axes.len(), &mut tee);
@@ -263,7 +290,7 @@ pub fn run(
         .iter()
         .zip(&check.axes)
         .all(|(&found, axis)| i64::from(found) == axis.position_expected);
-    Ok(RunResult {
+    let done = RunResult {
         passed: check.passed() && limits.landed() && outcome.fault.is_none() && landed,
         core: core.name(),
         level: level.name(),
@@ -272,9 +299,16 @@ pub fn run(
         faults: outcome.fault.unwrap_or_else(|| "none".into()),
         positions,
         limits,
+        time_use: recorded.time_use.clone(),
+        error_counts: errors.map(ErrorCounter::finish),
         check,
-        files: files.keep()?,
-    })
+        files: files.paths(),
+    };
+    if let Some(out) = &mut files.report {
+        recorded::write(out, &title, &Named::new(&done), recorded, &[])?;
+    }
+    files.keep()?;
+    Ok(done)
 }
 
 /// The path of the waveform as GTKWave must find it from the folder of the save file.

@@ -2,6 +2,7 @@
 //! reports; the logic is in those crates.
 
 mod arguments;
+mod capture;
 mod colour;
 mod commands;
 mod connection;
@@ -31,6 +32,7 @@ mod program;
 mod program_run;
 mod program_table;
 mod progress;
+mod recorded;
 mod segments;
 #[cfg(unix)]
 mod shipped;

@@ -4,8 +4,10 @@ use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::PlanProgress;
+use crate::recorded::{self, Recorded};
 use carrystep_files::{InputError, Machine};
 use carrystep_program::{ProgramFile, Row, Settings, Survey};
+use carrystep_report::Detail;
 use std::path::Path;
 
 /// Opens a program.
@@ -27,16 +29,20 @@ pub fn load(path: &Path, arguments: &ProgramArguments) -> Result<ProgramFile, Fa
 /// each row.
 pub fn survey(
     file: &ProgramFile,
+    detail: Detail,
     mut watch: impl FnMut(&Row) -> Result<(), Failure>,
-) -> Result<Survey, Failure> {
+) -> Result<(Survey, Recorded), Failure> {
     let mut progress = PlanProgress::of("rows");
+    let mut recorder = recorded::of_program(file, detail);
     let survey = Survey::new(file, |row| {
         progress.one();
+        recorder.row(&recorded::motion(row));
         watch(row)?;
         interrupt::check()
     })?;
     file.same()?;
-    Ok(survey)
+    let (time_use, drawing) = recorder.finish();
+    Ok((survey, Recorded { time_use, drawing }))
 }
 
 /// Refuses options of move files for a program.

@@ -2,12 +2,14 @@
 //! from the pulses, and collects the results.
 
 use crate::arguments::Core;
+use crate::document::Named;
 use crate::failure::Failure;
 use crate::gateware::{self, CorePlan};
 use crate::interrupt;
 use crate::pass::{Kept, RowCommands};
 use crate::program_table::ProgramFigures;
 use crate::progress::RunProgress;
+use crate::recorded::{self, Recorded};
 use crate::wanted::Wanted;
 use carrystep_check::{
     OwnCapture, PathAxis, PathChecker, PathReport, PathSetup, PinSink, PinsVcd, Tee, csv_writer,
@@ -72,7 +74,7 @@ impl fmt::Display for ProgramResult {
 /// Runs a planned program on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(
     file: &ProgramFile,
-    survey: &Survey,
+    (survey, recorded): (&Survey, &Recorded),
     (core, level): (Core, Level),
     wanted: &Wanted,
 ) -> Result<ProgramResult, Failure> {
@@ -154,11 +156,11 @@ pub fn run(
     drop(writers);
 
     let check = checker.finish();
-    let plan = ProgramFigures::new(file, survey);
+    let plan = ProgramFigures::new(file, survey, &recorded.time_use);
     let positions: Vec<i32> = outcome.positions.into_iter().take(axes).collect();
     let landed =
         positions.iter().zip(&survey.axes).all(|(&found, axis)| i64::from(found) == axis.steps());
-    Ok(ProgramResult {
+    let done = ProgramResult {
         passed: check.passed && plan.landed() && outcome.fault.is_none() && landed,
         core: core.name(),
         level: level.name(),
@@ -168,12 +170,18 @@ pub fn run(
         positions,
         plan,
         check,
-        files: files.keep()?,
-    })
+        files: files.paths(),
+    };
+    if let Some(out) = &mut files.report {
+        let source = recorded::source(file, survey.one_file, &recorded.time_use)?;
+        recorded::write(out, &title, &Named::new(&done), recorded, &source)?;
+    }
+    files.keep()?;
+    Ok(done)
 }
 
 /// What the checker compares the pulses with.
-fn setup<'a>(
+pub fn setup<'a>(
     file: &'a ProgramFile,
     survey: &Survey,
     origin_ps: u64,
@@ -191,5 +199,11 @@ fn setup<'a>(
     });
     let ticks = u128::from(survey.ticks) * u128::from(timebase.tick_ns()) * 1000;
     let total_ps = u64::try_from(ticks).unwrap_or(u64::MAX);
-    PathSetup { axes: axes.collect(), start: file.settings().start, origin_ps, total_ps }
+    PathSetup {
+        axes: axes.collect(),
+        start: file.settings().start,
+        origin_ps,
+        total_ps,
+        slack_ps: 0,
+    }
 }

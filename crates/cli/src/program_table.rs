@@ -5,12 +5,13 @@ use carrystep_core::Timebase;
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Unit, decimal};
 use carrystep_program::{AxisSurvey, ProgramFile, Survey, unit};
+use carrystep_report::TimeUse;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// Without `jerk_limit`, an axis may change its acceleration from 0 to the limit in this time, s.
-const JERK_TIME: f64 = 0.004;
+pub const JERK_TIME: f64 = 0.004;
 
 /// 2^64, the units of a step.
 const STEP: f64 = 18_446_744_073_709_551_616.0;
@@ -50,6 +51,8 @@ pub struct ProgramFigures {
     pub tolerance_max_mm: Option<f64>,
     /// What the program does and the plan does not.
     pub not_done: Vec<NotDone>,
+    /// Where the time goes.
+    pub time_use: TimeUse,
     /// Each axis, in the order of the machine file.
     pub axes: Vec<ProgramAxis>,
 }
@@ -99,8 +102,8 @@ pub struct ProgramAxis {
 
 impl ProgramFigures {
     /// The figures of a survey.
-    pub fn new(file: &ProgramFile, survey: &Survey) -> Self {
-        let Survey { counts, ticks, rows, axes } = survey;
+    pub fn new(file: &ProgramFile, survey: &Survey, time_use: &TimeUse) -> Self {
+        let Survey { counts, ticks, rows, axes, .. } = survey;
         let machine = file.machine();
         let not_done = counts.switches.iter().map(|one| NotDone {
             what: one.switch.name(),
@@ -125,6 +128,7 @@ impl ProgramFigures {
             tolerance_min_mm: counts.tolerance_mm.map(|[least, _]| least),
             tolerance_max_mm: counts.tolerance_mm.map(|[_, most]| most),
             not_done: not_done.collect(),
+            time_use: time_use.clone(),
             axes: machine
                 .axes
                 .iter()

@@ -15,6 +15,7 @@ pub struct Wanted {
     pub save: Option<PathBuf>,
     pub csv: Option<PathBuf>,
     pub plot: Option<PathBuf>,
+    pub report: Option<PathBuf>,
     /// The part of the run that the waveform shows.
     pub part: Part,
 }
@@ -67,6 +68,7 @@ pub struct Files {
     pub save: Option<OutputFile>,
     pub csv: Option<OutputFile>,
     pub plot: Option<OutputFile>,
+    pub report: Option<OutputFile>,
 }
 
 impl Wanted {
@@ -80,18 +82,27 @@ impl Wanted {
             claim(&self.save)?,
             claim(&self.csv)?,
             claim(&self.plot)?,
+            claim(&self.report)?,
         ];
-        let [vcd, fst, save, csv, plot] =
+        let [vcd, fst, save, csv, plot, report] =
             claims.map(|claim| claim.map(OutputFile::begin).transpose());
-        Ok(Files { vcd: vcd?, fst: fst?, save: save?, csv: csv?, plot: plot? })
+        Ok(Files { vcd: vcd?, fst: fst?, save: save?, csv: csv?, plot: plot?, report: report? })
     }
 }
 
 impl Files {
+    /// The paths under which the files will appear.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let Self { vcd, fst, save, csv, plot, report } = self;
+        let files = [vcd, fst, save, csv, plot, report].into_iter().flatten();
+        files.map(|file| file.path().to_owned()).collect()
+    }
+
     /// Lets all files appear and returns their paths. If one of them is incomplete, none appears.
     pub fn keep(self) -> Result<Vec<PathBuf>, Failure> {
-        let mut files: Vec<OutputFile> =
-            [self.vcd, self.fst, self.save, self.csv, self.plot].into_iter().flatten().collect();
+        let Self { vcd, fst, save, csv, plot, report } = self;
+        let files = [vcd, fst, save, csv, plot, report];
+        let mut files: Vec<OutputFile> = files.into_iter().flatten().collect();
         files.iter_mut().try_for_each(OutputFile::whole)?;
         files.into_iter().map(OutputFile::keep).collect()
     }

@@ -29,6 +29,8 @@ const BEFORE_FAULT: f64 = 8.0;
 const SHORTEST: usize = 12;
 /// Most shorter windows before an exact stop.
 const SHORTER: usize = 2;
+/// A curve follows an arc if its curvature is at most this multiple of that of the arc.
+const SHARPER: f64 = 1.25;
 /// Copies of the knot where the curve rests at the start of a window.
 const START: usize = RESTING + 1;
 
@@ -84,7 +86,9 @@ impl Passed {
             feed = feed.min(piece.feed);
             length = length.min(piece.length);
             tolerance = tolerance.min(piece.tolerance.linear);
-            beyond = beyond.max(bend - piece.bends()[0]);
+            let own = piece.bends()[0];
+            // A curve that is hardly sharper than its arc follows the arc.
+            beyond = beyond.max(if bend > SHARPER * own { bend - own } else { 0.0 });
             line = piece.line;
         }
         // The height of an arc over its chord.

@@ -29,6 +29,8 @@ pub struct PlannedMove {
     pub ticks: u64,
     /// Duration of the motion as given or derived, seconds. It may end inside the last tick.
     pub seconds: f64,
+    /// Whether the file gives the duration.
+    pub given: bool,
     /// Tolerance of a fitted profile: how far an edge may be from the profile, seconds. It is 0 if
     /// the profile is followed exactly.
     pub fit_seconds: f64,

@@ -116,6 +116,7 @@ impl<F: Real> Planner<F> {
             rest_ticks: rest,
             ticks: clock.ticks,
             seconds,
+            given: moved.time.is_some(),
             fit_seconds,
             kind: profile,
             path,

@@ -87,6 +87,9 @@ impl ProgrammedMove {
 pub struct Events {
     steps: Interpreter<File>,
     path: PathBuf,
+    /// Whether all lines so far were of the program itself, and not of files beside it.
+    one_file: bool,
+    name: String,
     letters: Letters,
     tolerance_mm: Option<f64>,
     at: Point,
@@ -110,12 +113,19 @@ impl Events {
         Ok(Self {
             steps,
             path: file.path().to_owned(),
+            one_file: true,
+            name: file.path().display().to_string(),
             letters: file.letters().clone(),
             tolerance_mm: settings.tolerance_mm,
             at: settings.start,
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
             waiting: VecDeque::new(),
         })
+    }
+
+    /// Whether all lines so far were of the program itself, and not of files beside it.
+    pub fn one_file(&self) -> bool {
+        self.one_file
     }
 
     /// The tolerance in force.
@@ -214,6 +224,7 @@ impl Iterator for Events {
                 Err(error) => return Some(Err(ProgramError::of_gcode(&self.path, error))),
             };
             let line = step.line;
+            self.one_file &= *step.file == *self.name;
             if let Err(fault) = self.add(step) {
                 return Some(Err(ProgramError::new(&self.path, line, fault)));
             }

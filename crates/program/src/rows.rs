@@ -61,6 +61,11 @@ impl Rows {
         &self.counts
     }
 
+    /// Whether all lines so far were of the program itself, and not of files beside it.
+    pub fn one_file(&self) -> bool {
+        self.events.one_file()
+    }
+
     /// The place where the last move that was read ends, exactly as programmed.
     pub fn end(&self) -> &Point {
         &self.end

@@ -17,6 +17,8 @@ use carrystep_plan::exact::{speeds, travel};
 pub struct Survey {
     /// Figures of the program.
     pub counts: Counts,
+    /// Whether all lines were of the program itself, and not of files beside it.
+    pub one_file: bool,
     /// Length of the job, ticks.
     pub ticks: u64,
     /// Number of rows: segments of each axis.
@@ -103,7 +105,8 @@ impl Survey {
         for (axis, end_steps) in axes.iter_mut().zip(steps(file, rows.end())) {
             axis.end_steps = end_steps;
         }
-        Ok(Self { counts: rows.counts().clone(), ticks, rows: count, axes })
+        let (counts, one_file) = (rows.counts().clone(), rows.one_file());
+        Ok(Self { counts, one_file, ticks, rows: count, axes })
     }
 
     /// Whether every axis ends exactly at its target, P included.

@@ -75,6 +75,7 @@ fn check(file: &ProgramFile, survey: &Survey, changes: &[PinChange]) -> PathRepo
         start: file.settings().start,
         origin_ps: ORIGIN_PS,
         total_ps: survey.ticks * TICK_PS,
+        slack_ps: 0,
     };
     let legs = Legs::new(file).unwrap().map(Result::unwrap);
     let mut checker = PathChecker::new(setup, Box::new(legs));

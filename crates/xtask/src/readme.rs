@@ -10,6 +10,7 @@ const BEGIN: &str = "<!-- `cargo xtask readme` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
 const PLOT: &str = "docs/pictures/demo.svg";
 const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
+const REPORT: &str = "docs/pictures/report.png";
 
 /// Script that makes GTKWave save a picture of its window.
 const GRAB: &str = "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
@@ -39,14 +40,16 @@ pub fn check() -> TaskResult {
     if read(PLOT)? != plot {
         return stale(PLOT);
     }
-    if !shell::root().join(WAVEFORM).is_file() {
-        return stale(WAVEFORM);
+    for picture in [WAVEFORM, REPORT] {
+        if !shell::root().join(picture).is_file() {
+            return stale(picture);
+        }
     }
     shell::say("README: true");
     Ok(())
 }
 
-/// Writes the table of the README and both pictures.
+/// Writes the table of the README and the pictures.
 pub fn write() -> TaskResult {
     let (table, plot) = demo()?;
     let readme = read("README.md")?;
@@ -56,7 +59,8 @@ pub fn write() -> TaskResult {
     save("README.md", &format!("{before}{}{after}", block(&table)))?;
     fs::create_dir_all(shell::root().join("docs/pictures")).map_err(|error| error.to_string())?;
     save(PLOT, &plot)?;
-    waveform()
+    waveform()?;
+    report()
 }
 
 /// The table of the demo, and its plot.
@@ -93,6 +97,28 @@ fn waveform() -> TaskResult {
         "sim/out/demo/demo.vcd",
     ];
     shell::run("xvfb-run", &show)
+}
+
+/// Saves a picture of the page of a job.
+fn report() -> TaskResult {
+    if !shell::is_there("chromium") {
+        return Err("chromium is missing for the picture: sudo apt-get install chromium".into());
+    }
+    let page = shell::root().join("sim/out/report.html");
+    let page = page.to_str().ok_or("the path of the folder is not UTF-8")?;
+    let (job, machine) = ("sim/jobs/chords_and_star.ngc", "sim/jobs/machine.toml");
+    shell::carrystep(&["simulate", job, "--machine", machine, "--report", page])?;
+    let show = [
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--hide-scrollbars",
+        "--virtual-time-budget=4000",
+        "--window-size=1180,1760",
+        &format!("--screenshot={REPORT}"),
+        &format!("file://{page}"),
+    ];
+    shell::run("chromium", &show)
 }
 
 fn path(name: &str) -> PathBuf {

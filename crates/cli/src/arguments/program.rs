@@ -1,4 +1,4 @@
-//! The options of programs in G-code, which `plan` and `simulate` share.
+//! The options of programs in G-code, which `plan`, `simulate` and `check` share.
 
 use crate::failure::Failure;
 use carrystep_program::AXIS_LETTERS;
@@ -6,7 +6,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// The heading of these options in the help.
-const HEADING: &str = "Options of G-code programs";
+pub const HEADING: &str = "Options of G-code programs";
 
 /// The options of programs in G-code.
 #[derive(Debug, Args)]

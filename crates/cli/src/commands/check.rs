@@ -1,15 +1,17 @@
 //! `carrystep check`: checks any VCD against a move file, as a whole or in slices.
 
 use crate::arguments::CheckArguments;
+use crate::capture::{origin, unusable};
+use crate::commands::check_program;
 use crate::failure::Failure;
 use crate::junit::JunitFile;
 use crate::output::OutputFile;
 use crate::{job, output};
-use carrystep_check::{Capture, CheckReport, Origin, Setup, SignalMap, TraceError, check_beside};
-use carrystep_core::Timebase;
+use carrystep_check::{Capture, CheckReport, Origin, Setup, SignalMap, check_beside};
 use carrystep_files::OutputClaim;
 use carrystep_files::sealed::sha256_of;
 use carrystep_plan::{AxisTotals, Pass, Survey};
+use carrystep_program::is_program;
 use carrystep_sweep::Shard;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -28,6 +30,13 @@ pub struct Checked<'a> {
 
 /// Checks a capture and prints the report, or keeps what a slice of it shows.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+    if is_program(&arguments.file) {
+        return check_program::run(arguments);
+    }
+    arguments.program.refuse_for_moves()?;
+    if arguments.path_only {
+        return Err(Failure::input("--path-only is an option of G-code programs"));
+    }
     let survey = job::survey(job::load(&arguments.file, arguments.fit_ns)?, |_| Ok(()))?;
     let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
     let mut junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
@@ -81,20 +90,7 @@ impl<'a> Check<'a> {
         let failed = |error| unusable(arguments, error);
         let capture = Capture::new(&arguments.capture, names, map).map_err(failed)?;
         let own = capture.open().map_err(failed)?.own();
-        if let Some(own) = own.filter(|own| own.timebase != timebase) {
-            return Err(Failure::input(format!(
-                "{}: recorded from gateware with {}, but the machine of {} has {}",
-                arguments.capture.display(),
-                figures(&own.timebase),
-                arguments.file.display(),
-                figures(&timebase)
-            )));
-        }
-        let origin = match (arguments.origin_ps, own) {
-            (Some(ps), _) => Origin::Fixed { ps },
-            (None, Some(own)) => Origin::Known { ps: own.origin_ps },
-            (None, None) => Origin::Midpoint,
-        };
+        let origin = origin(arguments, own, &timebase)?;
         uncertain_by_less_than_a_period(arguments.slack_ns, survey)?;
         Ok(Self { arguments, survey, capture, origin })
     }
@@ -175,14 +171,6 @@ impl<'a> Check<'a> {
     }
 }
 
-/// The failure of reading a capture.
-fn unusable(arguments: &CheckArguments, error: TraceError) -> Failure {
-    match error {
-        TraceError::Write { .. } | TraceError::Open(_) => error.into(),
-        other => Failure::input(format!("{}: {other}", arguments.capture.display())),
-    }
-}
-
 impl From<SliceFault> for Failure {
     fn from(error: SliceFault) -> Self {
         Self::input(error.to_string())
@@ -216,14 +204,4 @@ fn overlap(origin_ps: i64, end_ps: u64, survey: &Survey) -> Result<(), String> {
     Err(format!(
         "with --origin-ps {origin_ps} the moves last from {from} to {to} ps; the capture, from 0 to {end_ps} ps"
     ))
-}
-
-/// The settings in which two builds must agree to have the same time base.
-fn figures(timebase: &Timebase) -> String {
-    format!(
-        "clock_hz = {}, tick_ns = {}, phases = {}",
-        timebase.clock_hz(),
-        timebase.tick_ns(),
-        timebase.phases()
-    )
 }

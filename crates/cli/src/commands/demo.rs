@@ -7,6 +7,7 @@ use crate::job::{self, RunResult};
 use crate::output::{self, write_file};
 use crate::shipped::{MACHINE, MACHINE_FILE};
 use crate::wanted::{Part, Wanted};
+use carrystep_report::Detail;
 use carrystep_verilog::Prefix;
 use std::path::Path;
 
@@ -18,7 +19,8 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     let out = |name: &str| arguments.out.join(name);
     write_file(&out(MACHINE_FILE), MACHINE)?;
     write_file(&out("demo.toml"), MOVES)?;
-    let survey = job::survey(job::load(&out("demo.toml"), None)?, |_| Ok(()))?;
+    let source = job::load(&out("demo.toml"), None)?;
+    let (survey, recorded) = job::recorded(source, Detail::Figures, |_| Ok(()))?;
     let verilog = verilog::write(
         arguments.core,
         &arguments.out,
@@ -32,9 +34,10 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         save: Some(out("demo.gtkw")),
         csv: Some(out("demo.csv")),
         plot: Some(out("demo.svg")),
+        report: None,
         part: Part::default(),
     };
-    let mut done = job::run(&survey, arguments.core, arguments.level, &wanted)?;
+    let mut done = job::run((&survey, &recorded), arguments.core, arguments.level, &wanted)?;
     done.files.splice(0..0, verilog.files);
     print(&done, arguments.json, &arguments.out)?;
     done.verdict()

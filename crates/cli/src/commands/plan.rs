@@ -2,15 +2,18 @@
 
 use crate::arguments::PlanArguments as Arguments;
 use crate::commands::plan_program;
+use crate::document::Named;
 use crate::failure::Failure;
+use crate::output::OutputFile;
 use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
 use crate::table::{self, LimitsJson};
-use crate::{interrupt, job, output};
+use crate::{job, output, recorded};
 use carrystep_core::Segment;
 use carrystep_files::{Axis, Machine, MoveSource};
-use carrystep_plan::{PlannedMove, Survey};
+use carrystep_plan::PlannedMove;
 use carrystep_program::is_program;
+use carrystep_report::TimeUse;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -21,6 +24,8 @@ pub struct Planned<'a> {
     passed: bool,
     tick_ns: u64,
     limits: LimitsJson,
+    /// Where the time goes.
+    time_use: TimeUse,
     moves: Vec<MoveJson<'a>>,
 }
 
@@ -41,6 +46,8 @@ pub struct PlanEnd {
     /// Number of moves.
     moves: u64,
     limits: LimitsJson,
+    /// Where the time goes.
+    time_use: TimeUse,
 }
 
 #[derive(JsonSchema, Serialize)]
@@ -71,20 +78,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     arguments.program.refuse_for_moves()?;
     let source = job::load(&arguments.file, arguments.fit_ns)?;
+    let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     if arguments.json_lines {
-        lines(source)
+        lines(source, report)
     } else if arguments.json {
-        document(source)
+        document(source, report)
     } else {
-        table(source, arguments.segments)
+        table(source, arguments.segments, report)
     }
 }
 
 /// Prints a document with all moves.
-fn document(source: MoveSource) -> Result<(), Failure> {
+fn document(source: MoveSource, report: Option<OutputFile>) -> Result<(), Failure> {
     let machine = source.machine.clone();
     let (mut moves, mut separator) = (Spool::new(), "");
-    let survey = job::survey(source, |planned| {
+    let end = planned(source, report, |planned| {
         let text = serde_json::to_string_pretty(&move_json(&machine, planned))
             .map_err(|error| Failure::Run(error.to_string()))?;
         moves.add(|all| {
@@ -99,30 +107,43 @@ fn document(source: MoveSource) -> Result<(), Failure> {
         Ok(())
     })?;
     moves.add(|all| all.push_str("\n  "))?;
-    let around = Planned {
-        passed: true,
-        tick_ns: machine.timebase.tick_ns(),
-        limits: table::limits(&machine, survey.totals()),
-        moves: Vec::new(),
-    };
+    let PlanEnd { passed, tick_ns, limits, time_use, .. } = end;
+    let around = Planned { passed, tick_ns, limits, time_use, moves: Vec::new() };
     output::print_json_around(&around, || moves.print())
 }
 
 /// Prints each move as soon as it is planned.
-fn lines(source: MoveSource) -> Result<(), Failure> {
+fn lines(source: MoveSource, report: Option<OutputFile>) -> Result<(), Failure> {
     let machine = source.machine.clone();
     let mut number = 0;
-    let survey = Survey::new(source, |planned| {
-        interrupt::check()?;
+    let end = planned(source, report, |planned| {
         number += 1;
         output::print_json_line(&PlannedLine { number, planned: move_json(&machine, planned) })
     })?;
-    output::print_json(&PlanEnd {
+    output::print_json(&end)
+}
+
+/// Plans all moves, and writes the page if one is wanted.
+fn planned(
+    source: MoveSource,
+    report: Option<OutputFile>,
+    watch: impl FnMut(&PlannedMove) -> Result<(), Failure>,
+) -> Result<PlanEnd, Failure> {
+    let (machine, title) = (source.machine.clone(), source.path.display().to_string());
+    let detail = recorded::detail(report.is_some());
+    let (survey, recorded) = job::recorded(source, detail, watch)?;
+    let end = PlanEnd {
         passed: true,
         tick_ns: machine.timebase.tick_ns(),
         moves: survey.totals().moves,
         limits: table::limits(&machine, survey.totals()),
-    })
+        time_use: recorded.time_use.clone(),
+    };
+    if let Some(mut out) = report {
+        recorded::write(&mut out, &title, &Named::new(&end), &recorded, &[])?;
+        out.keep()?;
+    }
+    Ok(end)
 }
 
 fn move_json<'a>(machine: &'a Machine, planned: &'a PlannedMove) -> MoveJson<'a> {
@@ -145,15 +166,15 @@ fn move_json<'a>(machine: &'a Machine, planned: &'a PlannedMove) -> MoveJson<'a>
 }
 
 /// Prints a table for each move, and one of the limits.
-fn table(source: MoveSource, segments: bool) -> Result<(), Failure> {
+fn table(source: MoveSource, segments: bool, report: Option<OutputFile>) -> Result<(), Failure> {
     let machine = source.machine.clone();
     let (mut moves, mut number) = (Spool::new(), 0);
-    let survey = job::survey(source, |planned| {
+    let end = planned(source, report, |planned| {
         number += 1;
         moves.add(|text| add_move(text, &machine, (number, planned), segments))
     })?;
     moves.print()?;
-    output::print(&format!("{}\n", table::limits(&machine, survey.totals())))
+    output::print(&format!("{}\n", end.limits))
 }
 
 /// Adds the table of a move, which has this number in the file.

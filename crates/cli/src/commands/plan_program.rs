@@ -2,11 +2,13 @@
 //! segments.
 
 use crate::arguments::PlanArguments;
+use crate::document::Named;
 use crate::failure::Failure;
+use crate::output::OutputFile;
 use crate::program_table::ProgramFigures;
 use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
-use crate::{output, program};
+use crate::{output, program, recorded};
 use carrystep_core::Segment;
 use carrystep_program::{ProgramFile, Row};
 use schemars::JsonSchema;
@@ -38,8 +40,10 @@ pub struct PlannedRow<'a> {
 pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
     program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
     let file = program::load(&arguments.file, &arguments.program)?;
+    let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     let (mut text, mut number) = (Spool::new(), 0);
-    let survey = program::survey(&file, |row| {
+    let detail = recorded::detail(report.is_some());
+    let (survey, recorded) = program::survey(&file, detail, |row| {
         number += 1;
         if arguments.json_lines {
             let Row { line, segments, .. } = row;
@@ -47,12 +51,19 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
         }
         if arguments.segments { text.add(|text| add_row(text, &file, row)) } else { Ok(()) }
     })?;
-    let figures = ProgramFigures::new(&file, &survey);
+    let figures = ProgramFigures::new(&file, &survey, &recorded.time_use);
+    let planned = PlannedProgram { passed: true, figures };
+    if let Some(mut out) = report {
+        let source = recorded::source(&file, survey.one_file, &recorded.time_use)?;
+        let title = file.path().display().to_string();
+        recorded::write(&mut out, &title, &Named::new(&planned), &recorded, &source)?;
+        out.keep()?;
+    }
     if arguments.json || arguments.json_lines {
-        return output::print_json(&PlannedProgram { passed: true, figures });
+        return output::print_json(&planned);
     }
     text.print()?;
-    output::print(&figures.to_string())
+    output::print(&planned.figures.to_string())
 }
 
 /// Adds the segments of a row.

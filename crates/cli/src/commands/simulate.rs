@@ -4,7 +4,7 @@
 use crate::arguments::Simulate;
 use crate::failure::Failure;
 use crate::wanted::{Part, Wanted};
-use crate::{job, output, program, program_run};
+use crate::{job, output, program, program_run, recorded};
 use carrystep_program::is_program;
 
 /// Plans and simulates a move file or a program.
@@ -13,16 +13,19 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         return run_program(arguments);
     }
     arguments.program.refuse_for_moves()?;
-    let survey = job::survey(job::load(&arguments.file, arguments.fit_ns)?, |_| Ok(()))?;
+    let source = job::load(&arguments.file, arguments.fit_ns)?;
+    let detail = recorded::detail(arguments.report.is_some());
+    let (survey, recorded) = job::recorded(source, detail, |_| Ok(()))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),
         fst: arguments.fst.clone(),
         save: arguments.save.clone(),
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
+        report: arguments.report.clone(),
         part: Part { from: arguments.from, to: arguments.to, axes: arguments.axes.clone() },
     };
-    let done = job::run(&survey, arguments.core, arguments.level, &wanted)?;
+    let done = job::run((&survey, &recorded), arguments.core, arguments.level, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {
@@ -44,10 +47,16 @@ fn run_program(arguments: &Simulate) -> Result<(), Failure> {
         ("--axes", !axes.is_empty()),
     ])?;
     let file = program::load(&arguments.file, &arguments.program)?;
-    let survey = program::survey(&file, |_| Ok(()))?;
-    let wanted =
-        Wanted { vcd: arguments.vcd.clone(), csv: arguments.csv.clone(), ..Wanted::default() };
-    let done = program_run::run(&file, &survey, (arguments.core, arguments.level), &wanted)?;
+    let detail = recorded::detail(arguments.report.is_some());
+    let (survey, recorded) = program::survey(&file, detail, |_| Ok(()))?;
+    let wanted = Wanted {
+        vcd: arguments.vcd.clone(),
+        csv: arguments.csv.clone(),
+        report: arguments.report.clone(),
+        ..Wanted::default()
+    };
+    let on = (arguments.core, arguments.level);
+    let done = program_run::run(&file, (&survey, &recorded), on, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

@@ -26,6 +26,11 @@ const CHECK: &str = "check check.passed check.origin check.origin_ps check.slack
     check.axes[].speed_ripple_max_percent check.axes[].speed_ripple_theory_percent
     check.axes[].line_off_max_steps check.axes[].line_off_bound_steps";
 
+const TIME_USE: &str = "time_use time_use.causes time_use.causes[].cause time_use.causes[].axis
+    time_use.causes[].seconds time_use.causes[].percent time_use.causes[].lines
+    time_use.causes[].lines[].from time_use.causes[].lines[].to time_use.causes[].lines[].seconds
+    time_use.lines_together time_use.distance_seconds";
+
 const PLAN: &str = "passed tick_ns moves
     moves[].start_tick moves[].rest_ticks moves[].ticks moves[].seconds moves[].axes
     moves[].axes[].axis moves[].axes[].shape moves[].axes[].steps moves[].axes[].rounding_steps
@@ -126,9 +131,13 @@ fn is_document(text: &str, arguments: &str, status: i32, expected: &[&str]) -> V
 #[test]
 fn every_report_keeps_its_names() {
     let folder = Folder::with_move(GOOD);
-    document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
-    let run =
-        document(&folder, "simulate move.toml --vcd a.vcd --csv a.csv", 0, &[RUN, LIMITS, CHECK]);
+    document(&folder, "plan move.toml", 0, &[PLAN, LIMITS, TIME_USE]);
+    let run = document(
+        &folder,
+        "simulate move.toml --vcd a.vcd --csv a.csv",
+        0,
+        &[RUN, LIMITS, TIME_USE, CHECK],
+    );
     assert_eq!(run["files"], serde_json::json!(["a.vcd", "a.csv"]));
     assert_eq!(run["positions"], serde_json::json!([4]));
     document(&folder, "check a.vcd move.toml", 0, &["passed capture", CHECK]);
@@ -140,11 +149,11 @@ fn every_report_keeps_its_names() {
         &["passed top tick_ns tick_note files"],
     );
 
-    let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, CHECK]);
+    let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, TIME_USE, CHECK]);
     for file in run["files"].as_array().expect("a list of files") {
         assert!(folder.path(file.as_str().expect("a path")).is_file(), "{file}");
     }
-    document(&folder, "plan demo/demo.toml", 0, &[PLAN, LIMITS]);
+    document(&folder, "plan demo/demo.toml", 0, &[PLAN, LIMITS, TIME_USE]);
     document(&folder, "check demo/demo.vcd demo/demo.toml", 0, &["passed capture", CHECK]);
 }
 
@@ -182,7 +191,7 @@ fn status_and_drive_documents_keep_their_field_names() {
 #[test]
 fn a_failed_check_is_a_document_too() {
     let folder = Folder::with_move(GOOD);
-    document(&folder, "simulate move.toml --vcd a.vcd", 0, &[RUN, LIMITS, CHECK]);
+    document(&folder, "simulate move.toml --vcd a.vcd", 0, &[RUN, LIMITS, TIME_USE, CHECK]);
     folder.write("longer.toml", GOOD.replace("x = 2", "x = 3"));
     let checked = document(&folder, "check a.vcd longer.toml", 1, &["passed capture", CHECK]);
     let axis = &checked["check"]["axes"][0];
@@ -196,7 +205,7 @@ fn a_failed_check_is_a_document_too() {
 #[test]
 fn numbers_of_64_bits_are_strings() {
     let folder = Folder::with_move(GOOD);
-    let plan = document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
+    let plan = document(&folder, "plan move.toml", 0, &[PLAN, LIMITS, TIME_USE]);
     let segment = &plan["moves"][0]["axes"][0]["segments"][0];
     for name in ["v", "a", "j"] {
         assert!(

@@ -11,6 +11,8 @@ mod bad_outputs;
 mod boards;
 #[cfg(unix)]
 mod cache;
+#[cfg(target_os = "linux")]
+mod check_jobs;
 mod check_slices;
 #[cfg(target_os = "linux")]
 mod ci_action;
@@ -44,6 +46,8 @@ mod peak;
 mod plots;
 mod profile;
 mod programs;
+#[cfg(target_os = "linux")]
+mod reports;
 mod schemas;
 mod shard_merges;
 #[cfg(unix)]

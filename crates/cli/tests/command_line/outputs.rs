@@ -6,7 +6,7 @@ use std::io::Read as _;
 use std::os::unix::fs::{MetadataExt as _, symlink};
 use std::process::{Command, Stdio};
 
-const OPTIONS: [&str; 4] = ["--vcd", "--fst", "--csv", "--plot"];
+const OPTIONS: [&str; 5] = ["--vcd", "--fst", "--csv", "--plot", "--report"];
 
 /// The machine and the moves of [`GOOD`] in two files, each of which also has other names.
 fn folder() -> Folder {

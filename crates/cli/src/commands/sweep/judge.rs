@@ -2,9 +2,11 @@
 
 use crate::arguments::Core;
 use crate::job;
+use crate::recorded::MoveRecorder;
 use crate::wanted::Wanted;
 use carrystep_check::AxisReport;
 use carrystep_plan::{PlanError, Survey, plan};
+use carrystep_report::Detail;
 use carrystep_simulators::Level;
 use carrystep_sweep::{Case, CaseVerdict};
 use std::collections::BTreeMap;
@@ -17,8 +19,11 @@ pub fn judge(case: &Case, core: Core) -> CaseVerdict {
         Err(error @ PlanError::Broken { .. }) => return CaseVerdict::Failed(error.to_string()),
         Err(error) => return CaseVerdict::Refused(error.to_string()),
     };
+    let mut recorder = MoveRecorder::new(&file.machine, Detail::Figures);
+    plan.moves.iter().for_each(|planned| recorder.add(planned));
+    let recorded = recorder.finish();
     let survey = Survey::of(file.clone().into(), plan);
-    match job::run(&survey, core, Level::Fast, &Wanted::default()) {
+    match job::run((&survey, &recorded), core, Level::Fast, &Wanted::default()) {
         Ok(done) if done.passed => CaseVerdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();

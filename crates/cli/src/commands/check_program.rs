@@ -1,0 +1,85 @@
+//! `carrystep check` for a G-code program: the path that the pulses of a capture follow, and their
+//! times against the plan.
+
+use crate::arguments::CheckArguments;
+use crate::capture::{origin, unusable};
+use crate::failure::Failure;
+use crate::junit::JunitFile;
+use crate::pass::Kept;
+use crate::{job, output, program, program_run};
+use carrystep_check::{Capture, JobChecker, JobReport, SignalMap, TraceError};
+use carrystep_program::{Legs, Rows};
+use carrystep_report::Detail;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// What `--json` prints.
+#[derive(JsonSchema, Serialize)]
+pub struct CheckedProgram<'a> {
+    passed: bool,
+    capture: &'a std::path::Path,
+    check: &'a JobReport,
+}
+
+/// Checks a capture against a program and prints the report.
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+    let CheckArguments { fit_ns, slice, out, merge, .. } = arguments;
+    program::refuse(&[
+        ("--fit-ns", fit_ns.is_some()),
+        ("--slice", slice.is_some()),
+        ("--out", out.is_some()),
+        ("--merge", !merge.is_empty()),
+    ])?;
+    let file = program::load(&arguments.file, &arguments.program)?;
+    let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
+    let map =
+        SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
+    let names: Vec<&str> = file.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
+    let failed = |error: TraceError| unusable(arguments, error);
+    let capture = Capture::new(&arguments.capture, &names, &map).map_err(failed)?;
+    let reader = capture.open().map_err(failed)?;
+    let timebase = file.machine().timebase;
+    let origin = origin(arguments, reader.own(), &timebase)?;
+    let mut junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
+    let (survey, _) = program::survey(&file, Detail::Figures, |_| Ok(()))?;
+    job::fits_into_a_capture(survey.ticks, &timebase)?;
+
+    let kept = Kept::default();
+    let mut setup = program_run::setup(&file, &survey, 0, &timebase);
+    setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
+    let rows = match arguments.path_only {
+        true => {
+            setup.total_ps = u64::MAX;
+            None
+        }
+        false => {
+            let rows = kept.until_an_error(Rows::new(&file)?).map(|row| row.segments);
+            Some(Box::new(rows) as Box<dyn Iterator<Item = _>>)
+        }
+    };
+    let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
+    let mut checker = JobChecker::new(setup, legs, rows, &timebase, origin);
+    let played = reader.play(&mut checker);
+    let report = checker.finish();
+    // An error of reading the program explains whatever the check says.
+    kept.error()?;
+    file.same()?;
+    played.map_err(failed)?;
+
+    if let Some(mut junit) = junit.take() {
+        junit.case("path".to_owned(), &report.path.failures);
+        for axis in report.times.iter().flatten() {
+            junit.case(format!("axis {}", axis.axis), &axis.failures);
+        }
+        junit.keep()?;
+    }
+    let passed = report.passed;
+    if arguments.json {
+        let capture = &arguments.capture;
+        output::print_json(&CheckedProgram { passed, capture, check: &report })?;
+    } else {
+        let verdict = if passed { "ALL HOLDS" } else { "FAILED" };
+        output::print(&format!("{report}{verdict}\n"))?;
+    }
+    if passed { Ok(()) } else { Err(Failure::Check) }
+}
