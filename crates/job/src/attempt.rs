@@ -1,8 +1,9 @@
 //! Plans of one window of the last stage: each is measured as the hardware would run it, and the
 //! next one is slower or nearer to the path where a limit or the tolerance is exceeded.
 
+use crate::emitted::Emitted;
 use crate::filter::Filter;
-use crate::inspect::{Fault, Inspector};
+use crate::inspect::{Depth, Fault, Inspector};
 use crate::path::Path;
 use crate::rough::Knot;
 use crate::smooth::RESTING;
@@ -56,15 +57,31 @@ pub(crate) struct Window<'a, const N: usize> {
     pub seen: usize,
     /// The run ends with the window.
     pub end: bool,
+    /// Intervals that are passed on if the plan is good; at most all of the plan.
+    pub pass: usize,
     pub ease: Vec<Ease>,
 }
 
+/// A good plan, and what is passed on of it.
+pub(crate) struct Plan<const N: usize> {
+    /// x at each grid point.
+    pub speeds: Vec<f64>,
+    /// The grid point up to which it is passed on.
+    pub upto: usize,
+    /// The control points up to there, and the state after them.
+    pub emitted: Vec<Emitted<N>>,
+    pub filter: Filter<N>,
+    pub inspector: Inspector<N>,
+    /// The time from there to the next sample.
+    pub next: f64,
+}
+
 impl<const N: usize> Window<'_, N> {
-    /// A plan without a fault: x at each grid point.
+    /// A plan without a fault.
     ///
     /// # Errors
     /// The parameter of the first fault of the last plan.
-    pub fn plan(&mut self) -> Result<Vec<f64>, f64> {
+    pub fn plan(&mut self) -> Result<Plan<N>, f64> {
         let mut plain = self.rules.grid(&self.c[..self.seen], self.path);
         self.ease.resize(plain.len(), NONE);
         let boosts = if self.spread > 0.0 { 0 } else { BOOSTS };
@@ -72,12 +89,16 @@ impl<const N: usize> Window<'_, N> {
         for attempt in 0..TRIES {
             let speeds = self.speeds(&plain);
             let (samples, _) = sampled(&self.c, &speeds, self.next);
-            let (faults, used) = self.faults(&samples);
-            if attempt < boosts {
+            let faults;
+            if attempt >= boosts {
+                match self.proved(&samples, &speeds) {
+                    Ok(plan) => return Ok(plan),
+                    Err(found) => faults = found,
+                }
+            } else {
+                let used;
+                (faults, used) = self.measured(&samples);
                 self.speed_up(&used);
-            }
-            if faults.is_empty() && attempt >= boosts {
-                return Ok(speeds);
             }
             first = faults.iter().map(|fault| fault.u).fold(f64::INFINITY, f64::min);
             self.correct(&faults, &speeds, attempt >= SHAPE_TRIES);
@@ -121,12 +142,8 @@ impl<const N: usize> Window<'_, N> {
         speeds
     }
 
-    /// What the hardware would do wrong with these samples and a rest behind them, and how much of
-    /// the acceleration limit it would use.
-    fn faults(&self, samples: &[Instant<N>]) -> (Vec<Fault<N>>, Vec<(f64, f64)>) {
-        let mut filter = self.filter.clone();
-        let mut inspector = self.inspector.clone();
-        let (mut faults, mut used) = (Vec::new(), Vec::new());
+    /// The samples of a rest behind a plan.
+    fn rest(&self) -> Vec<Instant<N>> {
         // The last window ends at the last grid point, and so does every plan.
         let c = &self.c[self.seen - 2 * MARGIN..self.seen];
         let knot = Knot {
@@ -135,14 +152,53 @@ impl<const N: usize> Window<'_, N> {
         };
         let u = (self.seen - 1 - 2 * MARGIN) as f64;
         let last = Instant { knot, u, ahead: c[2 * MARGIN - 1].place };
-        let mut rest = filter.settling(last.knot);
+        let mut rest = self.filter.settling(last.knot);
         rest.fill(last);
-        for instant in samples.iter().chain(&rest) {
+        rest
+    }
+
+    /// What the hardware would do wrong with these samples and a rest behind them, as far as places
+    /// show it, and how much of the acceleration limit it would use. While the speed law still
+    /// changes, nothing needs to be proved.
+    fn measured(&self, samples: &[Instant<N>]) -> (Vec<Fault<N>>, Vec<(f64, f64)>) {
+        let (mut filter, mut inspector) = (self.filter.clone(), self.inspector.clone());
+        let (mut faults, mut used) = (Vec::new(), Vec::new());
+        for instant in samples.iter().chain(&self.rest()) {
             let emitted = filter.push(instant);
-            faults.extend(inspector.push(&emitted, self.path));
+            faults.extend(inspector.push(&emitted, self.path, Depth::Places));
             used.push(inspector.accelerated());
         }
         (faults, used)
+    }
+
+    /// Proves the motion of these samples and a rest behind them.
+    ///
+    /// # Errors
+    /// What the hardware would do wrong.
+    fn proved(&self, samples: &[Instant<N>], speeds: &[f64]) -> Result<Plan<N>, Vec<Fault<N>>> {
+        let upto = self.pass.min(speeds.len() - 1);
+        let (first, next) = sampled(&self.c, &speeds[..=upto], self.next);
+        let (mut filter, mut inspector) = (self.filter.clone(), self.inspector.clone());
+        let (mut emitted, mut faults) = (Vec::with_capacity(first.len()), Vec::new());
+        let mut passed = None;
+        for (number, instant) in samples.iter().chain(&self.rest()).enumerate() {
+            if number == first.len() {
+                passed = Some((filter.clone(), inspector.clone()));
+            }
+            let (point, found) =
+                Emitted::measured(&filter.push(instant), &mut inspector, self.path);
+            faults.extend(found);
+            if number < first.len() {
+                emitted.push(point);
+            }
+        }
+        let (filter, inspector) = passed.unwrap_or((filter, inspector));
+        if faults.is_empty() {
+            let speeds = speeds.to_vec();
+            Ok(Plan { speeds, upto, emitted, filter, inspector, next })
+        } else {
+            Err(faults)
+        }
     }
 
     /// Where the filter leaves a part of the acceleration limit unused, the speed law may use more.

@@ -47,27 +47,42 @@ pub(crate) fn factor(rows: &mut [Row]) {
 pub(crate) type Factors<const N: usize> = [[f64; N]; BAND + 1];
 
 /// Solves N systems side by side, in place.
+///
+/// In both passes the term of the neighbour that was computed last comes last in a sum, so that the
+/// other terms need not wait for it. Away from the ends, the compiler knows the number of terms.
 pub(crate) fn solve<const N: usize>(factors: &[Factors<N>], x: &mut [Point<N>]) {
     for (i, factor) in factors.iter().enumerate() {
-        let mut value = x[i];
-        for k in 1..=BAND.min(i) {
-            for ((v, l), earlier) in value.iter_mut().zip(&factor[k]).zip(&x[i - k]) {
-                *v -= l * earlier;
+        let (earlier, now) = x.split_at_mut(i);
+        let Some(value) = now.first_mut() else { return };
+        match earlier.last_chunk::<BAND>() {
+            Some(earlier) => {
+                (1..=BAND).rev().for_each(|k| minus(value, &factor[k], &earlier[BAND - k]));
             }
+            None => (1..=i).rev().for_each(|k| minus(value, &factor[k], &earlier[i - k])),
         }
-        x[i] = value;
     }
     for (value, factor) in x.iter_mut().zip(factors) {
         value.iter_mut().zip(&factor[0]).for_each(|(v, d)| *v *= d);
     }
-    for (i, factor) in factors.iter().enumerate().rev() {
-        let value = x[i];
-        for k in 1..=BAND.min(i) {
-            for ((earlier, l), v) in x[i - k].iter_mut().zip(&factor[k]).zip(&value) {
-                *earlier -= l * v;
+    for i in (0..factors.len()).rev() {
+        let (before, later) = x.split_at_mut(i + 1);
+        let Some(value) = before.last_mut() else { return };
+        let below = &factors[i + 1..];
+        match (later.first_chunk::<BAND>(), below.first_chunk::<BAND>()) {
+            (Some(later), Some(below)) => {
+                (1..=BAND).rev().for_each(|k| minus(value, &below[k - 1][k], &later[k - 1]));
+            }
+            _ => {
+                (1..=below.len()).rev().for_each(|k| minus(value, &below[k - 1][k], &later[k - 1]));
             }
         }
     }
+}
+
+/// Takes the products of two points' numbers from those of a third one.
+#[inline]
+fn minus<const N: usize>(from: &mut Point<N>, a: &Point<N>, b: &Point<N>) {
+    (0..N).for_each(|i| from[i] -= a[i] * b[i]);
 }
 
 #[cfg(test)]

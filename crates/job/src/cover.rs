@@ -86,8 +86,17 @@ impl Cover {
         (from, to): (f64, f64),
         left: u32,
     ) -> Option<Miss> {
-        let kept: Vec<u64> =
-            self.on.iter().copied().filter(|&on| self.covers(cubic, on, path)).collect();
+        if let [only] = self.on[..]
+            && self.covers(cubic, only, path)
+            && !self.near_corner(cubic, path)
+        {
+            // By far the most frequent case.
+            self.enter(&cubic[3], path);
+            self.place = end;
+            return None;
+        }
+        let covers = |on: &u64| self.covers(cubic, *on, path);
+        let kept: Vec<u64> = self.on.iter().copied().filter(covers).collect();
         let corner = self.near_corner(cubic, path);
         let chain = corner && self.chain(cubic, end, path);
         if chain || (!kept.is_empty() && !corner) {
@@ -133,6 +142,9 @@ impl Cover {
         let (mut low, mut high, mut off) = (f64::INFINITY, 0.0_f64, 0.0_f64);
         for point in cubic {
             let (along, away) = self.near(point, number, piece, path);
+            if away > FULL {
+                return false;
+            }
             (low, high, off) = (low.min(along), high.max(along), off.max(away));
         }
         off + piece.bow(high - low) / piece.tolerance.linear <= FULL
@@ -199,6 +211,12 @@ impl Cover {
     fn enter<const N: usize>(&mut self, point: &Point<N>, path: &Path<N>) {
         let Some(&first) = self.on.first() else { return };
         let last = self.on[self.on.len() - 1];
+        let leaves = |piece: &Piece<N>| {
+            relative(&from_to(&piece.end, point), piece, path) <= MOST_REACH * FULL
+        };
+        if first == last && path.piece(first).is_some_and(|piece| !leaves(piece)) {
+            return;
+        }
         let (mut bridge, mut now) = (false, Vec::with_capacity(self.on.len() + 1));
         for number in first..path.end() {
             if number > last && !bridge {
@@ -210,8 +228,7 @@ impl Cover {
                 now.push(number);
                 bridge = true;
             }
-            bridge =
-                bridge && relative(&from_to(&piece.end, point), piece, path) <= MOST_REACH * FULL;
+            bridge = bridge && leaves(piece);
         }
         self.on = now;
     }

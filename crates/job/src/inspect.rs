@@ -2,7 +2,7 @@
 //! the programmed path.
 
 use crate::cover::{Cover, bezier};
-use crate::limits::Motors;
+use crate::limits::{Limit, Motors};
 use crate::path::{Corner, MOST_REACH, Path, Place};
 use crate::rough::Knot;
 use crate::speed::Instant;
@@ -40,10 +40,22 @@ pub(crate) struct Fault<const N: usize> {
     pub off: Option<Point<N>>,
 }
 
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// The limits of the motors, and the distance from the path at places. This tells how to correct
+    /// the curve.
+    Places,
+    /// Also the proof for all between them. Without it no curve is accepted.
+    Proof,
+}
+
 #[derive(Debug, Clone)]
 pub(crate) struct Inspector<const N: usize> {
     motors: Motors<N>,
-    knot_seconds: f64,
+    /// For each motor, the parts of its limits of speed, acceleration and jerk that a difference of
+    /// 1 between control points takes.
+    parts: Vec<[f64; 3]>,
     /// The last four control points of the emitted curve, of the letters and of the motors.
     letters: [Point<N>; 4],
     turned: [Point<N>; 4],
@@ -60,9 +72,17 @@ pub(crate) struct Inspector<const N: usize> {
 
 impl<const N: usize> Inspector<N> {
     pub fn new(motors: Motors<N>, knot_seconds: f64) -> Self {
+        let t = knot_seconds;
+        let part = |limit: &Limit| {
+            [
+                1.0 / (limit.speed * t),
+                1.0 / (limit.acceleration * t * t),
+                1.0 / (limit.jerk * t * t * t),
+            ]
+        };
         Self {
+            parts: motors.limits.iter().map(part).collect(),
             motors,
-            knot_seconds,
             letters: [[0.0; N]; 4],
             turned: [[0.0; N]; 4],
             place: Place::default(),
@@ -121,13 +141,8 @@ impl<const N: usize> Inspector<N> {
     /// Parameter and acceleration, as a part of its limit, at the last measured knot.
     pub fn accelerated(&self) -> (f64, f64) {
         let [_, b, c, d] = &self.turned;
-        let square = self.knot_seconds * self.knot_seconds;
-        let parts = self
-            .motors
-            .limits
-            .iter()
-            .enumerate()
-            .map(|(i, limit)| (d[i] - 2.0 * c[i] + b[i]).abs() / (limit.acceleration * square));
+        let parts = self.parts.iter().enumerate();
+        let parts = parts.map(|(i, part)| (d[i] - 2.0 * c[i] + b[i]).abs() * part[1]);
         (self.u[2], parts.fold(0.0, f64::max))
     }
 
@@ -136,11 +151,13 @@ impl<const N: usize> Inspector<N> {
         self.u.iter_mut().for_each(|u| *u -= by);
     }
 
-    /// Adds the next control point; measures the curve between the two points before the last.
+    /// Adds the next control point; measures the curve between the two points before the last. The
+    /// proof goes on only from an inspector that has proved all before.
     pub fn push(
         &mut self,
         emitted: &Instant<N>,
         path: &Path<N>,
+        depth: Depth,
     ) -> impl Iterator<Item = Fault<N>> + use<N> {
         self.letters = [self.letters[1], self.letters[2], self.letters[3], emitted.knot.point];
         let motors = self.motors.of(&emitted.knot.point);
@@ -149,43 +166,51 @@ impl<const N: usize> Inspector<N> {
         self.places = [self.places[1], self.places[2], self.places[3], emitted.ahead];
         let excess = self.limits() / LIMIT_PART;
         let limit = (excess > 1.0).then_some(Fault { u: self.u[2], excess, off: None });
-        limit.into_iter().chain(self.off(path))
+        limit.into_iter().chain(self.off(path, depth))
     }
 
     /// The greatest value as a part of its limit: differences of the last control points.
     fn limits(&self) -> f64 {
         let [a, b, c, d] = &self.turned;
-        let t = self.knot_seconds;
         let mut greatest = 0.0_f64;
-        for (i, limit) in self.motors.limits.iter().enumerate() {
+        for (i, [speed, acceleration, jerk]) in self.parts.iter().enumerate() {
             let (first, second) = (d[i] - c[i], d[i] - 2.0 * c[i] + b[i]);
             let third = d[i] - 3.0 * c[i] + 3.0 * b[i] - a[i];
             greatest = greatest
-                .max(first.abs() / (limit.speed * t))
-                .max(second.abs() / (limit.acceleration * t * t))
-                .max(third.abs() / (limit.jerk * t * t * t));
+                .max(first.abs() * speed)
+                .max(second.abs() * acceleration)
+                .max(third.abs() * jerk);
         }
         greatest
     }
 
     /// Where the distance from the path exceeds the tolerance most, between the second and third of
     /// the last control points.
-    fn off(&mut self, path: &Path<N>) -> Option<Fault<N>> {
+    fn off(&mut self, path: &Path<N>, depth: Depth) -> Option<Fault<N>> {
         let before = self.place;
         // The search goes as far as the curve cannot have gone.
         let end = path.nearest(&value(&self.letters, 1.0), before, self.places[3])?;
         if end.place > self.place {
             self.place = end.place;
         }
-        let miss = self.cover.follow(&bezier(&self.letters), self.place, path);
+        let miss = match depth {
+            Depth::Proof => self.cover.follow(&bezier(&self.letters), self.place, path),
+            _ => None,
+        };
         let greatest = Cell::new(0.0_f64);
         let measured = |phase: f64, tip: Option<(&Point<N>, f64)>| {
             let here = value(&self.letters, phase);
-            let near = path.nearest(&here, before, end.place)?;
+            let near = match phase {
+                1.0 => end,
+                _ => path.nearest(&here, before, end.place)?,
+            };
             let piece = path.piece(near.place.piece)?;
-            let off = path.off(&near.point, &here, piece).sqrt();
-            greatest.set(greatest.get().max(off));
-            let mut excess = off / TOLERANCE_PART;
+            let square = path.off(&near.point, &here, piece);
+            greatest.set(greatest.get().max(square));
+            if tip.is_none() && square <= TOLERANCE_PART * TOLERANCE_PART {
+                return None;
+            }
+            let mut excess = square.sqrt() / TOLERANCE_PART;
             if let Some((tip, reach)) = tip {
                 excess = excess.max(path.off(tip, &here, piece).sqrt() / (TOLERANCE_PART * reach));
             }
@@ -227,7 +252,7 @@ impl<const N: usize> Inspector<N> {
         let phases = PHASES.iter();
         let faults = phases.filter_map(|&phase| measured(phase, None)).chain(cut);
         let worst = faults.max_by(|a, b| a.excess.total_cmp(&b.excess));
-        self.measured = greatest.get();
+        self.measured = greatest.get().sqrt();
         worst
     }
 }

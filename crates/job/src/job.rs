@@ -2,6 +2,7 @@
 //! through the stages to rows.
 
 use crate::element::{Arc, Element, Item};
+use crate::emitted::{Emitted, Passed};
 use crate::error::JobError;
 use crate::kinematics::Kinematics;
 use crate::limits::{Motors, of_machine};
@@ -10,7 +11,6 @@ use crate::refuse::{coordinates, refuse};
 use crate::rhythm::{LONGEST, Rhythm, shortest};
 use crate::row::Row;
 use crate::run::Runs;
-use crate::settle::{Emitted, Passed};
 use crate::targets::Targets;
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};

@@ -22,6 +22,7 @@ mod attempt;
 mod banded;
 mod cover;
 mod element;
+mod emitted;
 mod error;
 mod filter;
 mod halt;

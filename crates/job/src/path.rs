@@ -109,6 +109,13 @@ impl<const N: usize> Path<N> {
 
     /// The place of the path nearest to `point`, from `from` to the end of piece `last`.
     pub fn nearest(&self, point: &Point<N>, from: Place, to: Place) -> Option<Near<N>> {
+        if from.piece >= self.first && from.piece == to.piece && to.piece < self.end() {
+            // There is nothing to compare.
+            let piece = self.piece(from.piece)?;
+            let along = piece.nearest(point, from.along, to.along);
+            let place = Place { piece: from.piece, along };
+            return Some(Near { place, point: piece.at(along) });
+        }
         let mut best: Option<(f64, Near<N>)> = None;
         for number in from.piece.max(self.first)..=to.piece.max(from.piece).min(self.end() - 1) {
             let piece = self.piece(number)?;

@@ -2,13 +2,14 @@
 //! a first law, then smoothing and speed law in turns, then the law whose motion is known to be
 //! good.
 
+use crate::emitted::Emitted;
 use crate::limits::Motors;
 use crate::path::{Path, Place};
 use crate::piece::Piece;
 use crate::retime::Retime;
 use crate::rhythm::Rhythm;
 use crate::rough::{Knot, Rough};
-use crate::settle::{Emitted, Settle};
+use crate::settle::Settle;
 use crate::smooth::{RESTING, Smooth};
 use crate::speed::Rules;
 use crate::vector::Point;

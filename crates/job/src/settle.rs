@@ -8,6 +8,7 @@
 //! path has a motion.
 
 use crate::attempt::{Ease, NONE, Window};
+use crate::emitted::{Emitted, Passed};
 use crate::filter::Filter;
 use crate::halt::halt;
 use crate::inspect::Inspector;
@@ -16,7 +17,6 @@ use crate::rough::Knot;
 use crate::smooth::RESTING;
 use crate::speed::{Instant, MARGIN, Rules, sampled};
 use crate::spline::value;
-use crate::vector::Point;
 use std::collections::VecDeque;
 
 /// Intervals that are passed in one block.
@@ -29,8 +29,6 @@ const BEFORE_FAULT: f64 = 8.0;
 const SHORTEST: usize = 12;
 /// Most shorter windows before an exact stop.
 const SHORTER: usize = 2;
-/// A curve follows an arc if its curvature is at most this multiple of that of the arc.
-const SHARPER: f64 = 1.25;
 /// Copies of the knot where the curve rests at the start of a window.
 const START: usize = RESTING + 1;
 
@@ -51,50 +49,6 @@ pub(crate) struct Settle<const N: usize> {
     filter: Filter<N>,
     /// Half the length of a filter over more than two samples, knots.
     spread: f64,
-}
-
-/// A control point of the emitted curve, and where the curve is at the end of the interval that the
-/// point completes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Emitted<const N: usize> {
-    pub point: Point<N>,
-    pub passed: Passed,
-}
-
-/// What the curve has passed at the end of an interval between two knots.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Passed {
-    /// The piece of the path.
-    pub piece: u64,
-    /// Its source line.
-    pub line: u64,
-    /// The lowest feed of the pieces in the interval.
-    pub feed: f64,
-    /// The greatest measured distance from the path in the interval, as a part of the tolerance.
-    pub off: f64,
-    /// See [`Row::corner`](crate::Row::corner).
-    pub corner: f64,
-}
-
-impl Passed {
-    /// The curve goes from one piece to another. It is this far from the path and has this
-    /// curvature, 1/mm.
-    fn new<const N: usize>(from: u64, to: u64, off: f64, bend: f64, path: &Path<N>) -> Self {
-        let (mut feed, mut length, mut beyond) = (f64::INFINITY, f64::INFINITY, 0.0_f64);
-        let (mut line, mut tolerance) = (0, f64::INFINITY);
-        for piece in (from..=to).filter_map(|piece| path.piece(piece)) {
-            feed = feed.min(piece.feed);
-            length = length.min(piece.length);
-            tolerance = tolerance.min(piece.tolerance.linear);
-            let own = piece.bends()[0];
-            // A curve that is hardly sharper than its arc follows the arc.
-            beyond = beyond.max(if bend > SHARPER * own { bend - own } else { 0.0 });
-            line = piece.line;
-        }
-        // The height of an arc over its chord.
-        let corner = beyond * length * length / 8.0 / tolerance;
-        Self { piece: to, line, feed, off, corner }
-    }
 }
 
 impl<const N: usize> Settle<N> {
@@ -176,17 +130,20 @@ impl<const N: usize> Settle<N> {
                 c: self.buffer.iter().copied().collect(),
                 seen,
                 end: end && seen == all,
+                pass: if end || seen < all { usize::MAX } else { BLOCK },
                 ease: self.ease.iter().copied().collect(),
             };
             let plan = window.plan();
             let (c, ease) = (window.c, window.ease);
             match (plan, self.stop.take()) {
-                (Ok(speeds), _) => {
-                    let upto = if end || seen < all { speeds.len() - 1 } else { BLOCK };
+                (Ok(plan), _) => {
                     self.buffer = c.into();
                     self.ease = ease.into();
-                    self.pass(&speeds, upto, path, out);
-                    self.stop = (seen == all).then(|| speeds[upto..].to_vec());
+                    self.stop = (seen == all).then(|| plan.speeds[plan.upto..].to_vec());
+                    // What the plan has proved is passed on as it is.
+                    out.extend(plan.emitted);
+                    (self.filter, self.inspector) = (plan.filter, plan.inspector);
+                    self.go_on(plan.upto, plan.speeds[plan.upto], plan.next);
                     return;
                 }
                 (Err(_), Some(speeds)) => {
@@ -227,8 +184,12 @@ impl<const N: usize> Settle<N> {
     fn pass(&mut self, speeds: &[f64], upto: usize, path: &Path<N>, out: &mut Vec<Emitted<N>>) {
         let (samples, next) = sampled(self.buffer.make_contiguous(), &speeds[..=upto], self.next);
         self.emit(&samples, path, out);
-        self.next = next;
-        self.x = speeds[upto];
+        self.go_on(upto, speeds[upto], next);
+    }
+
+    /// The motion is at a grid point with this x, and the next sample comes so much later.
+    fn go_on(&mut self, upto: usize, x: f64, next: f64) {
+        (self.x, self.next) = (x, next);
         self.buffer.drain(..upto);
         self.ease.resize(self.ease.len().max(upto), NONE);
         self.ease.drain(..upto);
@@ -240,12 +201,7 @@ impl<const N: usize> Settle<N> {
         for instant in samples {
             let emitted = self.filter.push(instant);
             // What has been found good is measured again only to go on from there.
-            let from = self.inspector.place().piece;
-            drop(self.inspector.push(&emitted, path));
-            let to = self.inspector.place().piece;
-            let (off, bend) = (self.inspector.measured(), self.inspector.curvature());
-            let passed = Passed::new(from, to, off, bend, path);
-            out.push(Emitted { point: emitted.knot.point, passed });
+            out.push(Emitted::measured(&emitted, &mut self.inspector, path).0);
         }
     }
 }

@@ -51,6 +51,8 @@ pub(crate) struct Smooth<const N: usize> {
     part: f64,
     average: usize,
     knot_taps: [f64; TAPS],
+    /// The taps in the middle between two knots, and their reach.
+    middle_taps: ([f64; TAPS], usize),
     /// The knots may be far from the path and are compared with the nearest place. Otherwise they
     /// are on the path, where their places say.
     project: bool,
@@ -83,6 +85,7 @@ impl<const N: usize> Smooth<N> {
             part,
             average,
             knot_taps: emitted(0.0, average).0,
+            middle_taps: emitted(0.5, average),
             project,
             iterations: if project { ITERATIONS } else { FIRST_ITERATIONS },
             buffer: VecDeque::new(),
@@ -163,14 +166,16 @@ impl<const N: usize> Smooth<N> {
             right[begin..end].copy_from_slice(&staying);
             for sample in &samples {
                 let wanted = from_to(&sample.missing, &sample.within);
-                for (sum, tap) in right[sample.first..].iter_mut().zip(&sample.taps) {
+                let Some(sums) = right[sample.first..].first_chunk_mut::<TAPS>() else { continue };
+                for (sum, tap) in sums.iter_mut().zip(&sample.taps) {
                     *sum = plus(sum, STIFFNESS * tap, &wanted);
                 }
             }
             solve(&factors, &mut right[begin..end]);
             c[begin..end].copy_from_slice(&right[begin..end]);
             for sample in &mut samples {
-                let here = weighted(&sample.taps, &c[sample.first..]);
+                let Some(around) = c[sample.first..].first_chunk::<TAPS>() else { continue };
+                let here = weighted(&sample.taps, around);
                 let moved: Point<N> = std::array::from_fn(|i| {
                     sample.missing[i] + RELAXATION * here[i] + (1.0 - RELAXATION) * sample.within[i]
                 });
@@ -210,7 +215,10 @@ impl<const N: usize> Smooth<N> {
                     Some(corner) if !self.project => corner.part,
                     Some(corner) => self.passed_at(&c[m - 4..], before, near.place, corner, path),
                 };
-                let (taps, reach) = emitted(phase, self.average);
+                let (taps, reach) = match corner {
+                    None => self.middle_taps,
+                    Some(_) => emitted(phase, self.average),
+                };
                 let first = m - 1 - reach;
                 let between = weighted(&taps, &c[first..]);
                 // At a corner the curve is compared with the tip, otherwise with the nearest place.
@@ -283,13 +291,14 @@ impl<const N: usize> Sample<N> {
     #[inline]
     fn nearest_within(&self, point: &Point<N>, linear: usize) -> Point<N> {
         let mut off = from_to(&self.centre, point);
-        let (line, turn) = off.split_at_mut(linear);
-        let square = line.iter().map(|x| x * x).sum::<f64>();
+        // Loops over all letters have a length that the compiler knows.
+        let line = |i: usize| if i < linear { 1.0 } else { 0.0 };
+        let square = (0..N).map(|i| line(i) * off[i] * off[i]).sum::<f64>();
         if square > self.linear * self.linear {
             let part = self.linear / square.sqrt();
-            line.iter_mut().for_each(|x| *x *= part);
+            (0..N.min(linear)).for_each(|i| off[i] *= part);
         }
-        turn.iter_mut().for_each(|x| *x = x.clamp(-self.rotary, self.rotary));
+        (linear..N).for_each(|i| off[i] = off[i].clamp(-self.rotary, self.rotary));
         plus(&self.centre, 1.0, &off)
     }
 }
