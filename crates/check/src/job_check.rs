@@ -49,7 +49,7 @@ impl<'a> JobChecker<'a> {
     /// used.
     pub fn new(
         mut setup: PathSetup<'a>,
-        legs: Box<dyn Iterator<Item = PathLeg> + 'a>,
+        legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>,
         rows: Option<PlannedRows<'a>>,
         timebase: &Timebase,
         origin: Origin,

@@ -74,7 +74,7 @@ impl fmt::Debug for PathChecker<'_> {
 
 impl<'a> PathChecker<'a> {
     /// A checker that has not seen any change. `legs` is the programmed path.
-    pub fn new(setup: PathSetup<'a>, legs: Box<dyn Iterator<Item = PathLeg> + 'a>) -> Self {
+    pub fn new(setup: PathSetup<'a>, legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>) -> Self {
         let mut step = [0.0; LETTERS];
         for axis in &setup.axes {
             step[axis.letter] = axis.step;

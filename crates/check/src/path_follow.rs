@@ -57,7 +57,7 @@ pub(crate) struct Lost {
 
 /// A path and how far a tool has followed it.
 pub(crate) struct PathFollow<'a> {
-    legs: Box<dyn Iterator<Item = PathLeg> + 'a>,
+    legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>,
     /// One leg is read ahead, because the tolerance behind it matters for `far`.
     ahead: Option<PathLeg>,
     end: Place,
@@ -74,7 +74,7 @@ pub(crate) struct PathFollow<'a> {
 impl<'a> PathFollow<'a> {
     /// A path that begins at a place. `step` is one step of each letter.
     pub fn new(
-        mut legs: Box<dyn Iterator<Item = PathLeg> + 'a>,
+        mut legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>,
         start: Place,
         step: Place,
     ) -> Self {

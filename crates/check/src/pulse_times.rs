@@ -20,7 +20,7 @@ const WAITING: usize = 1 << 18;
 const ROUNDING_PS: f64 = 2000.0;
 
 /// The segments of all axes for the same ticks, row by row.
-pub type PlannedRows<'a> = Box<dyn Iterator<Item = Vec<Segment>> + 'a>;
+pub type PlannedRows<'a> = Box<dyn Iterator<Item = Vec<Segment>> + Send + 'a>;
 
 /// The times of the pulses of one axis against the plan.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]

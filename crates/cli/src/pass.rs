@@ -3,9 +3,12 @@
 use carrystep_core::Command;
 use carrystep_plan::{self as plan, PlannedMove};
 use carrystep_profile::Reader;
-use carrystep_program::{ProgramError, ProgramFile, Rows, Survey};
+use carrystep_program::{ProgramError, ProgramFile, Row, Rows, Survey};
 use carrystep_simulators::Commands;
+use std::panic::resume_unwind;
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 
 /// The commands of a plan. They are those of a pass of their own, so that nothing is kept, or of a
 /// pass that others read too.
@@ -66,6 +69,63 @@ impl Kept {
     }
 }
 
+/// Rows that are planned in a thread of their own, a little ahead of their reader.
+pub struct RowsAhead {
+    batches: Option<Receiver<Vec<Result<Row, ProgramError>>>>,
+    batch: std::vec::IntoIter<Result<Row, ProgramError>>,
+    planner: Option<JoinHandle<()>>,
+}
+
+impl RowsAhead {
+    /// Rows of a batch, and batches that may wait.
+    const BATCH: usize = 256;
+    const WAITING: usize = 4;
+
+    /// Begins to plan.
+    pub fn new(mut rows: Rows) -> Self {
+        let (sender, receiver) = sync_channel(Self::WAITING);
+        let planner = std::thread::spawn(move || {
+            loop {
+                let batch: Vec<_> = rows.by_ref().take(Self::BATCH).collect();
+                // Nobody listens where a run has ended early.
+                if batch.is_empty() || sender.send(batch).is_err() {
+                    return;
+                }
+            }
+        });
+        let batch = Vec::new().into_iter();
+        Self { batches: Some(receiver), batch, planner: Some(planner) }
+    }
+}
+
+impl Iterator for RowsAhead {
+    type Item = Result<Row, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(row) = self.batch.next() {
+                return Some(row);
+            }
+            match self.batches.as_ref()?.recv() {
+                Ok(batch) => self.batch = batch.into_iter(),
+                Err(_) => {
+                    self.batches = None;
+                    let ended = self.planner.take()?.join();
+                    return ended.map_or_else(|panic| resume_unwind(panic), |()| None);
+                }
+            }
+        }
+    }
+}
+
+impl Drop for RowsAhead {
+    fn drop(&mut self) {
+        self.batches = None;
+        // A panic of the planner has been passed on above, or the run has ended before it.
+        let _ = self.planner.take().map(JoinHandle::join);
+    }
+}
+
 /// The commands of a planned program, which is planned anew for each run.
 #[derive(Debug)]
 pub struct RowCommands<'a> {
@@ -84,7 +144,7 @@ impl<'a> RowCommands<'a> {
 impl Commands for RowCommands<'_> {
     fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
         let (rows, error) = match Rows::new(self.file) {
-            Ok(rows) => (Some(rows), None),
+            Ok(rows) => (Some(RowsAhead::new(rows)), None),
             Err(error) => (None, Some(Err(error))),
         };
         let rows = rows.into_iter().flatten().chain(error);

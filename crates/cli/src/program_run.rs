@@ -13,6 +13,7 @@ use crate::recorded::{self, Recorded};
 use crate::wanted::Wanted;
 use carrystep_check::{
     OwnCapture, PathAxis, PathChecker, PathReport, PathSetup, PinSink, PinsVcd, Tee, csv_writer,
+    sink_beside,
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
@@ -112,7 +113,7 @@ pub fn run(
     let load = if survey.rows > 0 { on.origin()? } else { 0 };
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());
 
-    let mut checker = PathChecker::new(
+    let checker = PathChecker::new(
         setup(file, survey, origin_ps, &timebase),
         Box::new(kept.until_an_error(Legs::new(file)?)),
     );
@@ -130,27 +131,34 @@ pub fn run(
     }));
 
     let started = Instant::now();
-    let mut tee = Tee::new();
-    tee.add(&mut checker);
-    writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
-    let mut feed = PinFeed::new(timebase, axes, &mut tee);
-    let outcome = on.run(level, &mut |cycle, step, dir| {
-        progress.how_far().at(cycle);
-        feed.pins(cycle, step, dir);
-        if feed.has_failed() {
-            deaf.store(true, Ordering::Relaxed);
+    // The checker follows the path in a thread of its own.
+    let (outcome, checker) = sink_beside(checker, |checker| -> Result<_, Failure> {
+        let mut tee = Tee::new();
+        tee.add(checker);
+        writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
+        let mut feed = PinFeed::new(timebase, axes, &mut tee);
+        let outcome = on.run(level, &mut |cycle, step, dir| {
+            progress.how_far().at(cycle);
+            feed.pins(cycle, step, dir);
+            if feed.has_failed() {
+                deaf.store(true, Ordering::Relaxed);
+            }
+        });
+        interrupt::check()?;
+        if let Err(LevelError::Halted) = outcome {
+            // The feed holds the cause.
+            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
         }
-    });
-    interrupt::check()?;
-    if let Err(LevelError::Halted) = outcome {
-        // The feed holds the cause.
-        return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
-    }
+        let outcome = outcome.map_err(Failure::from);
+        if let Ok(outcome) = &outcome {
+            feed.end(outcome.clocks)?;
+        }
+        outcome
+    })?;
     // An error of reading explains whatever the run reports.
     kept.error()?;
     file.same()?;
     let outcome = outcome?;
-    feed.end(outcome.clocks)?;
     let run_s = started.elapsed().as_secs_f64();
     drop(progress);
     drop(writers);

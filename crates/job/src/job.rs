@@ -26,7 +26,7 @@ const NO_MOVE: f64 = 1e-9;
 const PIECE_SECONDS: f64 = 0.5;
 
 /// A job with any number of axes.
-pub(crate) trait Jobs: Debug {
+pub(crate) trait Jobs: Debug + Send {
     fn push(&mut self, item: &Item) -> Result<(), JobError>;
     fn finish(&mut self) -> Result<(), JobError>;
     fn next_row(&mut self) -> Result<Option<Row>, JobError>;

@@ -1,8 +1,28 @@
-//! Builds the benchmark and the released command that it measures, and runs it.
+//! Builds the benchmarks and the released command that they measure, and runs them.
 
 use crate::shell::{self, TaskResult};
 use crate::tools;
 use serde_json::Value;
+use std::fs;
+
+/// The page with the tables of jobs, and its marks.
+const PAGE: &str = "docs/performance.md";
+const BEGIN: &str = "<!-- `cargo xtask bench jobs` writes from here ... -->\n";
+const END: &str = "<!-- ... to here -->\n";
+
+/// The same for the benchmark of jobs.
+const BUILD_JOBS: [&str; 10] = [
+    "build",
+    "--quiet",
+    "--release",
+    "-p",
+    "carrystep-xtask",
+    "-p",
+    "carrystep-cli",
+    "--bench=jobs",
+    "--bin=carrystep",
+    "--message-format=json-render-diagnostics",
+];
 
 /// One call of cargo for both, with all crates of the workspace: their features are then those of a
 /// test run, which has compiled everything but the benchmark itself.
@@ -28,6 +48,27 @@ pub fn run(json: bool, smoke: bool) -> TaskResult {
     arguments.extend(json.then_some("--json"));
     arguments.extend(smoke.then_some("--smoke"));
     shell::run(&levels, &arguments)
+}
+
+/// Measures the planner of jobs, and writes its tables into the page; a smoke run writes nothing.
+pub fn jobs(smoke: bool) -> TaskResult {
+    tools::install()?;
+    let messages = shell::read_stdout("cargo", &BUILD_JOBS)?;
+    let jobs = executable(&messages, "jobs", "bench")?;
+    let carrystep = executable(&messages, "carrystep", "bin")?;
+    let mut arguments = vec!["--carrystep", &carrystep];
+    arguments.extend(smoke.then_some("--smoke"));
+    let tables = shell::read_stdout(&jobs, &arguments)?;
+    shell::say(&tables);
+    if smoke {
+        return Ok(());
+    }
+    let path = shell::root().join(PAGE);
+    let page = fs::read_to_string(&path).map_err(|error| shell::cannot("read", &path, &error))?;
+    let (before, rest) = page.split_once(BEGIN).ok_or("the page has lost its mark for jobs")?;
+    let (_, after) = rest.split_once(END).ok_or("the page has lost the end of its tables")?;
+    fs::write(&path, format!("{before}{BEGIN}\n{tables}\n{END}{after}"))
+        .map_err(|error| shell::cannot("write", &path, &error))
 }
 
 /// The path of an executable in cargo's messages, one JSON document a line.

@@ -64,8 +64,12 @@ enum Chore {
     /// Check that the link's core needs no `std`, on a bare microcontroller.
     Bare,
     /// Time the fast model beside every other level, the writers beside Verilator's, and each
-    /// command with growing work.
+    /// command with growing work. `bench jobs` measures the planner of jobs instead, and writes its
+    /// tables into `docs/performance.md`.
     Bench {
+        /// `jobs`, or nothing.
+        #[arg(value_parser = ["jobs"])]
+        what: Option<String>,
         /// One JSON document instead of the table.
         #[arg(long)]
         json: bool,
@@ -105,7 +109,8 @@ fn main() -> ExitCode {
         Chore::Decisions => decisions::write(),
         Chore::Lint => ladder::lint(),
         Chore::Bare => ladder::bare(),
-        Chore::Bench { json, smoke } => bench::run(json, smoke),
+        Chore::Bench { what: Some(_), smoke, .. } => bench::jobs(smoke),
+        Chore::Bench { what: None, json, smoke } => bench::run(json, smoke),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
         Chore::Accuracy => accuracy::write(),

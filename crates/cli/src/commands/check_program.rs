@@ -5,9 +5,11 @@ use crate::arguments::CheckArguments;
 use crate::capture::{origin, unusable};
 use crate::failure::Failure;
 use crate::junit::JunitFile;
-use crate::pass::Kept;
+use crate::pass::{Kept, RowsAhead};
 use crate::{job, output, program, program_run};
-use carrystep_check::{Capture, JobChecker, JobReport, SignalMap, TraceError};
+use carrystep_check::{
+    Capture, JobChecker, JobReport, PlannedRows, SignalMap, TraceError, sink_beside,
+};
 use carrystep_program::{Legs, Rows};
 use carrystep_report::Detail;
 use schemars::JsonSchema;
@@ -53,13 +55,15 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             None
         }
         false => {
-            let rows = kept.until_an_error(Rows::new(&file)?).map(|row| row.segments);
-            Some(Box::new(rows) as Box<dyn Iterator<Item = _>>)
+            let rows = RowsAhead::new(Rows::new(&file)?);
+            let rows = kept.until_an_error(rows).map(|row| row.segments);
+            Some(Box::new(rows) as PlannedRows<'_>)
         }
     };
     let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
-    let mut checker = JobChecker::new(setup, legs, rows, &timebase, origin);
-    let played = reader.play(&mut checker);
+    let checker = JobChecker::new(setup, legs, rows, &timebase, origin);
+    // The capture is read while it is checked.
+    let (played, checker) = sink_beside(checker, |sink| reader.play(sink)).map_err(failed)?;
     let report = checker.finish();
     // An error of reading the program explains whatever the check says.
     kept.error()?;
