@@ -13,7 +13,8 @@ const chartDraws = [];
 
 function stretchesBetween(from, to) {
   const { seconds, cause } = drawing.charts;
-  const first = Math.max(0, Math.floor(from / seconds)), last = Math.min(cause.length - 1, Math.ceil(to / seconds));
+  const first = Math.max(0, Math.floor(from / seconds)),
+    last = Math.min(cause.length - 1, Math.ceil(to / seconds));
   return [first, last];
 }
 
@@ -25,8 +26,8 @@ function chart(canvas, curve, limit) {
   const bottom = extent(lows)[0] < 0 ? -top : 0;
   const draw = canvasOf(canvas, (context, width, height) => {
     const [left, right, foot, head] = [46, 4, 18, 6];
-    const x = (t) => left + (t - time.from) / (time.to - time.from) * (width - left - right);
-    const y = (v) => head + (top - v) / (top - bottom) * (height - foot - head);
+    const x = (t) => left + ((t - time.from) / (time.to - time.from)) * (width - left - right);
+    const y = (v) => head + ((top - v) / (top - bottom)) * (height - foot - head);
     context.lineWidth = 1;
     context.strokeStyle = colour("line");
     context.fillStyle = colour("soft");
@@ -40,7 +41,8 @@ function chart(canvas, curve, limit) {
     }
     context.textAlign = "center";
     for (const t of ticks(time.from, time.to, width / 110)) {
-      if (x(t) > left + 10 && x(t) < width - 14) context.fillText(`${shown(t)} s`, x(t), height - 4);
+      if (x(t) > left + 10 && x(t) < width - 14)
+        context.fillText(`${shown(t)} s`, x(t), height - 4);
     }
     context.save();
     context.beginPath();
@@ -90,7 +92,8 @@ function chart(canvas, curve, limit) {
   });
   chartDraws.push(draw);
 
-  const at = (event) => time.from + (event.offsetX - 46) / (canvas.clientWidth - 50) * (time.to - time.from);
+  const at = (event) =>
+    time.from + ((event.offsetX - 46) / (canvas.clientWidth - 50)) * (time.to - time.from);
   const all = () => chartDraws.forEach((draw) => draw());
   canvas.addEventListener("pointerdown", (event) => {
     time.drag = [at(event), at(event)];
@@ -107,13 +110,17 @@ function chart(canvas, curve, limit) {
     if (to - from > 3 * drawing.charts.seconds) seeTime(from, to);
     else all();
   });
-  canvas.addEventListener("pointercancel", () => { time.drag = null; all(); });
+  canvas.addEventListener("pointercancel", () => {
+    time.drag = null;
+    all();
+  });
 }
 
 // A number for the edge of a chart: 250k.
 function brief(v) {
   const big = Math.abs(v);
-  const text = big >= 1e6 ? `${shown(v / 1e6, 3)}M` : big >= 1e4 ? `${shown(v / 1e3, 3)}k` : shown(v, 4);
+  const text =
+    big >= 1e6 ? `${shown(v / 1e6, 3)}M` : big >= 1e4 ? `${shown(v / 1e3, 3)}k` : shown(v, 4);
   return text;
 }
 
@@ -125,16 +132,21 @@ function seeTime(from, to) {
 // A coloured line of what binds over time.
 function strip(canvas) {
   const { seconds, cause } = drawing.charts;
-  chartDraws.push(canvasOf(canvas, (context, width, height) => {
-    const [left, right] = [46, 4], wide = width - left - right;
-    const [first, last] = stretchesBetween(time.from, time.to);
-    const x = (t) => left + Math.min(Math.max((t - time.from) / (time.to - time.from), 0), 1) * wide;
-    for (let k = first; k <= last; k++) {
-      context.fillStyle = chosen !== null && cause[k] !== chosen ? BACKGROUND : causeColour(cause[k]);
-      const from = Math.floor(x(k * seconds));
-      context.fillRect(from, 0, Math.max(Math.ceil(x((k + 1) * seconds)) - from, 1), height);
-    }
-  }));
+  chartDraws.push(
+    canvasOf(canvas, (context, width, height) => {
+      const [left, right] = [46, 4],
+        wide = width - left - right;
+      const [first, last] = stretchesBetween(time.from, time.to);
+      const x = (t) =>
+        left + Math.min(Math.max((t - time.from) / (time.to - time.from), 0), 1) * wide;
+      for (let k = first; k <= last; k++) {
+        context.fillStyle =
+          chosen !== null && cause[k] !== chosen ? BACKGROUND : causeColour(cause[k]);
+        const from = Math.floor(x(k * seconds));
+        context.fillRect(from, 0, Math.max(Math.ceil(x((k + 1) * seconds)) - from, 1), height);
+      }
+    }),
+  );
 }
 
 function setUpCharts() {
@@ -156,11 +168,18 @@ function setUpCharts() {
   drawing.axes.forEach((axis, k) => {
     const trio = make("div", null, "trio");
     box.append(make("h3", `axis ${axis.name}`), trio);
-    const kinds = [["speed", "speed", "/s"], ["acceleration", "acceleration", "/s\u00b2"], ["jerk", "jerk", "/s\u00b3"]];
+    const kinds = [
+      ["speed", "speed", "/s"],
+      ["acceleration", "acceleration", "/s\u00b2"],
+      ["jerk", "jerk", "/s\u00b3"],
+    ];
     kinds.forEach(([label, key, per], kind) => {
-      const limit = axis.limits[kind], curve = 1 + 3 * k + kind;
+      const limit = axis.limits[kind],
+        curve = 1 + 3 * k + kind;
       // Without a limit, a jerk that is always 0 is not worth a chart.
-      const flat = drawing.charts.low[curve].every((v) => v === 0) && drawing.charts.high[curve].every((v) => v === 0);
+      const flat =
+        drawing.charts.low[curve].every((v) => v === 0) &&
+        drawing.charts.high[curve].every((v) => v === 0);
       if (limit === null && flat) return;
       const seconds = kind ? kind + 1 : "";
       const pointer = `${under("axes")}/${k}/${key}_steps_per_s${seconds}`;

@@ -3,7 +3,8 @@
 "use strict";
 
 const read = (id) => JSON.parse(document.getElementById(id).textContent);
-const report = read("document"), drawing = read("drawing");
+const report = read("document"),
+  drawing = read("drawing");
 const source = new Map(read("source"));
 const program = /program$/.test(report.schema.name);
 const plan = report.plan || report;
@@ -32,7 +33,10 @@ function shown(value, digits = 5) {
 
 // The value of the document at a pointer such as /plan/total_s.
 const value = (pointer) =>
-  pointer.split("/").slice(1).reduce((at, key) => (at === undefined || at === null ? at : at[key]), report);
+  pointer
+    .split("/")
+    .slice(1)
+    .reduce((at, key) => (at === undefined || at === null ? at : at[key]), report);
 
 // An element that shows a value of the document, divided by `per`, with so many digits.
 function figure(pointer, per = 1, digits = 5) {
@@ -60,7 +64,8 @@ function fillHead() {
   const verdict = report.check ? (passed ? "all holds" : "failed") : "planned within all limits";
   element("verdict").append(make("span", verdict, passed ? "good" : "bad"));
   const axes = (report.check && report.check.axes) || [];
-  const failures = (report.check && report.check.failures) || axes.flatMap((axis) => axis.failures || []);
+  const failures =
+    (report.check && report.check.failures) || axes.flatMap((axis) => axis.failures || []);
   failures.slice(0, 20).forEach((failure) => element("failures").append(make("li", failure)));
 
   card("time", "s", figure(under("total_s")));
@@ -72,12 +77,16 @@ function fillHead() {
     card("segments of an axis", "", figure(under("rows")));
     const [least, most] = [under("tolerance_min_mm"), under("tolerance_max_mm")];
     if (value(least) !== null) {
-      const parts = value(least) === value(most) ? [figure(least)] : [figure(least), " to ", figure(most)];
+      const parts =
+        value(least) === value(most) ? [figure(least)] : [figure(least), " to ", figure(most)];
       card("tolerance", "mm", ...parts);
     }
     if (report.check) {
-      const [most, bound] = ["/check/deviation_mm", "/check/deviation_bound_mm"].map((at) => figure(at, 1, 3));
-      card("greatest distance from the path", "mm", most, make("small", " of "), bound).className = "broad";
+      const [most, bound] = ["/check/deviation_mm", "/check/deviation_bound_mm"].map((at) =>
+        figure(at, 1, 3),
+      );
+      card("greatest distance from the path", "mm", most, make("small", " of "), bound).className =
+        "broad";
     }
   } else if ("moves" in report) {
     card("moves", "", figure("/moves"));
@@ -93,22 +102,37 @@ function fillHead() {
 function fillNotes() {
   const { path, charts, lines } = drawing;
   const note = (text) => element("notes").append(make("li", text));
-  const strokes = path.line.length, stretches = charts.cause.length;
-  note(`Path: ${shown(strokes)} straight lines stand for ${shown(path.rows)} pieces of the planned motion. ` +
-    `The motion is at most ${shown(path.off, 2)} ${unit} away from its line. The colour is the mean speed of a line.`);
-  note(`Charts: the time is divided into ${shown(stretches)} stretches of ${shown(charts.seconds * 1000)} ms. ` +
-    "The band of a stretch reaches from its least to its greatest value; both are exact.");
+  const strokes = path.line.length,
+    stretches = charts.cause.length;
+  note(
+    `Path: ${shown(strokes)} straight lines stand for ${shown(path.rows)} pieces of the planned ` +
+      `motion. The motion is at most ${shown(path.off, 2)} ${unit} away from its line. The ` +
+      "colour is the mean speed of a line.",
+  );
+  note(
+    `Charts: the time is divided into ${shown(stretches)} stretches of ` +
+      `${shown(charts.seconds * 1000)} ms. The band of a stretch reaches from its least to its ` +
+      "greatest value; both are exact.",
+  );
   if (lines.together > 1) {
     note(`The file is long: ${lines.together} neighbouring ${word}s are counted together.`);
   }
   note("Speed, acceleration and jerk are those of the integers that the hardware runs.");
   if (program) {
-    note("What binds is decided for each segment: the feed or an axis' speed from 98 % on; the tolerance where the curve " +
-      "rounds a sharp corner; otherwise an axis' acceleration or jerk. Ramps to and from a rest belong to the stop.");
-    plan.not_done.forEach((one) => note(`Not done: ${one.what} (${one.count}, first in line ${one.line}): ${one.instead}.`));
+    note(
+      "What binds is decided for each segment: the feed or an axis' speed from 98 % on; the " +
+        "tolerance where the curve rounds a sharp corner; otherwise an axis' acceleration or " +
+        "jerk. Ramps to and from a rest belong to the stop.",
+    );
+    plan.not_done.forEach((one) =>
+      note(`Not done: ${one.what} (${one.count}, first in line ${one.line}): ${one.instead}.`),
+    );
     note("Backlash and errors of the screws are not compensated.");
   } else {
-    note("What binds is decided for each part of a move: an axis' speed from 98 % of its limit on, otherwise the " +
-      "acceleration or jerk that is nearest to its limit, or the time that the file gives.");
+    note(
+      "What binds is decided for each part of a move: an axis' speed from 98 % of its limit on, " +
+        "otherwise the acceleration or jerk that is nearest to its limit, or the time that the " +
+        "file gives.",
+    );
   }
 }

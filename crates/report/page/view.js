@@ -27,10 +27,17 @@ function canvasOf(canvas, draw) {
 }
 
 // Slow is blue, fast is red. Each entry is a part of the way and a colour.
-const RAMP = [[59, 76, 192], [42, 160, 184], [82, 170, 72], [233, 162, 39], [212, 61, 47]];
+const RAMP = [
+  [59, 76, 192],
+  [42, 160, 184],
+  [82, 170, 72],
+  [233, 162, 39],
+  [212, 61, 47],
+];
 function ramp(part) {
   const at = Math.min(Math.max(part, 0), 1) * (RAMP.length - 1);
-  const k = Math.min(Math.floor(at), RAMP.length - 2), rest = at - k;
+  const k = Math.min(Math.floor(at), RAMP.length - 2),
+    rest = at - k;
   return `rgb(${RAMP[k].map((low, i) => Math.round(low + rest * (RAMP[k + 1][i] - low))).join()})`;
 }
 
@@ -39,19 +46,31 @@ function causeColour(number) {
   const light = isDark.matches ? 8 : 0;
   const of = (hue, step, full, bright) => `hsl(${hue + step * axis} ${full}% ${bright + light}%)`;
   switch (cause) {
-    case "stop": return isDark.matches ? "#8b95a1" : "#7b8591";
-    case "given_time": return isDark.matches ? "#5e6a78" : "#b3bac3";
-    case "feed": return isDark.matches ? "#4cc38a" : "#219a64";
-    case "tolerance": return isDark.matches ? "#b58cf0" : "#8450d0";
-    case "speed": return of(200, 13, 78, 44);
-    case "acceleration": return of(14, 14, 84, 50);
-    default: return of(322, 12, 62, 50);
+    case "stop":
+      return isDark.matches ? "#8b95a1" : "#7b8591";
+    case "given_time":
+      return isDark.matches ? "#5e6a78" : "#b3bac3";
+    case "feed":
+      return isDark.matches ? "#4cc38a" : "#219a64";
+    case "tolerance":
+      return isDark.matches ? "#b58cf0" : "#8450d0";
+    case "speed":
+      return of(200, 13, 78, 44);
+    case "acceleration":
+      return of(14, 14, 84, 50);
+    default:
+      return of(322, 12, 62, 50);
   }
 }
 
 // What a cause is called: "acceleration of x".
 function causeName(cause, axis) {
-  const name = { given_time: "the time that the file gives", tolerance: "tolerance, at corners", stop: "stops" }[cause] || cause;
+  const name =
+    {
+      given_time: "the time that the file gives",
+      tolerance: "tolerance, at corners",
+      stop: "stops",
+    }[cause] || cause;
   return axis === null || axis === undefined ? name : `${name} of ${axis}`;
 }
 const nameOf = (number) => {
@@ -59,7 +78,10 @@ const nameOf = (number) => {
   return causeName(cause, axis === null ? null : drawing.axes[axis].name);
 };
 const numberOf = (cause, axis) =>
-  drawing.causes.findIndex((one) => one.cause === cause && (one.axis === null ? null : drawing.axes[one.axis].name) === axis);
+  drawing.causes.findIndex(
+    (one) =>
+      one.cause === cause && (one.axis === null ? null : drawing.axes[one.axis].name) === axis,
+  );
 
 // The cause that the reader has chosen; the others are drawn pale.
 let chosen = null;
@@ -101,6 +123,7 @@ function ticks(low, high, count) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((step) => step >= rough) || 10 * power;
   const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k++) found.push(Number((k * step).toPrecision(12)));
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k++)
+    found.push(Number((k * step).toPrecision(12)));
   return found;
 }
