@@ -64,7 +64,7 @@ fn main() -> ExitCode {
         commands::speed_and_memory(&arguments.carrystep, arguments.smoke, &mut missed)
     });
     if let Err(error) = measured {
-        eprintln!("bench: {error}");
+        println!("bench: {error}");
         return ExitCode::FAILURE;
     }
     if missed.is_empty() {
