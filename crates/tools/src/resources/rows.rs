@@ -114,11 +114,11 @@ pub const FAMILIES: [FamilyRow; 3] = [
     FamilyRow {
         name: "xc6s",
         of: TWO,
-        budget: Mapped { luts: 790, flip_flops: 430, carries: 60, block_rams: 8 },
+        budget: Mapped { luts: 760, flip_flops: 425, carries: 60, block_rams: 8 },
     },
     FamilyRow {
         name: "xc7",
         of: TWO,
-        budget: Mapped { luts: 765, flip_flops: 430, carries: 60, block_rams: 6 },
+        budget: Mapped { luts: 720, flip_flops: 425, carries: 60, block_rams: 6 },
     },
 ];

@@ -49,6 +49,7 @@ impl<'a> Gateware<'a> {
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
+        board.connects_inputs(&build.guard)?;
         if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
         }
