@@ -12,7 +12,6 @@
 //! ```
 
 use super::Motion;
-use super::axis_model::AxisModel;
 use super::switches::LAST_BEAT;
 use carrystep_core::engine::{Cause, EngineInputs, SeekSource};
 
@@ -45,12 +44,11 @@ impl Motion {
     /// True if an axis waits for this switch.
     pub(super) fn is_awaited(&self, axis: usize, row: u8) -> bool {
         let Seek { source, .. } = self.seek;
-        let awaits = |axis_model: &AxisModel| axis_model.seek.waits;
         source.is(row, axis as u8)
             && if source.own {
-                awaits(&self.axis_models[axis])
+                self.axis_models[axis].seek.waits
             } else {
-                self.axis_models.iter().any(awaits)
+                self.axis_models.iter().any(|axis_model| axis_model.seek.waits)
             }
     }
 
@@ -104,7 +102,8 @@ impl Motion {
     fn end_tick_of_seek(&mut self) {
         let sweeps = std::mem::take(&mut self.seek.sweeps);
         self.seek.released &= !sweeps;
-        for AxisModel { seek, .. } in &mut self.axis_models {
+        for axis_model in &mut self.axis_models {
+            let seek = &mut axis_model.seek;
             let slows = seek.slows || (sweeps && seek.waits);
             let waits = seek.waits && !sweeps;
             *seek = AxisSeek { waits, slows, ramps: slows, hits: false, is_excused: false };
