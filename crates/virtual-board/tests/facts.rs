@@ -26,7 +26,7 @@ const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {
 fn filled<B: Kind>() -> Talk<B> {
     let mut talk = Talk::powered();
     for axis in 0..6 {
-        (0..axis).for_each(|_| assert!(!talk.segment(axis, cruise(99, true)).refusal.is_some()));
+        (0..axis).for_each(|_| assert!(talk.segment(axis, cruise(99, true)).refusal.is_none()));
     }
     talk
 }

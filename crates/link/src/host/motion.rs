@@ -51,6 +51,7 @@ pub enum Ended {
 }
 
 /// A snapshot of a program that runs.
+#[allow(clippy::large_enum_variant, reason = "there is one, on the stack, and no_std has no boxes")]
 enum Capture {
     /// None is being taken.
     None,

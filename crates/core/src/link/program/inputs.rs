@@ -79,6 +79,6 @@ fn switches(a: &mut Assembler) {
 
 const _: () = assert!(BITS & 7 == 0, "an address in BITS ends with the number of the axis");
 const _: () = assert!(
-    ROWS & 7 == DATA & 7 && DATA & 7 <= 4,
+    ROWS & 7 == DATA & 7 && DATA & 4 == 0,
     "entries of the table of rows and bytes of the data have the same lowest bits"
 );
