@@ -141,8 +141,10 @@ fn seeks(build: &EngineBuild) -> Stimulus {
     let source = |row| Event::SeekSource(SeekSource { axis: 0, row, own: true, level: true });
     events.extend([(6_400, source(0)), (6_500, Event::Seek(0b10_1010))]);
     let (mut low, mut high) = (0, 0);
-    for (place, axis) in (0..).zip([1, 3, 5, 0, 2, 4]) {
-        let at = THEN + 9 * ROUND * place;
+    // A hit comes eight to ten rounds after its switch has closed. The odd axes rest before the source
+    // changes: their closed switches would stop them otherwise.
+    for (place, axis) in [(0, 1), (1, 3), (2, 5), (5, 0), (6, 2), (7, 4)] {
+        let at = THEN + 12 * ROUND * place;
         if axis == 0 {
             events.extend([(at - ROUND, source(1)), (at - ROUND, Event::Seek(0b01_0101))]);
         }
@@ -151,6 +153,8 @@ fn seeks(build: &EngineBuild) -> Stimulus {
         events.extend([(at, Event::LimitMin(low)), (at, Event::LimitMax(high))]);
     }
     events.extend([(120 * ROUND, Event::LimitMin(0)), (120 * ROUND, Event::LimitMax(0))]);
+    // As long as the host does not end the seek, no axis that has hit can be started.
+    events.push((125 * ROUND, Event::Seek(0)));
     let row = |ticks, last| {
         let segment = move |v| Segment { ticks, v, a: 0, j: 0, last };
         (0..)
