@@ -1,11 +1,10 @@
 //! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
 //! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
-//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], the [`Plot`]
-//! and the [`ErrorCounter`]. [`check_beside`] is a checker that uses other cores. [`PathChecker`] checks jobs,
-//! whose pulses follow a programmed path,
-//! and [`JobChecker`] a capture of one. The modules are private; the public items are listed
-//! below.
+//! [`PinSink`]s: the [`Checker`], those of [`vcd_writer`], [`fst_writer`] and [`csv_writer`], the
+//! [`Plot`] and the [`ErrorCounter`]. [`check_beside`] is a checker that uses other cores.
+//! [`PathChecker`] checks jobs, whose pulses follow a programmed path, and [`JobChecker`] checks a
+//! capture of a job. The modules are private; the public items are listed below.
 
 mod ahead;
 mod axis_check;

@@ -74,7 +74,8 @@ fn foreign(changes: &[Change], offset_ps: u64, sample_ps: u64) -> String {
     text
 }
 
-const MAP: &str = "--map x.step=la.x_step --map x.dir=la.x_dir --map y.step=la.y_step --map y.dir=la.y_dir --map z.step=la.z_step --map z.dir=la.z_dir";
+const MAP: &str = "--map x.step=la.x_step --map x.dir=la.x_dir --map y.step=la.y_step \
+                   --map y.dir=la.y_dir --map z.step=la.z_step --map z.dir=la.z_dir";
 
 /// A job with its capture by carrystep.
 fn captured() -> (Folder, Vec<Change>, i64) {
