@@ -2,11 +2,15 @@
 //! a run with a callback for the pins.
 
 use crate::failure::Failure;
-use carrystep_core::EngineBuild;
+use crate::interrupt;
+use carrystep_check::PinSink;
 use carrystep_core::engine::{Cause, EngineError};
+use carrystep_core::{EngineBuild, Timebase};
 use carrystep_files::Machine;
 use carrystep_simulators::engine::run::EngineJob;
-use carrystep_simulators::{Job, Level, LevelError};
+use carrystep_simulators::pins::PinFeed;
+use carrystep_simulators::{HowFar, Job, Level, LevelError};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A plan on one of the cores.
 #[derive(Clone, Copy)]
@@ -33,13 +37,41 @@ impl CorePlan<'_> {
         }
     }
 
-    /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
-    /// which any output has changed.
-    pub fn run(
+    /// Runs the plan and sends the pins of the first `axes` axes to a sink. If the sink fails, `deaf`
+    /// is set, which ends the run early if it is one of the plan's reasons to halt.
+    ///
+    /// # Errors
+    /// The run was interrupted or has failed, or the sink has failed; an error of the sink goes
+    /// before the end of the run that it causes.
+    pub fn run_into(
         &self,
         level: Level,
-        watch: &mut dyn FnMut(u64, u8, u8),
-    ) -> Result<RunEnd, LevelError> {
+        timebase: Timebase,
+        axes: usize,
+        sink: &mut dyn PinSink,
+        (how_far, deaf): (&HowFar, &AtomicBool),
+    ) -> Result<RunEnd, Failure> {
+        let mut feed = PinFeed::new(timebase, axes, sink);
+        let end = self.run(level, &mut |cycle, step, dir| {
+            how_far.at(cycle);
+            feed.pins(cycle, step, dir);
+            if feed.has_failed() {
+                deaf.store(true, Ordering::Relaxed);
+            }
+        });
+        interrupt::check()?;
+        if let Err(LevelError::Halted) = end {
+            // The feed holds the cause.
+            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
+        }
+        let end = end?;
+        feed.end(end.clocks)?;
+        Ok(end)
+    }
+
+    /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
+    /// which any output has changed.
+    fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<RunEnd, LevelError> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {

@@ -21,14 +21,13 @@ use carrystep_plan::{Pass, PlannedMove, Survey};
 use carrystep_profile::{Course, Reader, Timeline};
 use carrystep_report::{Detail, TimeUse};
 use carrystep_simulators::engine::run::EngineJob;
-use carrystep_simulators::pins::PinFeed;
-use carrystep_simulators::{Job, Level, LevelError};
+use carrystep_simulators::{Job, Level};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// The longest run in seconds, because captures count ps in 64 bits.
@@ -251,22 +250,7 @@ pub fn run(
         if let Some(sink) = errors.as_mut() {
             tee.add(sink);
         }
-        let mut feed = PinFeed::new(timebase, machine.axes.len(), &mut tee);
-        let outcome = on.run(level, &mut |cycle, step, dir| {
-            progress.how_far().at(cycle);
-            feed.pins(cycle, step, dir);
-            if feed.has_failed() {
-                deaf.store(true, Ordering::Relaxed);
-            }
-        });
-        interrupt::check()?;
-        if let Err(LevelError::Halted) = outcome {
-            // The feed holds the cause.
-            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
-        }
-        let outcome = outcome?;
-        feed.end(outcome.clocks)?;
-        Ok(outcome)
+        on.run_into(level, timebase, machine.axes.len(), &mut tee, (progress.how_far(), &deaf))
     });
     survey.whole()?;
     let outcome = outcome?;

@@ -19,13 +19,12 @@ use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
 use carrystep_program::{Legs, ProgramFile, Survey};
 use carrystep_simulators::engine::run::EngineJob;
-use carrystep_simulators::pins::PinFeed;
-use carrystep_simulators::{Job, Level, LevelError};
+use carrystep_simulators::{Job, Level};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// The result of a run; `--json` prints it as it is.
@@ -136,24 +135,7 @@ pub fn run(
         let mut tee = Tee::new();
         tee.add(checker);
         writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
-        let mut feed = PinFeed::new(timebase, axes, &mut tee);
-        let outcome = on.run(level, &mut |cycle, step, dir| {
-            progress.how_far().at(cycle);
-            feed.pins(cycle, step, dir);
-            if feed.has_failed() {
-                deaf.store(true, Ordering::Relaxed);
-            }
-        });
-        interrupt::check()?;
-        if let Err(LevelError::Halted) = outcome {
-            // The feed holds the cause.
-            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
-        }
-        let outcome = outcome.map_err(Failure::from);
-        if let Ok(outcome) = &outcome {
-            feed.end(outcome.clocks)?;
-        }
-        outcome
+        on.run_into(level, timebase, axes, &mut tee, (progress.how_far(), &deaf))
     })?;
     // An error of reading explains whatever the run reports.
     kept.error()?;
