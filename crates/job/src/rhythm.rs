@@ -1,11 +1,12 @@
 //! The rhythm of a job: the time between knots, and how many samples are averaged.
 //!
-//! The filter over m samples keeps the jerk J if m dt >= 2 A / J (`filter.rs`). Each knot time dt is
-//! a segment of each axis. It is at least 4 ms, so that an axis has at most 250 segments a second
-//! and any eight successive ones last at least 32 ms, which is what the engine's queue holds. On a
-//! slow line it is longer, as far as 16 ms. Of the two ways to fill the time 2 A / J with knots,
-//! fewer longer ones or more shorter ones, the one is taken whose curve moves less towards the
-//! acceleration.
+//! The filter averages m samples that are dt seconds apart. It keeps the jerk limit J at the
+//! acceleration limit A if m dt >= 2 A / J (`filter.rs`). Each axis has one segment in each dt. A dt
+//! is at least 4 ms, so an axis has at most 250 segments a second, and any eight successive segments
+//! last at least 32 ms. On a slow line dt is longer, up to 16 ms.
+//!
+//! The time 2 A / J can be filled with fewer, longer dt or with more, shorter ones. The planner takes
+//! the one with the smaller [`Rhythm::spread`]: it moves the curve less.
 
 use crate::limits::{Limit, SHORTEST};
 
@@ -15,9 +16,9 @@ const MOST_AVERAGED: f64 = 4096.0;
 /// Longest time between knots, seconds: a hold or an override takes effect after the queue. The
 /// last segment of a run is a tick longer.
 pub(crate) const LONGEST: f64 = 0.016;
-/// Bits of a line for each segment that it carries: 40 bytes of ten bits, two and a half times. A
-/// line of 3 Mbaud was measured to carry 3000 segments a second, of 921 600 baud 1200
-/// (`docs/performance.md`); this is 3000 and 921.
+/// Bits on the line for each segment. A segment has 40 bytes of ten bits; two and a half times as
+/// many leave room for answers and repeats. It gives 3000 segments a second at 3 Mbaud and 921 at
+/// 921 600 baud; 3000 and 1200 were measured (`docs/performance.md`).
 const BITS_A_SEGMENT: f64 = 1000.0;
 
 /// The shortest time between knots in seconds for so many axes on a line of so many baud: 4 ms, or

@@ -17,10 +17,10 @@ pub struct Row {
     /// The greatest distance of the planned curve from the path in the row, as a part of the
     /// tolerance, from 0 to 1. It is measured at four places of the row.
     pub off: f64,
-    /// How far a straight line as long as the shortest element of the row would be from a curve
-    /// that bends as the planned curve does, beyond the bend of the element itself, as a part of
-    /// the tolerance. Above 1 the curve rounds a corner within the tolerance; far below 1 it follows
-    /// a path that is itself bent, as chords of a large circle are.
+    /// How sharp the corner is that the curve rounds, as a part of the tolerance: the height of an
+    /// arc with the curvature of the planned curve over a chord as long as the row's shortest
+    /// element, less the height of the element's own arc. Above 1 the curve rounds a corner; far
+    /// below 1 it follows a path that is itself bent, as chords of a large circle are.
     pub corner: f64,
     /// The marks ([`Item::Mark`]) that the path has reached at the start of the row.
     pub marks: Vec<u64>,

@@ -1,8 +1,9 @@
 //! Ramps to and from a rest: what binds them is the stop, which is known only when the rest comes.
 //!
-//! From a rest on, the motion speeds up for the sake of the stop until its speed falls or something
-//! else than acceleration and jerk binds. Before a rest, all rows belong to the stop that lie behind
-//! the last one that is faster at its end than at its start, or at which something else binds.
+//! A row belongs to a stop if only acceleration or jerk binds it, and
+//!
+//! - after a rest: it and all rows since the rest end faster than they began;
+//! - before a rest: neither it nor any row up to the rest ends faster than it began.
 
 use crate::bound::Bound;
 use crate::frame::Frame;
