@@ -22,6 +22,7 @@ pub struct Row {
     /// element, less the height of the element's own arc. Above 1 the curve rounds a corner; far
     /// below 1 it follows a path that is itself bent, as chords of a large circle are.
     pub corner: f64,
-    /// The marks ([`Item::Mark`](crate::Item::Mark)) that the path has reached at the start of the row.
+    /// The marks ([`Item::Mark`](crate::Item::Mark)) that the path has reached at the start of the
+    /// row.
     pub marks: Vec<u64>,
 }
