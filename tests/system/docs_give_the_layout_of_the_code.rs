@@ -84,6 +84,7 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("P ", "BEAT_STATE_P_LOW"),
                 ("n ", "BEAT_STATE_LEFT"),
                 ("pos", "BEAT_STATE_POSITION"),
+                ("sw ", "BEAT_STATE_SWITCH"),
                 ("P'", "BEAT_STATE_P_HIGH"),
                 ("tick", "BEAT_STATE_TICK"),
                 ("stat", "BEAT_STATE_STATUS"),
@@ -185,7 +186,7 @@ fn engine_page_counts_the_block_rams() {
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),
-        memory("switches.rs", "switches"),
+        memory("switches.rs", "switch_memory"),
         memory("event_wheel.rs", "event_memory"),
     ];
     assert!(others.into_iter().all(|memory| rams(memory) == 1));
