@@ -69,7 +69,7 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
         let widest = ports.entry(name).or_insert((is_input, port.contains('['), 0));
         widest.2 = widest.2.max(bit);
         let wire = &names[io];
-        if !wired.contains(io.as_str()) && !pad.as_ref().is_some_and(|(_, of_pll)| of_pll == io) {
+        if !wired.contains(io.as_str()) && pad.as_ref().is_none_or(|(_, of_pll)| of_pll != io) {
             let _ = writeln!(wires, "wire {wire};");
         }
         let _ = if is_input {
