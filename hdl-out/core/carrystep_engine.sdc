@@ -14,7 +14,12 @@ set_false_path -to [get_keepers {*carrystep_supervisor:*|sync}]
 # set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_supervisor:*|sync"
 # set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_supervisor:*|now"
 
-# limit_min, limit_max
-set_false_path -to [get_keepers {*carrystep_limits:*|sync}]
-# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_limits:*|sync"
-# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_limits:*|now"
+# limit_min, limit_max, inputs_0, inputs_1
+set_false_path -to [get_keepers {*carrystep_switches:*|sync}]
+# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_switches:*|sync"
+# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_switches:*|now"
+
+# latch
+set_false_path -to [get_keepers {*carrystep_edge_latch:*|sync}]
+# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_edge_latch:*|sync"
+# set_instance_assignment -name SYNCHRONIZER_IDENTIFICATION FORCED -to "*carrystep_edge_latch:*|now"

@@ -400,8 +400,8 @@ module carrystep_queue (
     input  wire         back,
     // In beat 12: P + V crosses a step, if the axis moves.
     input  wire         crosses,
-    // In beat 12: the axis, which waits for its limit, has found it.
-    input  wire         caught,
+    // In beat 12: the next tick's words of the axis are those of its own hit.
+    input  wire         meets,
     // The low bits of the position, from the pulser.
     input  wire   [2:0] pulses,
     // The low bits of the discarded steps, from the pulser.
@@ -442,7 +442,7 @@ module carrystep_queue (
     output wire         down,
     // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     output wire         lost,
-    // The axis found its limit in the tick before, while it waited for it.
+    // The words of this tick are those of the axis' own hit.
     output wire         met,
     // Carries since the last clear less counted steps, modulo 16.
     output wire   [3:0] on_way
@@ -634,7 +634,7 @@ module carrystep_queue (
 
     always @(*) begin
         next_met = NO;
-        if (caught) begin
+        if (meets) begin
             next_met = MET_BIT;
         end
     end
@@ -1314,30 +1314,30 @@ module carrystep_event_wheel #(
     end
 endmodule
 
-// Memory of the debounced state of each limit switch, and its count of deviating samples.
-module carrystep_switches (
+// Memory of the debounced state of each switch, and its count of deviating samples.
+module carrystep_switch_memory (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [3:0] read_address,
+    input  wire   [4:0] read_address,
     // The word at the address of the cycle before.
     output wire   [7:0] read_data,
     // The address of the word to write.
-    input  wire   [3:0] write_address,
+    input  wire   [4:0] write_address,
     // The write enable of each bit.
     input  wire   [7:0] write_bits,
     // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:15];
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:31];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
 
     initial begin
-        for (i = 0; i < 16; i = i + 1) words[i] = 0;
+        for (i = 0; i < 32; i = i + 1) words[i] = 0;
     end
 
     always @(posedge clock) begin
@@ -1346,14 +1346,24 @@ module carrystep_switches (
     end
 endmodule
 
-// Samples and debounces the limit switches, each in the time slot of its axis.
-module carrystep_limits #(
-    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
+// Samples and debounces limits and other inputs, each in the time slot of its axis.
+module carrystep_switches #(
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Equal consecutive samples, one per round, that change a switch's debounced state; 1 to 127
     parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
     // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
     // Active level of the limit switches: 0 high, 1 low; 0 or 1
-    parameter [31:0] LIMITS_LOW = 32'd0
+    parameter [31:0] LIMITS_LOW = 32'd0,
+    // The inputs at `inputs_0` that exist; bit 0 is the probe; a mask with one bit per axis
+    parameter [31:0] INPUTS_0 = 32'd0,
+    // Those of them that are active low; a part of INPUTS_0
+    parameter [31:0] INPUTS_0_LOW = 32'd0,
+    // The inputs at `inputs_1` that exist; bit 0 is the interlock; a mask with one bit per axis
+    parameter [31:0] INPUTS_1 = 32'd0,
+    // Those of them that are active low; a part of INPUTS_1
+    parameter [31:0] INPUTS_1_LOW = 32'd0
 ) (
     // The clock.
     input  wire         clock,
@@ -1365,38 +1375,60 @@ module carrystep_limits #(
     input  wire   [2:0] axis_next,
     // The axis of the slot, one-hot.
     input  wire   [5:0] axis_one_hot,
-    // The first tick of a round: `limit_min` is sampled.
-    input  wire         tick_0,
-    // The second tick of a round: `limit_max` is sampled.
-    input  wire         tick_1,
+    // The number of the tick in its round, modulo 4.
+    input  wire   [1:0] row,
+    // The tick is one of the first four of a round.
+    input  wire         begins_round,
     // The pins at the low ends. With one switch per axis, the pin of that switch; with one for all
     // axes, bit 0. Asynchronous.
     input  wire   [5:0] limit_min,
     // The pins at the high ends; asynchronous.
     input  wire   [5:0] limit_max,
+    // The pins of row 2; asynchronous.
+    input  wire   [5:0] inputs_0,
+    // The pins of row 3; asynchronous.
+    input  wire   [5:0] inputs_1,
     // The axis moves in this tick, with V != 0.
     input  wire         goes,
     // V < 0 in this tick.
     input  wire         back,
-    // A reset: the switch of this tick becomes inactive, as at configuration.
+    // A reset: all switches become inactive, as at configuration.
     input  wire         resetting,
-    // The axis has reached a limit.
-    output wire         hit
+    // In this tick a switch is sampled in each time slot.
+    output wire         samples,
+    // From beat 2: the level of the switch's pin two clocks ago.
+    output wire         level,
+    // From beat 1: the debounced state of the switch before this sample.
+    output wire         earlier,
+    // In the last beat: the debounced state after this sample.
+    output wire         state,
+    // In the last beat: the switch is a limit, and the axis has reached it.
+    output wire         found,
+    // The debounced state of the interlock: it is open.
+    output wire         interlock
 );
-    localparam EXIST = LIMITS != 32'd0;
+    localparam [3:0] ROWS = (((4'd0 | ((LIMITS != 32'd0) ? 4'd1 : 4'd0)) | ((LIMITS == 32'd1) ? 4'd2 : 4'd0)) | ((INPUTS_0 != 32'd0) ? 4'd4 : 4'd0)) | ((INPUTS_1 != 32'd0) ? 4'd8 : 4'd0);
     localparam PAIR = LIMITS == 32'd1;
     localparam ONE_FOR_ALL = LIMITS == 32'd3;
-    localparam LOW = LIMITS_LOW[0];
+    localparam HAS_INPUTS = (INPUTS_0 != 32'd0) | (INPUTS_1 != 32'd0);
+    localparam HAS_ROW_3 = INPUTS_1 != 32'd0;
+    localparam HAS_INTERLOCK = INPUTS_1[0];
+    localparam [5:0] LEVELS = LIMITS_LOW[0] ? 6'd63 : 6'd0;
+    localparam [5:0] EXIST_0 = INPUTS_0[5:0];
+    localparam [5:0] EXIST_1 = INPUTS_1[5:0];
+    localparam [5:0] LOW_0 = INPUTS_0_LOW[5:0];
+    localparam [5:0] LOW_1 = INPUTS_1_LOW[5:0];
     localparam [6:0] LAST_SAMPLE = DEBOUNCE_SAMPLES[6:0] - 7'd1;
     localparam [5:0] FIRST_ONE_HOT = 6'd1;
+    localparam [3:0] FIRST_ROW = 4'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
     localparam [7:0] ACTIVE = 8'd128;
     localparam [7:0] NO = 8'd0;
     localparam [7:0] ALL = 8'd255;
-    localparam [3:0] SIDE = 4'd1;
-    localparam [3:0] NO_SIDE = 4'd0;
-    localparam BY_ONE = 1'b1;
+    localparam [1:0] TO_INPUTS = 2'd2;
+    localparam [1:0] LIMITS_ONLY = 2'd1;
+    localparam [1:0] BY_TWO = 2'd2;
 
     generate
         if (LIMITS > 32'd3) begin : limits_out_of_range
@@ -1408,46 +1440,74 @@ module carrystep_limits #(
         if ((DEBOUNCE_SAMPLES < 32'd1) | (DEBOUNCE_SAMPLES > 32'd127)) begin : debounce_samples_out_of_range
             carrystep_error_debounce_samples_out_of_range error ();
         end
+        if (INPUTS_0 > 32'd63) begin : inputs_0_out_of_range
+            carrystep_error_inputs_0_out_of_range error ();
+        end
+        if (INPUTS_1 > 32'd63) begin : inputs_1_out_of_range
+            carrystep_error_inputs_1_out_of_range error ();
+        end
+        if ((INPUTS_0_LOW & ~INPUTS_0) != 32'd0) begin : inputs_0_low_out_of_range
+            carrystep_error_inputs_0_low_out_of_range error ();
+        end
+        if ((INPUTS_1_LOW & ~INPUTS_1) != 32'd0) begin : inputs_1_low_out_of_range
+            carrystep_error_inputs_1_low_out_of_range error ();
+        end
+        if ((ROUND_TICKS < 32'd4) & ((INPUTS_0 != 32'd0) | (INPUTS_1 != 32'd0))) begin : round_ticks_too_few_for_inputs
+            carrystep_error_round_ticks_too_few_for_inputs error ();
+        end
     endgenerate
 
     reg sync = 1'b0;
     reg now = 1'b0;
+    reg open = 1'b0;
     reg [5:0] pins;
     reg [5:0] chosen;
-    reg [3:0] max_bit;
+    reg [1:0] row_written;
     reg [6:0] count;
     reg [7:0] next_word;
-    reg [7:0] switches_write_bits;
+    reg [7:0] switch_memory_write_bits;
 
-    wire [7:0] switches_read_data;
+    wire [7:0] switch_memory_read_data;
 
-    wire max = tick_1 & (PAIR != 1'b0);
-    wire samples = time_slot_ends & (tick_0 | max);
-    wire [7:0] word = switches_read_data;
+    wire is_row = (ROWS & (FIRST_ROW << row)) != 4'd0;
+    wire sampled = begins_round & is_row;
+    wire inputs = row[1] & (HAS_INPUTS != 1'b0);
+    wire [7:0] word = switch_memory_read_data;
     wire differs = now ^ word[7];
     wire flips = differs & (word[6:0] == LAST_SAMPLE);
-    wire state = (word[7] ^ flips) & !resetting;
+    wire state_now = (word[7] ^ flips) & !resetting;
 
-    assign hit = samples & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
+    assign samples = sampled;
+    assign level = now;
+    assign earlier = word[7];
+    assign state = state_now;
+    assign found = sampled & time_slot_ends & goes & state_now & !inputs & (((PAIR != 1'b0) & (back ^ row[0])) | ((PAIR == 1'b0) & flips));
+    assign interlock = open;
 
     always @(*) begin
-        pins = limit_min;
-        if (max) begin
-            pins = limit_max;
+        pins = limit_min ^ LEVELS;
+        if (row[0]) begin
+            pins = limit_max ^ LEVELS;
+        end
+        if (inputs) begin
+            pins = (inputs_0 ^ LOW_0) & EXIST_0;
+            if (row[0] & (HAS_ROW_3 != 1'b0)) begin
+                pins = (inputs_1 ^ LOW_1) & EXIST_1;
+            end
         end
     end
 
     always @(*) begin
         chosen = pins & axis_one_hot;
-        if (ONE_FOR_ALL != 1'b0) begin
+        if ((ONE_FOR_ALL != 1'b0) & !inputs) begin
             chosen = pins & FIRST_ONE_HOT;
         end
     end
 
     always @(*) begin
-        max_bit = NO_SIDE;
-        if (max) begin
-            max_bit = SIDE;
+        row_written = row & LIMITS_ONLY;
+        if (inputs | (resetting & (HAS_INPUTS != 1'b0) & !time_slot_ends)) begin
+            row_written = row | TO_INPUTS;
         end
     end
 
@@ -1460,77 +1520,106 @@ module carrystep_limits #(
 
     always @(*) begin
         next_word = {1'b0, count};
-        if (state) begin
+        if (state_now) begin
             next_word = {1'b0, count} | ACTIVE;
         end
     end
 
     always @(*) begin
-        switches_write_bits = NO;
-        if (samples & (EXIST != 1'b0)) begin
-            switches_write_bits = ALL;
+        switch_memory_write_bits = NO;
+        if ((sampled & time_slot_ends) | (resetting & (HAS_INPUTS != 1'b0))) begin
+            switch_memory_write_bits = ALL;
         end
     end
 
-    carrystep_switches switches (
+    carrystep_switch_memory switch_memory (
         .clock(clock),
-        .read_address(({1'b0, axis_next} << BY_ONE) | max_bit),
-        .read_data(switches_read_data),
-        .write_address(({1'b0, axis} << BY_ONE) | max_bit),
-        .write_bits(switches_write_bits),
+        .read_address(({2'b0, axis_next} << BY_TWO) | {3'b0, row}),
+        .read_data(switch_memory_read_data),
+        .write_address(({2'b0, axis} << BY_TWO) | {3'b0, row_written}),
+        .write_bits(switch_memory_write_bits),
         .write_data(next_word)
     );
 
     always @(posedge clock) begin
-        sync <= (chosen != 6'd0) ^ (LOW != 1'b0);
+        sync <= chosen != 6'd0;
         now <= sync;
+        if (sampled & time_slot_ends & inputs & row[0] & axis_one_hot[0] & (HAS_INTERLOCK != 1'b0)) begin
+            open <= state_now;
+        end
+        if (resetting) begin
+            open <= 1'b0;
+        end
     end
 endmodule
 
-// Homing: which axes wait for their limit, and which ones have reached it and ramp down.
-module carrystep_homing_control (
+// Seek: the source of a seek, the axes that wait for it, and those that have hit it.
+module carrystep_seek_control (
     // The clock.
     input  wire         clock,
-    // The host replaces the mask of the axes that wait for their limit.
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The host replaces the source.
+    input  wire         set_source,
+    // The new source, valid with `set_source`: axis 3, row 2, own 1, level 1.
+    input  wire   [6:0] source,
+    // The host replaces the mask of the axes that wait for the source.
     input  wire         set,
     // The new mask, valid with `set`; bit i is axis i.
     input  wire   [5:0] mask,
     // Asserted in the last beat of a time slot.
     input  wire         time_slot_ends,
-    // The axis of the time slot, one-hot.
+    // The axis of the time slot, as a number.
+    input  wire   [2:0] axis,
+    // The axis of the time slot, one-hot. At a strobe it is the first axis.
     input  wire   [5:0] axis_one_hot,
-    // The axis of the slot has reached a limit.
-    input  wire         hit,
+    // The row of the switches that this tick samples.
+    input  wire   [1:0] row,
+    // This tick samples a switch in each time slot.
+    input  wire         samples,
+    // In the last beat of a time slot: the debounced state of its switch.
+    input  wire         state,
     // The axis of the slot runs in the next tick too.
     input  wire         goes_on,
-    // A reset: no axis waits for its limit any more.
+    // A reset: no axis waits for the source any more, and none has hit it.
     input  wire         resetting,
-    // The axes that wait for their limit; bit i is axis i.
-    output wire   [5:0] axes,
-    // The axis of the slot waits for its limit.
-    output wire         waits,
-    // The axis of the slot has reached its limit in an earlier tick and ramps down.
+    // The axes that wait for the source; bit i is axis i.
+    output wire   [5:0] seeking,
+    // The axes that have hit it; bit i is axis i.
+    output wire   [5:0] hits,
+    // The axis of the slot has hit the source in an earlier tick: it ramps down and rests.
     output wire         slows,
-    // In the last beat of a slot: its axis has waited for its limit and has reached it.
-    output wire         caught
+    // A limit that the axis of the slot finds belongs to its seek, and triggers no stop.
+    output wire         forgives,
+    // In the last beat of a slot: its axis has waited for its own switch and has hit it.
+    output wire         caught,
+    // In this tick the common source of all axes was hit.
+    output wire         sweeps
 );
     localparam [5:0] NONE = 6'd0;
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
 
+    reg [6:0] origin = 7'd0;
     reg [5:0] waiting = 6'd0;
     reg [5:0] slowing = 6'd0;
+    reg released = 1'b0;
+    reg common = 1'b0;
     reg mine_slows = 1'b0;
     reg [5:0] axis_one_hot_next;
-    reg [5:0] slower;
 
+    wire is_source = (row == origin[4:3]) & (origin[5] | (axis == origin[2:0]));
+    wire hit = time_slot_ends & samples & is_source & !(state ^ origin[6]);
     wire mine = (waiting & axis_one_hot) != 6'd0;
-    wire found = hit & mine;
+    wire found = hit & origin[5] & mine;
+    wire sweep = strobe & common;
 
-    assign axes = waiting;
-    assign waits = mine;
+    assign seeking = waiting;
+    assign hits = slowing;
     assign slows = mine_slows;
+    assign forgives = is_source & (mine | mine_slows);
     assign caught = found;
+    assign sweeps = common;
 
     always @(*) begin
         axis_one_hot_next = axis_one_hot;
@@ -1539,29 +1628,145 @@ module carrystep_homing_control (
         end
     end
 
-    always @(*) begin
-        slower = NONE;
-        if (found) begin
-            slower = axis_one_hot;
-        end
-    end
-
     always @(posedge clock) begin
-        mine_slows <= (slowing & axis_one_hot_next) != 6'd0;
+        if (set_source) begin
+            origin <= source;
+        end
+        if (hit & !origin[5] & (waiting != 6'd0)) begin
+            common <= 1'b1;
+        end
+        if (strobe | resetting) begin
+            common <= 1'b0;
+        end
         if (found) begin
             waiting <= waiting & ~axis_one_hot;
+            released <= 1'b0;
+        end
+        if (sweep) begin
+            waiting <= NONE;
+            released <= 1'b0;
         end
         if (set) begin
             waiting <= mask;
+            released <= 1'b1;
         end
         if (resetting) begin
             waiting <= NONE;
+            released <= 1'b0;
         end
-        if (time_slot_ends) begin
-            slowing <= slowing | slower;
-            if (!goes_on) begin
-                slowing <= (slowing & ~axis_one_hot) | slower;
+        if (time_slot_ends & mine_slows & !goes_on & released) begin
+            slowing <= slowing & ~axis_one_hot;
+        end
+        if (found) begin
+            slowing <= slowing | axis_one_hot;
+        end
+        if (sweep) begin
+            slowing <= slowing | waiting;
+        end
+        if (resetting) begin
+            slowing <= NONE;
+        end
+        mine_slows <= ((slowing & axis_one_hot_next) != 6'd0) | (sweep & waiting[0]);
+    end
+endmodule
+
+// The latch: at an edge of its pin the state of all axes is output on a page of its own.
+module carrystep_edge_latch #(
+    // Consecutive ticks that must find the latch active for an edge; 0: no latch; 0 to 16
+    parameter [31:0] LATCH_LOOKS = 32'd0,
+    // Active level of the latch: 0 high, 1 low; 0 or 1
+    parameter [31:0] LATCH_LOW = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The pin; asynchronous.
+    input  wire         pin,
+    // The host arms the latch.
+    input  wire         arm,
+    // A reset: the latch returns to its state at configuration.
+    input  wire         resetting,
+    // At a strobe: the next tick outputs the words of the latch.
+    output wire         comes,
+    // This tick outputs the words of the latch.
+    output wire         latches,
+    // The latch waits for its edge.
+    output wire         armed,
+    // The edges since it was armed that it did not latch, at most 15.
+    output wire   [3:0] edges
+);
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [3:0] used_bits_4(input [3:0] greatest);
+        begin
+            used_bits_4 = greatest;
+            used_bits_4 = used_bits_4 | (used_bits_4 >> 1);
+            used_bits_4 = used_bits_4 | (used_bits_4 >> 2);
+        end
+    endfunction
+    localparam EXISTS = LATCH_LOOKS != 32'd0;
+    localparam LOW = LATCH_LOW[0];
+    localparam [3:0] LAST_LOOK = LATCH_LOOKS[3:0] - 4'd1;
+    localparam [3:0] COUNT_BITS = used_bits_4(LATCH_LOOKS[3:0] - 4'd1);
+    localparam [3:0] ONE = 4'd1;
+    localparam [3:0] NONE = 4'd0;
+    localparam [3:0] MOST = 4'd15;
+
+    generate
+        if (LATCH_LOOKS > 32'd16) begin : latch_looks_out_of_range
+            carrystep_error_latch_looks_out_of_range error ();
+        end
+        if (LATCH_LOW > 32'd1) begin : latch_low_out_of_range
+            carrystep_error_latch_low_out_of_range error ();
+        end
+    endgenerate
+
+    reg sync = 1'b0;
+    reg now = 1'b0;
+    reg accepted = 1'b0;
+    reg [3:0] count = 4'd0;
+    reg waits = 1'b0;
+    reg copies = 1'b0;
+    reg [3:0] further = 4'd0;
+
+    wire differs = now ^ accepted;
+    wire ripe = count == LAST_LOOK;
+    wire rises = strobe & now & !accepted & ripe;
+
+    assign comes = rises & waits;
+    assign latches = copies;
+    assign armed = waits;
+    assign edges = further;
+
+    always @(posedge clock) begin
+        sync <= (pin ^ (LOW != 1'b0)) & (EXISTS != 1'b0);
+        now <= sync;
+        if (strobe) begin
+            count <= NONE;
+            if (differs & ripe) begin
+                accepted <= now;
             end
+            if (differs & !ripe) begin
+                count <= (count + ONE) & COUNT_BITS;
+            end
+            copies <= rises & waits;
+        end
+        if (rises) begin
+            waits <= 1'b0;
+            if (!waits & (further != MOST)) begin
+                further <= further + ONE;
+            end
+        end
+        if (arm) begin
+            waits <= EXISTS != 1'b0;
+            further <= NONE;
+        end
+        if (resetting) begin
+            accepted <= 1'b0;
+            count <= NONE;
+            copies <= 1'b0;
+            waits <= 1'b0;
+            further <= NONE;
         end
     end
 endmodule
@@ -1578,10 +1783,26 @@ module carrystep_readout (
     input  wire         is_last,
     // The host requests a snapshot.
     input  wire         snapshot,
-    // In beat 12: the axis, which waits for its limit, has found it.
+    // In beat 12: the axis has hit its own source.
     input  wire         caught,
-    // The axis found its limit in the tick before, while it waited for it.
+    // The words of the axis are still to be output for the hit of its own source.
     input  wire         met,
+    // At a strobe: the common source of all axes was hit in this tick.
+    input  wire         sweeps,
+    // At a strobe: the next tick outputs the words of the latch.
+    input  wire         comes,
+    // This tick outputs the words of the latch.
+    input  wire         latches,
+    // In this tick a switch is sampled in each time slot.
+    input  wire         samples,
+    // The row of that switch.
+    input  wire   [1:0] row,
+    // In beat 7: the debounced state of that switch, before this sample.
+    input  wire         earlier,
+    // In beat 7: the level of its pin.
+    input  wire         level,
+    // The last two ticks of a reset: no word of a switch is output.
+    input  wire         resetting,
     // The word that the memory returns.
     input  wire  [31:0] word,
     // The slot of the running segment.
@@ -1601,16 +1822,23 @@ module carrystep_readout (
     // The word. Of the status, bits 31 to 16 have no meaning.
     output wire  [31:0] state,
     // All live words of this tick have been output.
-    output wire         refreshed
+    output wire         refreshed,
+    // In beat 12: the words of the axis are to be output for the hit of its own source, in the next
+    // tick that the latch does not need.
+    output wire         meets
 );
     localparam [31:0] HIGH_HALF = 32'hffff0000;
     localparam [15:0] NO_STATUS = 16'd0;
     localparam [15:0] RUNNING_BIT = 16'd32;
     localparam [3:0] AT_6 = 4'd6;
     localparam [3:0] AT_12 = 4'd12;
-    localparam [1:0] NO_PAGE = 2'd0;
+    localparam [1:0] HIT_PAGE = 2'd0;
     localparam [1:0] LIVE_PAGE = 2'd1;
     localparam [1:0] SNAPSHOT_PAGE = 2'd2;
+    localparam [1:0] LATCH_PAGE = 2'd3;
+    localparam [15:0] STATE_BIT = 16'd128;
+    localparam [15:0] LEVEL_BIT = 16'd64;
+    localparam [15:0] OTHER_BITS = 16'd65343;
     localparam [2:0] NO_ITEM = 3'd0;
     localparam [2:0] ODD_ITEM = 3'd1;
     localparam [2:0] MIDDLE_ITEM = 3'd2;
@@ -1619,26 +1847,39 @@ module carrystep_readout (
     reg asked = 1'b0;
     reg takes = 1'b0;
     reg found = 1'b0;
+    reg swept = 1'b0;
     reg [15:0] running_now;
     reg [15:0] low;
+    reg [15:0] levels;
 
+    wire owed = caught | (met & latches);
+    wire captured = met | swept;
+    wire taken = found | sweeps | (swept & latches) | comes;
+    wire of_switch = beat[7] & samples & !resetting;
     wire ticks_left = beat[5];
     wire p_or_position = beat[4] | beat[10] | beat[6];
     wire odd = (ticks_left & running) | beat[10] | beat[11] | beat[12];
     wire [2:0] waiting = ~room;
     wire [15:0] status = {13'b0, live} | running_now | ({13'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
 
-    assign valid = (ticks_left & !met) | p_or_position | beat[11] | beat[12];
+    assign valid = (ticks_left & (!captured | latches)) | of_switch | p_or_position | beat[11] | beat[12];
     assign state = (word & HIGH_HALF) | {16'b0, low};
-    assign refreshed = beat[12] & is_last & !takes;
+    assign refreshed = beat[12] & is_last & !takes & !captured & !latches;
+    assign meets = owed;
 
     always @(*) begin
         page = LIVE_PAGE;
-        if (met) begin
-            page = NO_PAGE;
+        if (captured) begin
+            page = HIT_PAGE;
         end
         if (takes) begin
             page = SNAPSHOT_PAGE;
+        end
+        if (latches) begin
+            page = LATCH_PAGE;
+        end
+        if (of_switch) begin
+            page = row;
         end
     end
 
@@ -1647,7 +1888,7 @@ module carrystep_readout (
         if (odd) begin
             item = ODD_ITEM;
         end
-        if (beat[11] | beat[6] | beat[12]) begin
+        if (beat[11] | beat[6] | beat[12] | of_switch) begin
             item = item | MIDDLE_ITEM;
         end
         if (p_or_position | beat[12]) begin
@@ -1667,16 +1908,32 @@ module carrystep_readout (
         if (beat[12]) begin
             low = status;
         end
+        if (of_switch) begin
+            low = (word[15:0] & OTHER_BITS) | levels;
+        end
+    end
+
+    always @(*) begin
+        levels = NO_STATUS;
+        if (earlier) begin
+            levels = STATE_BIT;
+        end
+        if (level) begin
+            levels = levels | LEVEL_BIT;
+        end
     end
 
     always @(posedge clock) begin
-        if (caught) begin
+        if (owed & beat[12]) begin
             found <= 1'b1;
         end
         if (strobe) begin
-            takes <= asked & !found;
-            asked <= asked & found;
             found <= 1'b0;
+            swept <= sweeps | (swept & latches);
+        end
+        if (strobe) begin
+            takes <= asked & !taken;
+            asked <= asked & taken;
         end
         if (snapshot) begin
             asked <= 1'b1;
@@ -1714,6 +1971,8 @@ module carrystep_stops #(
     input  wire         breaks,
     // The watchdog has timed out.
     input  wire         missed,
+    // The interlock is open.
+    input  wire         interlock,
     // The host requests a controlled stop.
     input  wire         asked,
     // The host requests that the stop is cleared.
@@ -1754,6 +2013,7 @@ module carrystep_stops #(
     localparam [3:0] LIMITED = 4'd5;
     localparam [3:0] UNDERRUN = 4'd6;
     localparam [3:0] HOST = 4'd7;
+    localparam [3:0] OPENED = 4'd8;
 
     generate
         if (LIMIT_FREEZES > 32'd1) begin : limit_freezes_out_of_range
@@ -1777,7 +2037,7 @@ module carrystep_stops #(
     wire finds_now = time_slot_ends & (too_fast | limit | dry);
     wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
     wire ripe = strobe & found;
-    wire by_host = (strobe & missed) | asked | ending;
+    wire by_host = (strobe & (missed | interlock)) | asked | ending;
     wire calls = urgent | ripe | by_host;
 
     assign fault = called;
@@ -1818,6 +2078,9 @@ module carrystep_stops #(
         end
         if (calls & !called) begin
             first <= HOST;
+            if (strobe & interlock) begin
+                first <= OPENED;
+            end
             if (strobe & missed) begin
                 first <= WATCHDOG;
             end
@@ -1847,7 +2110,7 @@ module carrystep_stops #(
             slow <= called | found;
             still <= freeze | found_freezing | (slow & !ran);
             settled <= still;
-            wiping <= clear & settled & !wiping & !pins_busy & !pressed & !ending;
+            wiping <= clear & settled & !wiping & !pins_busy & !pressed & !interlock & !ending;
             if (wiping | completes) begin
                 called <= 1'b0;
                 freeze <= 1'b0;
@@ -1949,10 +2212,10 @@ module carrystep_supervisor #(
     output wire         enabled,
     // The drivers have been powered for the specified number of rounds.
     output wire         warm,
-    // The first tick of a round.
-    output wire         tick_0,
-    // The second tick of a round.
-    output wire         tick_1
+    // The number of the tick in its round, modulo 4: the row of the switches that are sampled.
+    output wire   [1:0] row,
+    // The tick is one of the first four of a round.
+    output wire         begins_round
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
     function [11:0] used_bits_12(input [11:0] greatest);
@@ -1972,6 +2235,7 @@ module carrystep_supervisor #(
     localparam [11:0] WARM_BITS = used_bits_12(ENABLE_ROUNDS[11:0]);
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
+    localparam [7:0] NO_FOURS = 8'd0;
     localparam [11:0] NO_ROUND = 12'd0;
     localparam [11:0] ONE_ROUND = 12'd1;
 
@@ -2006,8 +2270,8 @@ module carrystep_supervisor #(
     assign missed = silent & (WATCHDOG != 12'd0);
     assign enabled = power;
     assign warm = is_warm & power;
-    assign tick_0 = round == FIRST_TICK;
-    assign tick_1 = round == ONE_TICK;
+    assign row = round[1:0];
+    assign begins_round = round[9:2] == NO_FOURS;
 
     always @(posedge clock) begin
         sync <= estop ^ (PRESSED_LOW != 1'b0);
@@ -2254,7 +2518,7 @@ module carrystep_engine #(
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
     // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
     parameter [31:0] ENABLE_ROUNDS = 32'd33,
-    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
+    // Equal consecutive samples, one per round, that change a switch's debounced state; 1 to 127
     parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
     // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
@@ -2262,6 +2526,18 @@ module carrystep_engine #(
     parameter [31:0] LIMITS_LOW = 32'd0,
     // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
     parameter [31:0] LIMIT_FREEZES = 32'd0,
+    // The inputs at `inputs_0` that exist; bit 0 is the probe; a mask with one bit per axis
+    parameter [31:0] INPUTS_0 = 32'd0,
+    // Those of them that are active low; a part of INPUTS_0
+    parameter [31:0] INPUTS_0_LOW = 32'd0,
+    // The inputs at `inputs_1` that exist; bit 0 is the interlock; a mask with one bit per axis
+    parameter [31:0] INPUTS_1 = 32'd0,
+    // Those of them that are active low; a part of INPUTS_1
+    parameter [31:0] INPUTS_1_LOW = 32'd0,
+    // Consecutive ticks that must find the latch active for an edge; 0: no latch; 0 to 16
+    parameter [31:0] LATCH_LOOKS = 32'd0,
+    // Active level of the latch: 0 high, 1 low; 0 or 1
+    parameter [31:0] LATCH_LOW = 32'd0,
     // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0,
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
@@ -2301,11 +2577,19 @@ module carrystep_engine #(
     // The host has broken the segment protocol; asserted for one clock or longer. The engine
     // freezes all axes.
     input  wire         broken,
-    // The host replaces the mask of the axes that wait for their limit.
-    input  wire         home_valid,
-    // The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
-    // axis i.
-    input  wire   [5:0] home_mask,
+    // The host replaces the source of seeks.
+    input  wire         seek_source_valid,
+    // The source from the next clock on, valid with `seek_source_valid`: in bits 2 to 0 the axis
+    // and in bits 4 and 3 the row of a switch; in bit 5 that each axis waits for its own switch in
+    // that row; in bit 6 the debounced state that is the hit, 1 active.
+    input  wire   [6:0] seek_source,
+    // The host replaces the mask of the axes that wait for the source.
+    input  wire         seek_valid,
+    // The axes that wait for the source from the next clock on, valid with `seek_valid`; bit i is
+    // axis i. A mask of 0 ends the seek.
+    input  wire   [5:0] seek_mask,
+    // The host arms the latch for one edge, and sets the count of further edges to 0.
+    input  wire         latch_arm,
     // The host requests a snapshot of the state of all axes; asserted for one clock or longer.
     input  wire         snapshot,
     // A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
@@ -2321,14 +2605,24 @@ module carrystep_engine #(
     // The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
     // only if `LIMITS` is 1.
     input  wire   [5:0] limit_max,
+    // The pins of the inputs that `INPUTS_0` names; bit 0 is the probe; asynchronous. Each is
+    // debounced as the limits are.
+    input  wire   [5:0] inputs_0,
+    // The pins of the inputs that `INPUTS_1` names; bit 0 is the interlock, which stops all axes by
+    // a ramp; asynchronous.
+    input  wire   [5:0] inputs_1,
+    // The pin of the latch; asynchronous. It is used unless `LATCH_LOOKS` is 0.
+    input  wire         latch,
     // A word of the state of an axis is output in this clock.
     output wire         state_valid,
-    // The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    // The copy to which it belongs: 0 hit of a seek, 1 live, 2 snapshot, 3 latch. Of the item 2 it
+    // is the row of the switch: 0 and 1 limits at the low and the high ends, 2 and 3 inputs.
     output wire   [1:0] state_page,
     // The axis, as a number from 0.
     output wire   [2:0] state_axis,
-    // The meaning of the word: 0 discarded steps, 1 remaining ticks, 3 number of the tick, 4 and 5
-    // P (low and high half), 6 position in steps, 7 status.
+    // The meaning of the word: 0 discarded steps, 1 remaining ticks, 2 switch (bit 7 its debounced
+    // state, bit 6 the level of its pin), 3 number of the tick, 4 and 5 P (low and high half), 6
+    // position in steps, 7 status.
     output wire   [2:0] state_item,
     // The word. Of the status only bits 15 to 0 have a meaning.
     output wire  [31:0] state,
@@ -2353,7 +2647,8 @@ module carrystep_engine #(
     // The engine is returning to its state at configuration, after `reset`.
     output wire         resetting,
     // The first cause of the stop: 0 e-stop, 1 overrun, 2 protocol, 3 watchdog, 4 overspeed, 5
-    // limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not asserted.
+    // limit, 6 underrun, 7 stop of the host, 8 interlock. It has no meaning while `fault` is not
+    // asserted.
     output wire   [3:0] cause,
     // The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
     // asserted.
@@ -2363,8 +2658,14 @@ module carrystep_engine #(
     // The host requests power for the drivers and they have been powered for long enough, so that a
     // start can be accepted.
     output wire         ready,
-    // The axes that wait for their limit; bit i is axis i.
-    output wire   [5:0] homing,
+    // The axes that wait for the source of their seek; bit i is axis i.
+    output wire   [5:0] seeking,
+    // The axes that have hit the source, until the host ends the seek; bit i is axis i.
+    output wire   [5:0] hits,
+    // The latch waits for its edge.
+    output wire         latch_armed,
+    // The edges since the latch was armed that it did not latch, at most 15.
+    output wire   [3:0] latch_edges,
     // Axes start at the end of this clock; asserted for one clock per start.
     output wire         started
 );
@@ -2394,6 +2695,7 @@ module carrystep_engine #(
     reg [2:0] taken_word = 3'd0;
     reg unfed = 1'b0;
     reg held = 1'b0;
+    reg drops = 1'b0;
     reg active = 1'b0;
     reg rest_1 = 1'b1;
     reg rest_2 = 1'b1;
@@ -2452,16 +2754,28 @@ module carrystep_engine #(
     wire event_wheel_phase_start;
     wire [5:0] event_wheel_events;
     wire [5:0] event_wheel_backward;
-    wire limits_hit;
-    wire [5:0] homing_control_axes;
-    wire homing_control_waits;
-    wire homing_control_slows;
-    wire homing_control_caught;
+    wire switches_samples;
+    wire switches_level;
+    wire switches_earlier;
+    wire switches_state;
+    wire switches_found;
+    wire switches_interlock;
+    wire [5:0] seek_control_seeking;
+    wire [5:0] seek_control_hits;
+    wire seek_control_slows;
+    wire seek_control_forgives;
+    wire seek_control_caught;
+    wire seek_control_sweeps;
+    wire edge_latch_comes;
+    wire edge_latch_latches;
+    wire edge_latch_armed;
+    wire [3:0] edge_latch_edges;
     wire readout_valid;
     wire [1:0] readout_page;
     wire [2:0] readout_item;
     wire [31:0] readout_state;
     wire readout_refreshed;
+    wire readout_meets;
     wire stops_fault;
     wire stops_finds;
     wire stops_frozen;
@@ -2480,8 +2794,8 @@ module carrystep_engine #(
     wire supervisor_missed;
     wire supervisor_enabled;
     wire supervisor_warm;
-    wire supervisor_tick_0;
-    wire supervisor_tick_1;
+    wire [1:0] supervisor_row;
+    wire supervisor_begins_round;
     wire pulser_0_step;
     wire pulser_0_dir;
     wire pulser_0_held_back;
@@ -2521,7 +2835,7 @@ module carrystep_engine #(
     wire may_start = enable & supervisor_warm;
     wire free = !stops_fault & !stops_finds;
     wire decides = strobe & waits & free;
-    wire go = decides & !unfed & !held;
+    wire go = decides & !unfed & !held & !drops;
     wire rests = rest_2 & !waits & !pins_busy;
 
     assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
@@ -2555,7 +2869,10 @@ module carrystep_engine #(
     assign culprits = stops_culprits;
     assign armed = waits;
     assign ready = may_start;
-    assign homing = homing_control_axes;
+    assign seeking = seek_control_seeking;
+    assign hits = seek_control_hits;
+    assign latch_armed = edge_latch_armed;
+    assign latch_edges = edge_latch_edges;
     assign started = go;
 
     always @(*) begin
@@ -2711,9 +3028,9 @@ module carrystep_engine #(
         .axis_next(time_slot_axis_next),
         .starts(going & masked),
         .halted(stops_halted),
-        .ramp(stops_ramp | homing_control_slows),
+        .ramp(stops_ramp | seek_control_slows),
         .clear(stops_clearing),
-        .empties(homing_control_slows & !queue_goes_on),
+        .empties(seek_control_slows & !queue_goes_on),
         .take(take),
         .put_word(put_word),
         .last(put_data[0]),
@@ -2723,7 +3040,7 @@ module carrystep_engine #(
         .turned(adder_turned),
         .back(adder_back),
         .crosses(adder_crosses),
-        .caught(homing_control_caught),
+        .meets(readout_meets),
         .pulses(counts[2:0]),
         .losses(counts[5:3]),
         .live(queue_live),
@@ -2793,39 +3110,74 @@ module carrystep_engine #(
         .backward(event_wheel_backward)
     );
 
-    carrystep_limits #(
+    carrystep_switches #(
+        .ROUND_TICKS(ROUND_TICKS),
         .DEBOUNCE_SAMPLES(DEBOUNCE_SAMPLES),
         .LIMITS(LIMITS),
-        .LIMITS_LOW(LIMITS_LOW)
-    ) limits (
+        .LIMITS_LOW(LIMITS_LOW),
+        .INPUTS_0(INPUTS_0),
+        .INPUTS_0_LOW(INPUTS_0_LOW),
+        .INPUTS_1(INPUTS_1),
+        .INPUTS_1_LOW(INPUTS_1_LOW)
+    ) switches (
         .clock(clock),
         .time_slot_ends(time_slot_beat[12]),
         .axis(time_slot_axis),
         .axis_next(time_slot_axis_next),
         .axis_one_hot(time_slot_axis_one_hot),
-        .tick_0(supervisor_tick_0),
-        .tick_1(supervisor_tick_1),
+        .row(supervisor_row),
+        .begins_round(supervisor_begins_round),
         .limit_min(limit_min),
         .limit_max(limit_max),
+        .inputs_0(inputs_0),
+        .inputs_1(inputs_1),
         .goes(queue_moves & !adder_still),
         .back(adder_back),
         .resetting(resets_resetting),
-        .hit(limits_hit)
+        .samples(switches_samples),
+        .level(switches_level),
+        .earlier(switches_earlier),
+        .state(switches_state),
+        .found(switches_found),
+        .interlock(switches_interlock)
     );
 
-    carrystep_homing_control homing_control (
+    carrystep_seek_control seek_control (
         .clock(clock),
-        .set(home_valid),
-        .mask(home_mask),
+        .strobe(strobe),
+        .set_source(seek_source_valid),
+        .source(seek_source),
+        .set(seek_valid),
+        .mask(seek_mask),
         .time_slot_ends(time_slot_beat[12]),
+        .axis(time_slot_axis),
         .axis_one_hot(time_slot_axis_one_hot),
-        .hit(limits_hit),
+        .row(supervisor_row),
+        .samples(switches_samples),
+        .state(switches_state),
         .goes_on(queue_goes_on),
         .resetting(resets_resetting),
-        .axes(homing_control_axes),
-        .waits(homing_control_waits),
-        .slows(homing_control_slows),
-        .caught(homing_control_caught)
+        .seeking(seek_control_seeking),
+        .hits(seek_control_hits),
+        .slows(seek_control_slows),
+        .forgives(seek_control_forgives),
+        .caught(seek_control_caught),
+        .sweeps(seek_control_sweeps)
+    );
+
+    carrystep_edge_latch #(
+        .LATCH_LOOKS(LATCH_LOOKS),
+        .LATCH_LOW(LATCH_LOW)
+    ) edge_latch (
+        .clock(clock),
+        .strobe(strobe),
+        .pin(latch),
+        .arm(latch_arm),
+        .resetting(resets_resetting),
+        .comes(edge_latch_comes),
+        .latches(edge_latch_latches),
+        .armed(edge_latch_armed),
+        .edges(edge_latch_edges)
     );
 
     carrystep_readout readout (
@@ -2834,8 +3186,16 @@ module carrystep_engine #(
         .beat(time_slot_beat),
         .is_last(time_slot_is_last),
         .snapshot(snapshot),
-        .caught(homing_control_caught),
+        .caught(seek_control_caught),
         .met(queue_met),
+        .sweeps(seek_control_sweeps),
+        .comes(edge_latch_comes),
+        .latches(edge_latch_latches),
+        .samples(switches_samples),
+        .row(supervisor_row),
+        .earlier(switches_earlier),
+        .level(switches_level),
+        .resetting(resets_resetting),
         .word(store_word),
         .live(queue_live),
         .running(queue_running),
@@ -2845,7 +3205,8 @@ module carrystep_engine #(
         .page(readout_page),
         .item(readout_item),
         .state(readout_state),
-        .refreshed(readout_refreshed)
+        .refreshed(readout_refreshed),
+        .meets(readout_meets)
     );
 
     carrystep_stops #(
@@ -2857,12 +3218,13 @@ module carrystep_engine #(
         .axis_one_hot(time_slot_axis_one_hot),
         .runs(queue_running),
         .too_fast(queue_too_fast),
-        .limit(limits_hit & !homing_control_waits & !homing_control_slows),
+        .limit(switches_found & !seek_control_forgives),
         .dry(queue_dry),
         .late(late),
         .pressed(supervisor_pressed),
-        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed)),
+        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed & !drops)),
         .missed(supervisor_missed & !rest_2),
+        .interlock(switches_interlock),
         .asked(stop),
         .clear(clear),
         .pins_busy(pins_busy),
@@ -2913,8 +3275,8 @@ module carrystep_engine #(
         .missed(supervisor_missed),
         .enabled(supervisor_enabled),
         .warm(supervisor_warm),
-        .tick_0(supervisor_tick_0),
-        .tick_1(supervisor_tick_1)
+        .row(supervisor_row),
+        .begins_round(supervisor_begins_round)
     );
 
     carrystep_pulser #(
@@ -3049,17 +3411,19 @@ module carrystep_engine #(
             waits <= 1'b1;
             mask <= start_mask;
         end
-        if (go | stops_fault) begin
+        if (go | (decides & drops) | stops_fault) begin
             waits <= 1'b0;
         end
         if (time_slot_beat[12]) begin
             unfed <= unfed | (masked & queue_empty);
-            held <= held | (masked & (queue_goes_on | homing_control_slows));
+            held <= held | (masked & queue_goes_on);
+            drops <= drops | (masked & seek_control_slows);
             active <= active | queue_running | !queue_empty;
         end
         if (strobe) begin
             unfed <= 1'b0;
             held <= 1'b0;
+            drops <= 1'b0;
             active <= 1'b0;
             rest_1 <= !active;
             rest_2 <= !active & rest_1;

@@ -44,49 +44,64 @@ carrystep_engine #(
     .LIMITS(32'd1),
     .LIMITS_LOW(32'd0),
     .LIMIT_FREEZES(32'd0),
+    .INPUTS_0(32'd0),
+    .INPUTS_0_LOW(32'd0),
+    .INPUTS_1(32'd0),
+    .INPUTS_1_LOW(32'd0),
+    .LATCH_LOOKS(32'd0),
+    .LATCH_LOW(32'd0),
     .ESTOP_LOW(32'd0),
     .EVENT_MEMORY("block")
 ) engine (
-    .clock(),       // input
-    .put_valid(),   // input
-    .put_axis(),    // input [2:0]
-    .put_word(),    // input [2:0]
-    .put_data(),    // input [31:0]
-    .put_ready(),   // output
-    .start_valid(), // input
-    .start_mask(),  // input [5:0]
-    .start_ready(), // output
-    .clear(),       // input
-    .reset(),       // input
-    .stop(),        // input
-    .broken(),      // input
-    .home_valid(),  // input
-    .home_mask(),   // input [5:0]
-    .snapshot(),    // input
-    .kick(),        // input
-    .enable(),      // input
-    .estop(),       // input
-    .limit_min(),   // input [5:0]
-    .limit_max(),   // input [5:0]
-    .state_valid(), // output
-    .state_page(),  // output [1:0]
-    .state_axis(),  // output [2:0]
-    .state_item(),  // output [2:0]
-    .state(),       // output [31:0]
-    .refreshed(),   // output
-    .room(),        // output [2:0]
-    .room_valid(),  // output
-    .step(),        // output [5:0]
-    .dir(),         // output [5:0]
-    .enabled(),     // output
-    .idle(),        // output
-    .fault(),       // output
-    .halted(),      // output
-    .resetting(),   // output
-    .cause(),       // output [3:0]
-    .culprits(),    // output [5:0]
-    .armed(),       // output
-    .ready(),       // output
-    .homing(),      // output [5:0]
-    .started()      // output
+    .clock(),             // input
+    .put_valid(),         // input
+    .put_axis(),          // input [2:0]
+    .put_word(),          // input [2:0]
+    .put_data(),          // input [31:0]
+    .put_ready(),         // output
+    .start_valid(),       // input
+    .start_mask(),        // input [5:0]
+    .start_ready(),       // output
+    .clear(),             // input
+    .reset(),             // input
+    .stop(),              // input
+    .broken(),            // input
+    .seek_source_valid(), // input
+    .seek_source(),       // input [6:0]
+    .seek_valid(),        // input
+    .seek_mask(),         // input [5:0]
+    .latch_arm(),         // input
+    .snapshot(),          // input
+    .kick(),              // input
+    .enable(),            // input
+    .estop(),             // input
+    .limit_min(),         // input [5:0]
+    .limit_max(),         // input [5:0]
+    .inputs_0(),          // input [5:0]
+    .inputs_1(),          // input [5:0]
+    .latch(),             // input
+    .state_valid(),       // output
+    .state_page(),        // output [1:0]
+    .state_axis(),        // output [2:0]
+    .state_item(),        // output [2:0]
+    .state(),             // output [31:0]
+    .refreshed(),         // output
+    .room(),              // output [2:0]
+    .room_valid(),        // output
+    .step(),              // output [5:0]
+    .dir(),               // output [5:0]
+    .enabled(),           // output
+    .idle(),              // output
+    .fault(),             // output
+    .halted(),            // output
+    .resetting(),         // output
+    .cause(),             // output [3:0]
+    .culprits(),          // output [5:0]
+    .armed(),             // output
+    .ready(),             // output
+    .seeking(),           // output [5:0]
+    .hits(),              // output [5:0]
+    .latch_armed(),       // output
+    .latch_edges(),       // output [3:0]
+    .started()            // output
 );

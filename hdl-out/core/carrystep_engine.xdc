@@ -13,6 +13,10 @@
 set_property ASYNC_REG TRUE [get_cells {supervisor/sync_reg supervisor/now_reg}]
 set_false_path -to [get_pins {supervisor/sync_reg/D}]
 
-# limit_min, limit_max
-set_property ASYNC_REG TRUE [get_cells {limits/sync_reg limits/now_reg}]
-set_false_path -to [get_pins {limits/sync_reg/D}]
+# limit_min, limit_max, inputs_0, inputs_1
+set_property ASYNC_REG TRUE [get_cells {switches/sync_reg switches/now_reg}]
+set_false_path -to [get_pins {switches/sync_reg/D}]
+
+# latch
+set_property ASYNC_REG TRUE [get_cells {edge_latch/sync_reg edge_latch/now_reg}]
+set_false_path -to [get_pins {edge_latch/sync_reg/D}]

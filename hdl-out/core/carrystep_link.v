@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     106e11e37ad8277a
+// Build id     eb02f71d2d60fe51
 
 `default_nettype none
 
@@ -26,254 +26,536 @@ module carrystep_instructions (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [7:0] read_address,
+    input  wire   [8:0] read_address,
     // The word at the address of the cycle before.
     output wire  [15:0] read_data,
     // The address of the word to write.
-    input  wire   [7:0] write_address,
+    input  wire   [8:0] write_address,
     // The write enable of each bit.
     input  wire  [15:0] write_bits,
     // The new values of the bits that are written.
     input  wire  [15:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:255];
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:511];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
 
     initial begin
-        for (i = 0; i < 256; i = i + 1) words[i] = 0;
-        words[0] = 16'h80fb;
+        for (i = 0; i < 512; i = i + 1) words[i] = 0;
+        words[0] = 16'h8209;
         words[1] = 16'h1011;
-        words[2] = 16'h2402;
-        words[3] = 16'h8200;
-        words[4] = 16'h2709;
-        words[5] = 16'h2202;
+        words[2] = 16'h2802;
+        words[3] = 16'h8400;
+        words[4] = 16'h2e09;
+        words[5] = 16'h2602;
         words[6] = 16'h100c;
         words[7] = 16'h5102;
         words[8] = 16'h2002;
-        words[9] = 16'h4080;
-        words[10] = 16'h88fa;
-        words[11] = 16'h2123;
-        words[12] = 16'h8080;
-        words[13] = 16'h88f9;
-        words[14] = 16'h2111;
-        words[15] = 16'h8080;
+        words[9] = 16'h4000;
+        words[10] = 16'h8a0a;
+        words[11] = 16'h2223;
+        words[12] = 16'h8000;
+        words[13] = 16'h8a0b;
+        words[14] = 16'h2211;
+        words[15] = 16'h8000;
         words[16] = 16'h2005;
-        words[17] = 16'h2411;
-        words[18] = 16'h8200;
-        words[19] = 16'h4080;
-        words[20] = 16'h88f8;
-        words[21] = 16'h211f;
-        words[22] = 16'h8080;
-        words[23] = 16'h88f7;
-        words[24] = 16'h2121;
-        words[25] = 16'h8080;
-        words[26] = 16'h88fa;
-        words[27] = 16'h2100;
-        words[28] = 16'h80f6;
+        words[17] = 16'h2811;
+        words[18] = 16'h8400;
+        words[19] = 16'h4000;
+        words[20] = 16'h8a0c;
+        words[21] = 16'h221f;
+        words[22] = 16'h8000;
+        words[23] = 16'h8a0d;
+        words[24] = 16'h2221;
+        words[25] = 16'h8000;
+        words[26] = 16'h8a0a;
+        words[27] = 16'h2200;
+        words[28] = 16'h820e;
         words[29] = 16'h1001;
         words[30] = 16'h2002;
-        words[31] = 16'h80fa;
+        words[31] = 16'h820a;
         words[32] = 16'h2005;
-        words[33] = 16'h80f9;
+        words[33] = 16'h820b;
         words[34] = 16'h2005;
-        words[35] = 16'h8300;
-        words[36] = 16'h4081;
-        words[37] = 16'h88f5;
-        words[38] = 16'h2130;
-        words[39] = 16'h801f;
-        words[40] = 16'h1001;
-        words[41] = 16'h2a00;
-        words[42] = 16'h80f4;
-        words[43] = 16'h232d;
-        words[44] = 16'h80f3;
-        words[45] = 16'h8881;
-        words[46] = 16'h2900;
-        words[47] = 16'h80f6;
-        words[48] = 16'h4083;
-        words[49] = 16'h80f2;
-        words[50] = 16'h1001;
-        words[51] = 16'h8400;
-        words[52] = 16'h8900;
-        words[53] = 16'h2900;
-        words[54] = 16'h1006;
-        words[55] = 16'h2233;
-        words[56] = 16'h1080;
-        words[57] = 16'h8083;
-        words[58] = 16'h2197;
-        words[59] = 16'h801e;
-        words[60] = 16'h1001;
-        words[61] = 16'h8882;
-        words[62] = 16'h214b;
-        words[63] = 16'h1002;
-        words[64] = 16'h8300;
-        words[65] = 16'h881e;
-        words[66] = 16'h88f6;
-        words[67] = 16'h2148;
-        words[68] = 16'h8300;
-        words[69] = 16'h8882;
-        words[70] = 16'h293f;
-        words[71] = 16'h2097;
-        words[72] = 16'h80f1;
-        words[73] = 16'h4083;
-        words[74] = 16'h2097;
-        words[75] = 16'h801f;
-        words[76] = 16'h1001;
-        words[77] = 16'h2376;
-        words[78] = 16'h801f;
-        words[79] = 16'h88f0;
-        words[80] = 16'h215e;
-        words[81] = 16'h801f;
-        words[82] = 16'h88ef;
-        words[83] = 16'h2171;
-        words[84] = 16'h801f;
-        words[85] = 16'h88ee;
-        words[86] = 16'h2167;
-        words[87] = 16'h801f;
-        words[88] = 16'h88ed;
-        words[89] = 16'h2162;
-        words[90] = 16'h801f;
-        words[91] = 16'h88ec;
-        words[92] = 16'h2165;
-        words[93] = 16'h2092;
-        words[94] = 16'h8020;
-        words[95] = 16'h4084;
-        words[96] = 16'h1040;
-        words[97] = 16'h2092;
-        words[98] = 16'h8020;
-        words[99] = 16'h10c0;
-        words[100] = 16'h2092;
-        words[101] = 16'h1140;
-        words[102] = 16'h2092;
-        words[103] = 16'h8084;
-        words[104] = 16'h1240;
-        words[105] = 16'h1020;
-        words[106] = 16'h1020;
-        words[107] = 16'h1020;
-        words[108] = 16'h1020;
-        words[109] = 16'h1020;
-        words[110] = 16'h1020;
-        words[111] = 16'h1040;
-        words[112] = 16'h2092;
-        words[113] = 16'h2592;
-        words[114] = 16'h2e48;
-        words[115] = 16'h8020;
-        words[116] = 16'h1420;
-        words[117] = 16'h2092;
-        words[118] = 16'h2592;
-        words[119] = 16'h1028;
-        words[120] = 16'h1028;
-        words[121] = 16'h8501;
-        words[122] = 16'h2183;
-        words[123] = 16'h80eb;
-        words[124] = 16'h1001;
-        words[125] = 16'h9102;
-        words[126] = 16'h88ea;
-        words[127] = 16'h2985;
-        words[128] = 16'h8300;
-        words[129] = 16'h88f5;
-        words[130] = 16'h297d;
-        words[131] = 16'h1100;
-        words[132] = 16'h2092;
-        words[133] = 16'h80eb;
-        words[134] = 16'h1001;
-        words[135] = 16'h9102;
-        words[136] = 16'h1004;
-        words[137] = 16'h9102;
-        words[138] = 16'h1004;
-        words[139] = 16'h9102;
-        words[140] = 16'h1004;
-        words[141] = 16'h8100;
-        words[142] = 16'h1004;
-        words[143] = 16'h801f;
-        words[144] = 16'h1822;
-        words[145] = 16'h2b87;
-        words[146] = 16'h8082;
-        words[147] = 16'h1001;
-        words[148] = 16'h1002;
-        words[149] = 16'h8300;
-        words[150] = 16'h4082;
-        words[151] = 16'h801f;
-        words[152] = 16'h1001;
-        words[153] = 16'h8083;
-        words[154] = 16'h21a0;
-        words[155] = 16'h80e9;
-        words[156] = 16'h2b9f;
-        words[157] = 16'h801f;
-        words[158] = 16'h88e8;
-        words[159] = 16'h1001;
-        words[160] = 16'h8500;
-        words[161] = 16'h4074;
-        words[162] = 16'h8300;
-        words[163] = 16'h1020;
-        words[164] = 16'h1020;
-        words[165] = 16'h8501;
-        words[166] = 16'h8883;
-        words[167] = 16'h4075;
-        words[168] = 16'h8502;
-        words[169] = 16'h4076;
-        words[170] = 16'h8503;
-        words[171] = 16'h4077;
-        words[172] = 16'h1018;
-        words[173] = 16'h8400;
-        words[174] = 16'h4078;
-        words[175] = 16'h1004;
-        words[176] = 16'h8400;
-        words[177] = 16'h4079;
-        words[178] = 16'h1004;
-        words[179] = 16'h8400;
-        words[180] = 16'h407a;
-        words[181] = 16'h1004;
-        words[182] = 16'h8400;
-        words[183] = 16'h407b;
-        words[184] = 16'h1004;
-        words[185] = 16'h801e;
-        words[186] = 16'h4071;
-        words[187] = 16'h801f;
-        words[188] = 16'h4072;
-        words[189] = 16'h8082;
-        words[190] = 16'h4073;
-        words[191] = 16'h80e7;
-        words[192] = 16'h1011;
-        words[193] = 16'h9102;
-        words[194] = 16'h100c;
-        words[195] = 16'h8300;
-        words[196] = 16'h88e6;
-        words[197] = 16'h29c1;
-        words[198] = 16'h8400;
-        words[199] = 16'h88ea;
-        words[200] = 16'h5102;
-        words[201] = 16'h1004;
-        words[202] = 16'h2ac6;
-        words[203] = 16'h80e7;
-        words[204] = 16'h1001;
-        words[205] = 16'h80fa;
-        words[206] = 16'h1220;
-        words[207] = 16'h22e2;
-        words[208] = 16'h9102;
-        words[209] = 16'h2fce;
-        words[210] = 16'h4080;
-        words[211] = 16'h88fa;
-        words[212] = 16'h21da;
-        words[213] = 16'h8080;
-        words[214] = 16'h88f9;
-        words[215] = 16'h21de;
-        words[216] = 16'h8080;
-        words[217] = 16'h20ce;
-        words[218] = 16'h80f9;
-        words[219] = 16'h1220;
-        words[220] = 16'h80f8;
-        words[221] = 16'h20ce;
-        words[222] = 16'h80f9;
-        words[223] = 16'h1220;
-        words[224] = 16'h80f7;
-        words[225] = 16'h20ce;
-        words[226] = 16'h80fa;
-        words[227] = 16'h1220;
-        words[228] = 16'h2000;
+        words[35] = 16'h8500;
+        words[36] = 16'h4001;
+        words[37] = 16'h820f;
+        words[38] = 16'h4003;
+        words[39] = 16'h8001;
+        words[40] = 16'h8a11;
+        words[41] = 16'h2245;
+        words[42] = 16'h8001;
+        words[43] = 16'h8a12;
+        words[44] = 16'h2245;
+        words[45] = 16'h801c;
+        words[46] = 16'h1001;
+        words[47] = 16'h3400;
+        words[48] = 16'hc213;
+        words[49] = 16'h223e;
+        words[50] = 16'h801c;
+        words[51] = 16'h8a14;
+        words[52] = 16'h224d;
+        words[53] = 16'h8215;
+        words[54] = 16'h4010;
+        words[55] = 16'h8216;
+        words[56] = 16'h4011;
+        words[57] = 16'h8217;
+        words[58] = 16'h8801;
+        words[59] = 16'h3200;
+        words[60] = 16'h8218;
+        words[61] = 16'h2045;
+        words[62] = 16'h8219;
+        words[63] = 16'h8801;
+        words[64] = 16'h3200;
+        words[65] = 16'h8218;
+        words[66] = 16'h4002;
+        words[67] = 16'h820f;
+        words[68] = 16'h2048;
+        words[69] = 16'h4002;
+        words[70] = 16'h801c;
+        words[71] = 16'hc21a;
+        words[72] = 16'h8a1b;
+        words[73] = 16'h1001;
+        words[74] = 16'h8300;
+        words[75] = 16'h4008;
+        words[76] = 16'h206e;
+        words[77] = 16'h8218;
+        words[78] = 16'h4002;
+        words[79] = 16'h801f;
+        words[80] = 16'h4008;
+        words[81] = 16'h8212;
+        words[82] = 16'h4010;
+        words[83] = 16'h821c;
+        words[84] = 16'h4011;
+        words[85] = 16'h821b;
+        words[86] = 16'h4009;
+        words[87] = 16'h1001;
+        words[88] = 16'h8008;
+        words[89] = 16'hc300;
+        words[90] = 16'h2261;
+        words[91] = 16'h8011;
+        words[92] = 16'h1001;
+        words[93] = 16'h1002;
+        words[94] = 16'h1002;
+        words[95] = 16'h8500;
+        words[96] = 16'h4011;
+        words[97] = 16'h8009;
+        words[98] = 16'h1001;
+        words[99] = 16'h1002;
+        words[100] = 16'h8500;
+        words[101] = 16'h2456;
+        words[102] = 16'h8011;
+        words[103] = 16'h1001;
+        words[104] = 16'h8300;
+        words[105] = 16'h8801;
+        words[106] = 16'h3200;
+        words[107] = 16'h1002;
+        words[108] = 16'h8300;
+        words[109] = 16'h4011;
+        words[110] = 16'h821d;
+        words[111] = 16'h1001;
+        words[112] = 16'h8600;
+        words[113] = 16'h8b00;
+        words[114] = 16'h3200;
+        words[115] = 16'h1006;
+        words[116] = 16'h3470;
+        words[117] = 16'h8002;
+        words[118] = 16'h227c;
+        words[119] = 16'h801c;
+        words[120] = 16'h8a1e;
+        words[121] = 16'h327f;
+        words[122] = 16'h1180;
+        words[123] = 16'h214c;
+        words[124] = 16'h8001;
+        words[125] = 16'h8a11;
+        words[126] = 16'h234c;
+        words[127] = 16'h801d;
+        words[128] = 16'h3283;
+        words[129] = 16'h801e;
+        words[130] = 16'h22a5;
+        words[131] = 16'h8002;
+        words[132] = 16'h2288;
+        words[133] = 16'h801c;
+        words[134] = 16'h8a1f;
+        words[135] = 16'h2292;
+        words[136] = 16'h801d;
+        words[137] = 16'h8805;
+        words[138] = 16'h32a5;
+        words[139] = 16'h801e;
+        words[140] = 16'h8806;
+        words[141] = 16'h32a5;
+        words[142] = 16'h1080;
+        words[143] = 16'h8002;
+        words[144] = 16'h234c;
+        words[145] = 16'h20ae;
+        words[146] = 16'h8700;
+        words[147] = 16'hc20a;
+        words[148] = 16'h229e;
+        words[149] = 16'h801d;
+        words[150] = 16'h4005;
+        words[151] = 16'h801e;
+        words[152] = 16'h4006;
+        words[153] = 16'h820f;
+        words[154] = 16'h4004;
+        words[155] = 16'h10c0;
+        words[156] = 16'h1080;
+        words[157] = 16'h214c;
+        words[158] = 16'h801f;
+        words[159] = 16'hc221;
+        words[160] = 16'h22a2;
+        words[161] = 16'h1180;
+        words[162] = 16'h8222;
+        words[163] = 16'h4003;
+        words[164] = 16'h214c;
+        words[165] = 16'h8223;
+        words[166] = 16'h4003;
+        words[167] = 16'h214c;
+        words[168] = 16'h8224;
+        words[169] = 16'h4003;
+        words[170] = 16'h214c;
+        words[171] = 16'h8213;
+        words[172] = 16'h4003;
+        words[173] = 16'h214c;
+        words[174] = 16'h801b;
+        words[175] = 16'h1001;
+        words[176] = 16'h8804;
+        words[177] = 16'h22bb;
+        words[178] = 16'h1002;
+        words[179] = 16'h8500;
+        words[180] = 16'h881b;
+        words[181] = 16'h8a1c;
+        words[182] = 16'h22a8;
+        words[183] = 16'h8500;
+        words[184] = 16'h8804;
+        words[185] = 16'h32b2;
+        words[186] = 16'h214c;
+        words[187] = 16'h801c;
+        words[188] = 16'hc213;
+        words[189] = 16'h32ee;
+        words[190] = 16'h801c;
+        words[191] = 16'h8a25;
+        words[192] = 16'h22cc;
+        words[193] = 16'h8a21;
+        words[194] = 16'h22e3;
+        words[195] = 16'h8a26;
+        words[196] = 16'h22d9;
+        words[197] = 16'h8a21;
+        words[198] = 16'h22d0;
+        words[199] = 16'h8a1a;
+        words[200] = 16'h22d7;
+        words[201] = 16'h8a26;
+        words[202] = 16'h22d5;
+        words[203] = 16'h2147;
+        words[204] = 16'h801f;
+        words[205] = 16'h4007;
+        words[206] = 16'h1040;
+        words[207] = 16'h2147;
+        words[208] = 16'h8020;
+        words[209] = 16'h11c0;
+        words[210] = 16'h801f;
+        words[211] = 16'h10c0;
+        words[212] = 16'h2147;
+        words[213] = 16'h1280;
+        words[214] = 16'h2147;
+        words[215] = 16'h1140;
+        words[216] = 16'h2147;
+        words[217] = 16'h8007;
+        words[218] = 16'h1240;
+        words[219] = 16'h1020;
+        words[220] = 16'h1020;
+        words[221] = 16'h1020;
+        words[222] = 16'h1020;
+        words[223] = 16'h1020;
+        words[224] = 16'h1020;
+        words[225] = 16'h1040;
+        words[226] = 16'h2147;
+        words[227] = 16'h2b47;
+        words[228] = 16'h8704;
+        words[229] = 16'hc01f;
+        words[230] = 16'h32ab;
+        words[231] = 16'h8700;
+        words[232] = 16'hc227;
+        words[233] = 16'h8a28;
+        words[234] = 16'h32a2;
+        words[235] = 16'h801f;
+        words[236] = 16'h1420;
+        words[237] = 16'h2147;
+        words[238] = 16'h2b47;
+        words[239] = 16'h8229;
+        words[240] = 16'h1001;
+        words[241] = 16'h8008;
+        words[242] = 16'h2312;
+        words[243] = 16'h1018;
+        words[244] = 16'h8600;
+        words[245] = 16'h1001;
+        words[246] = 16'h8008;
+        words[247] = 16'hc300;
+        words[248] = 16'h8808;
+        words[249] = 16'h3312;
+        words[250] = 16'h8704;
+        words[251] = 16'hc008;
+        words[252] = 16'h32ab;
+        words[253] = 16'h8010;
+        words[254] = 16'h1001;
+        words[255] = 16'h9102;
+        words[256] = 16'h400c;
+        words[257] = 16'h9102;
+        words[258] = 16'h400d;
+        words[259] = 16'h9102;
+        words[260] = 16'h400e;
+        words[261] = 16'h9102;
+        words[262] = 16'h400f;
+        words[263] = 16'h800c;
+        words[264] = 16'hc00d;
+        words[265] = 16'hc00e;
+        words[266] = 16'hc00f;
+        words[267] = 16'h8a2a;
+        words[268] = 16'h2312;
+        words[269] = 16'h820f;
+        words[270] = 16'h400b;
+        words[271] = 16'h2151;
+        words[272] = 16'h800a;
+        words[273] = 16'h3314;
+        words[274] = 16'h1100;
+        words[275] = 16'h2147;
+        words[276] = 16'h8011;
+        words[277] = 16'h1001;
+        words[278] = 16'h9102;
+        words[279] = 16'h40f0;
+        words[280] = 16'h9102;
+        words[281] = 16'h40f1;
+        words[282] = 16'h9102;
+        words[283] = 16'h40f2;
+        words[284] = 16'h9102;
+        words[285] = 16'h40f3;
+        words[286] = 16'h821b;
+        words[287] = 16'h4009;
+        words[288] = 16'h1001;
+        words[289] = 16'h8008;
+        words[290] = 16'hc300;
+        words[291] = 16'h2341;
+        words[292] = 16'h8010;
+        words[293] = 16'h1001;
+        words[294] = 16'h800c;
+        words[295] = 16'h5102;
+        words[296] = 16'h800d;
+        words[297] = 16'h5102;
+        words[298] = 16'h800e;
+        words[299] = 16'h5102;
+        words[300] = 16'h800f;
+        words[301] = 16'h5102;
+        words[302] = 16'h8010;
+        words[303] = 16'h1001;
+        words[304] = 16'h8500;
+        words[305] = 16'h4010;
+        words[306] = 16'h9102;
+        words[307] = 16'h1004;
+        words[308] = 16'h9102;
+        words[309] = 16'h1004;
+        words[310] = 16'h9102;
+        words[311] = 16'h1004;
+        words[312] = 16'h9102;
+        words[313] = 16'h1004;
+        words[314] = 16'h8009;
+        words[315] = 16'h1820;
+        words[316] = 16'h2741;
+        words[317] = 16'h3d30;
+        words[318] = 16'h820e;
+        words[319] = 16'h1001;
+        words[320] = 16'h2132;
+        words[321] = 16'h8009;
+        words[322] = 16'h1001;
+        words[323] = 16'h1002;
+        words[324] = 16'h8500;
+        words[325] = 16'h251f;
+        words[326] = 16'h2147;
+        words[327] = 16'h8004;
+        words[328] = 16'h1001;
+        words[329] = 16'h1002;
+        words[330] = 16'h8500;
+        words[331] = 16'h4004;
+        words[332] = 16'h8700;
+        words[333] = 16'h8802;
+        words[334] = 16'h40f3;
+        words[335] = 16'h8221;
+        words[336] = 16'h400b;
+        words[337] = 16'h822b;
+        words[338] = 16'h400a;
+        words[339] = 16'h821b;
+        words[340] = 16'h4009;
+        words[341] = 16'h1001;
+        words[342] = 16'h8008;
+        words[343] = 16'hc300;
+        words[344] = 16'h2362;
+        words[345] = 16'h8009;
+        words[346] = 16'h1028;
+        words[347] = 16'h1028;
+        words[348] = 16'h8701;
+        words[349] = 16'hc22c;
+        words[350] = 16'h1001;
+        words[351] = 16'h800a;
+        words[352] = 16'hc300;
+        words[353] = 16'h400a;
+        words[354] = 16'h8009;
+        words[355] = 16'h1001;
+        words[356] = 16'h1002;
+        words[357] = 16'h8500;
+        words[358] = 16'h2554;
+        words[359] = 16'h800b;
+        words[360] = 16'h2310;
+        words[361] = 16'h820f;
+        words[362] = 16'h1001;
+        words[363] = 16'h8300;
+        words[364] = 16'h880a;
+        words[365] = 16'h2370;
+        words[366] = 16'h1002;
+        words[367] = 16'h216b;
+        words[368] = 16'h8500;
+        words[369] = 16'h40f4;
+        words[370] = 16'h8002;
+        words[371] = 16'h237f;
+        words[372] = 16'h801c;
+        words[373] = 16'h8a14;
+        words[374] = 16'h237d;
+        words[375] = 16'h801c;
+        words[376] = 16'hc213;
+        words[377] = 16'h237d;
+        words[378] = 16'h801c;
+        words[379] = 16'h8a2d;
+        words[380] = 16'h2180;
+        words[381] = 16'h822c;
+        words[382] = 16'h2180;
+        words[383] = 16'h801c;
+        words[384] = 16'h1001;
+        words[385] = 16'h1020;
+        words[386] = 16'h1020;
+        words[387] = 16'h80f3;
+        words[388] = 16'hc221;
+        words[389] = 16'h238b;
+        words[390] = 16'h8702;
+        words[391] = 16'h40f5;
+        words[392] = 16'h8701;
+        words[393] = 16'hc22e;
+        words[394] = 16'h218c;
+        words[395] = 16'h40f5;
+        words[396] = 16'h8803;
+        words[397] = 16'h40f7;
+        words[398] = 16'h8703;
+        words[399] = 16'h40f6;
+        words[400] = 16'h1018;
+        words[401] = 16'h8600;
+        words[402] = 16'h40f8;
+        words[403] = 16'h1004;
+        words[404] = 16'h8600;
+        words[405] = 16'h40f9;
+        words[406] = 16'h1004;
+        words[407] = 16'h8600;
+        words[408] = 16'h40fa;
+        words[409] = 16'h1004;
+        words[410] = 16'h8600;
+        words[411] = 16'h40fb;
+        words[412] = 16'h1004;
+        words[413] = 16'h8002;
+        words[414] = 16'h33d3;
+        words[415] = 16'h801c;
+        words[416] = 16'h8a2f;
+        words[417] = 16'h23a8;
+        words[418] = 16'h8a26;
+        words[419] = 16'h23ad;
+        words[420] = 16'h8a21;
+        words[421] = 16'h33d3;
+        words[422] = 16'h8213;
+        words[423] = 16'h21ae;
+        words[424] = 16'h8704;
+        words[425] = 16'h40f8;
+        words[426] = 16'h8705;
+        words[427] = 16'h40f9;
+        words[428] = 16'h21d3;
+        words[429] = 16'h821c;
+        words[430] = 16'h4012;
+        words[431] = 16'h8225;
+        words[432] = 16'h4013;
+        words[433] = 16'h820f;
+        words[434] = 16'h400a;
+        words[435] = 16'h821b;
+        words[436] = 16'h4009;
+        words[437] = 16'h8013;
+        words[438] = 16'h1001;
+        words[439] = 16'h8009;
+        words[440] = 16'h8b00;
+        words[441] = 16'h1001;
+        words[442] = 16'h1018;
+        words[443] = 16'h8009;
+        words[444] = 16'h1001;
+        words[445] = 16'h8600;
+        words[446] = 16'hc012;
+        words[447] = 16'h23c3;
+        words[448] = 16'h800a;
+        words[449] = 16'h8b00;
+        words[450] = 16'h400a;
+        words[451] = 16'h1002;
+        words[452] = 16'h8500;
+        words[453] = 16'h25b4;
+        words[454] = 16'h8013;
+        words[455] = 16'h8a31;
+        words[456] = 16'h1001;
+        words[457] = 16'h800a;
+        words[458] = 16'h5102;
+        words[459] = 16'h8013;
+        words[460] = 16'h1001;
+        words[461] = 16'h1002;
+        words[462] = 16'h8500;
+        words[463] = 16'h8a32;
+        words[464] = 16'h23d3;
+        words[465] = 16'h8500;
+        words[466] = 16'h21b0;
+        words[467] = 16'h801b;
+        words[468] = 16'h40f0;
+        words[469] = 16'h801c;
+        words[470] = 16'h40f1;
+        words[471] = 16'h8004;
+        words[472] = 16'h40f2;
+        words[473] = 16'h820e;
+        words[474] = 16'h1011;
+        words[475] = 16'h9102;
+        words[476] = 16'h100c;
+        words[477] = 16'h8500;
+        words[478] = 16'h8a33;
+        words[479] = 16'h33db;
+        words[480] = 16'h8600;
+        words[481] = 16'h8a2a;
+        words[482] = 16'h5102;
+        words[483] = 16'h1004;
+        words[484] = 16'h25e0;
+        words[485] = 16'h820e;
+        words[486] = 16'h1001;
+        words[487] = 16'h820a;
+        words[488] = 16'h1220;
+        words[489] = 16'h35fc;
+        words[490] = 16'h9102;
+        words[491] = 16'h3fe8;
+        words[492] = 16'h4000;
+        words[493] = 16'h8a0a;
+        words[494] = 16'h23f4;
+        words[495] = 16'h8000;
+        words[496] = 16'h8a0b;
+        words[497] = 16'h23f8;
+        words[498] = 16'h8000;
+        words[499] = 16'h21e8;
+        words[500] = 16'h820b;
+        words[501] = 16'h1220;
+        words[502] = 16'h820c;
+        words[503] = 16'h21e8;
+        words[504] = 16'h820b;
+        words[505] = 16'h1220;
+        words[506] = 16'h820d;
+        words[507] = 16'h21e8;
+        words[508] = 16'h820a;
+        words[509] = 16'h1220;
+        words[510] = 16'h2000;
     end
 
     always @(posedge clock) begin
@@ -287,51 +569,113 @@ module carrystep_data (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [7:0] read_address,
+    input  wire   [8:0] read_address,
     // The word at the address of the cycle before.
     output wire   [7:0] read_data,
     // The address of the word to write.
-    input  wire   [7:0] write_address,
+    input  wire   [8:0] write_address,
     // The write enable of each bit.
     input  wire   [7:0] write_bits,
     // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:511];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
 
     initial begin
-        for (i = 0; i < 256; i = i + 1) words[i] = 0;
-        words[230] = 8'h7c;
-        words[231] = 8'h71;
-        words[232] = 8'hb0;
-        words[233] = 8'h70;
-        words[234] = 8'hff;
-        words[235] = 8'h20;
-        words[236] = 8'ha4;
-        words[237] = 8'ha3;
-        words[238] = 8'ha2;
-        words[239] = 8'ha1;
-        words[240] = 8'ha0;
-        words[241] = 8'h88;
-        words[242] = 8'hfc;
-        words[243] = 8'h28;
-        words[244] = 8'h44;
-        words[245] = 8'h24;
-        words[246] = 8'h80;
-        words[247] = 8'hdd;
-        words[248] = 8'hdc;
-        words[249] = 8'hdb;
-        words[250] = 8'hc0;
-        words[251] = 8'h1e;
-        words[252] = 8'he3;
-        words[253] = 8'h20;
-        words[254] = 8'hbb;
-        words[255] = 8'hde;
+        for (i = 0; i < 512; i = i + 1) words[i] = 0;
+        words[257] = 8'h1;
+        words[258] = 8'h3;
+        words[259] = 8'h7;
+        words[260] = 8'hf;
+        words[261] = 8'h1f;
+        words[262] = 8'h3f;
+        words[263] = 8'h7f;
+        words[264] = 8'hff;
+        words[265] = 8'h1b;
+        words[266] = 8'hc0;
+        words[267] = 8'hdb;
+        words[268] = 8'hdc;
+        words[269] = 8'hdd;
+        words[270] = 8'hf0;
+        words[272] = 8'h1;
+        words[273] = 8'h21;
+        words[274] = 8'h23;
+        words[275] = 8'h40;
+        words[276] = 8'hc8;
+        words[277] = 8'h1f;
+        words[278] = 8'h3b;
+        words[279] = 8'h43;
+        words[280] = 8'h8;
+        words[281] = 8'h27;
+        words[282] = 8'h7;
+        words[283] = 8'hf8;
+        words[284] = 8'h80;
+        words[285] = 8'h7c;
+        words[286] = 8'ha6;
+        words[287] = 8'ha5;
+        words[288] = 8'h3;
+        words[289] = 8'h1;
+        words[290] = 8'h20;
+        words[291] = 8'h30;
+        words[292] = 8'h10;
+        words[293] = 8'ha0;
+        words[294] = 8'h3;
+        words[295] = 8'h6;
+        words[296] = 8'h2;
+        words[297] = 8'h4;
+        words[298] = 8'hff;
+        words[299] = 8'h7f;
+        words[300] = 8'h70;
+        words[301] = 8'hb0;
+        words[302] = 8'hf;
+        words[303] = 8'h9;
+        words[304] = 8'h7;
+        words[305] = 8'h58;
+        words[306] = 8'ha4;
+        words[307] = 8'hfc;
+        words[320] = 8'hf;
+        words[336] = 8'h1f;
+        words[352] = 8'h3f;
+        words[368] = 8'h7f;
+        words[380] = 8'he3;
+        words[381] = 8'h20;
+        words[382] = 8'hbb;
+        words[383] = 8'hde;
+        words[384] = 8'h2f;
+        words[385] = 8'h27;
+        words[386] = 8'h47;
+        words[387] = 8'h3f;
+        words[388] = 8'h5f;
+        words[389] = 8'h57;
+        words[390] = 8'h77;
+        words[391] = 8'h6f;
+        words[392] = 8'h8f;
+        words[393] = 8'h87;
+        words[394] = 8'ha7;
+        words[395] = 8'h9f;
+        words[396] = 8'hbf;
+        words[397] = 8'hb7;
+        words[398] = 8'hd7;
+        words[399] = 8'hcf;
+        words[400] = 8'hef;
+        words[401] = 8'he7;
+        words[416] = 8'he8;
+        words[417] = 8'ha8;
+        words[418] = 8'h68;
+        words[419] = 8'h28;
+        words[504] = 8'h1;
+        words[505] = 8'h2;
+        words[506] = 8'h4;
+        words[507] = 8'h8;
+        words[508] = 8'h10;
+        words[509] = 8'h20;
+        words[510] = 8'h40;
+        words[511] = 8'h80;
     end
 
     always @(posedge clock) begin
@@ -345,25 +689,25 @@ module carrystep_ring (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [7:0] read_address,
+    input  wire   [8:0] read_address,
     // The word at the address of the cycle before.
     output wire   [7:0] read_data,
     // The address of the word to write.
-    input  wire   [7:0] write_address,
+    input  wire   [8:0] write_address,
     // The write enable of each bit.
     input  wire   [7:0] write_bits,
     // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:511];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
 
     initial begin
-        for (i = 0; i < 256; i = i + 1) words[i] = 0;
+        for (i = 0; i < 512; i = i + 1) words[i] = 0;
     end
 
     always @(posedge clock) begin
@@ -441,7 +785,7 @@ module carrystep_processor (
     output wire         answer_valid,
     // The line accepts the offered byte in this clock.
     input  wire         answer_take,
-    // X: the address of the facts that are read, and the number of the word that is offered.
+    // X: the address of the facts that are read.
     output wire   [7:0] x,
     // A: the byte of the answer, the axis of an offered word, the axes of a start, or the axes that
     // wait for their limit.
@@ -450,6 +794,8 @@ module carrystep_processor (
     input  wire  [31:0] facts,
     // The machine offers a word of a segment to the engine.
     output wire         put_valid,
+    // The number of the offered word in its segment.
+    output wire   [2:0] put_word,
     // The offered word.
     output wire  [31:0] put_data,
     // The engine accepts the offered word in this clock.
@@ -462,11 +808,15 @@ module carrystep_processor (
     output wire         clear,
     // The host has broken the segment protocol.
     output wire         broken,
-    // A replaces the mask of the axes that wait for their limit.
-    output wire         home_valid,
+    // A replaces the source of seeks.
+    output wire         seek_source_valid,
+    // A replaces the mask of the axes that wait for the source of their seek.
+    output wire         seek_valid,
+    // The latch is armed.
+    output wire         latch_arm,
     // The host requests a snapshot.
     output wire         snapshot,
-    // The host has sent a valid request.
+    // The owner of the session has sent a valid request.
     output wire         kick,
     // The host requests power for the motor drivers.
     output wire         enable,
@@ -494,50 +844,62 @@ module carrystep_processor (
     input  wire         room_valid,
     // The axes that caused the stop; bit i is axis i.
     input  wire   [5:0] culprits,
-    // The axes that wait for their limit; bit i is axis i.
-    input  wire   [5:0] homing
+    // The axes that wait for the source of their seek; bit i is axis i.
+    input  wire   [5:0] seeking,
+    // The axes that have hit it, until the host ends the seek; bit i is axis i.
+    input  wire   [5:0] hits,
+    // The latch waits for its edge.
+    input  wire         latch_armed,
+    // The edges since the latch was armed that it did not latch, at most 15.
+    input  wire   [3:0] latch_edges
 );
     localparam [1:0] FETCH = 2'd0;
     localparam [1:0] EXECUTE = 2'd2;
     localparam [1:0] NEXT_STAGE = 2'd1;
     localparam [7:0] ONE = 8'd1;
-    localparam [2:0] FROM_DATA = 3'd0;
-    localparam [2:0] FROM_DATA_AT_X = 3'd1;
-    localparam [2:0] FROM_RING = 3'd2;
-    localparam [2:0] FROM_X = 3'd3;
-    localparam [2:0] FROM_CHECK = 3'd4;
+    localparam [8:0] NEXT_PLACE = 9'd1;
+    localparam [2:0] NEXT_WORD = 3'd1;
+    localparam [2:0] LAST_WORD = 3'd7;
+    localparam [8:0] CONSTANTS = 9'd256;
+    localparam [2:0] FROM_RING = 3'd4;
     localparam [7:0] NONE = 8'd0;
+    localparam [8:0] NO_PLACE = 9'd0;
     localparam [15:0] NO_CODE = 16'd0;
     localparam [7:0] ALL = 8'd255;
-    localparam [3:0] AT_5 = 4'd5;
+    localparam [2:0] AT_4 = 3'd4;
+    localparam [3:0] TOP = 4'd15;
     localparam [7:0] BIT_0 = 8'd1;
     localparam [7:0] BIT_1 = 8'd2;
     localparam [7:0] BIT_2 = 8'd4;
-    localparam [7:0] BIT_3 = 8'd8;
     localparam [7:0] BIT_4 = 8'd16;
+    localparam [7:0] BIT_6 = 8'd64;
+    localparam [7:0] BIT_7 = 8'd128;
     localparam [2:0] IF_ZERO = 3'd1;
     localparam [2:0] IF_X7 = 3'd2;
-    localparam [2:0] IF_X6 = 3'd3;
+    localparam [2:0] IF_FULL = 3'd3;
     localparam [2:0] IF_NOTHING = 3'd4;
     localparam [2:0] IF_FAULT = 3'd5;
-    localparam [2:0] IF_STARTABLE = 3'd6;
+    localparam [2:0] IF_COMMIT = 3'd6;
     localparam [2:0] IF_SPECIAL = 3'd7;
 
     reg [1:0] stage = 2'd0;
-    reg [7:0] pc = 8'd0;
+    reg [8:0] pc = 9'd0;
     reg [7:0] sum = 8'd0;
     reg [7:0] index = 8'd0;
-    reg [7:0] written = 8'd0;
-    reg [7:0] read = 8'd0;
+    reg [8:0] written = 9'd0;
+    reg [8:0] read = 9'd0;
+    reg [2:0] word = 3'd0;
     reg [2:0] space = 3'd0;
-    reg [1:0] control = 2'd0;
+    reg power = 1'b0;
     reg clears = 1'b0;
     reg [7:0] state;
     reg waited;
     reg holds;
     reg [7:0] port;
+    reg [7:0] other;
     reg [7:0] value;
     reg [7:0] place;
+    reg [8:0] page;
     reg [7:0] data_write_bits;
     reg [7:0] ring_write_bits;
 
@@ -550,10 +912,10 @@ module carrystep_processor (
     wire [15:0] code = instructions_read_data;
     wire executes = stage == EXECUTE;
     wire sets = executes & code[15];
-    wire stores = executes & code[14];
+    wire stores = executes & code[14] & !code[15];
     wire jumps = code[13];
-    wire acts = executes & code[12];
-    wire does = acts & !code[15] & !code[14];
+    wire acts = executes & code[12] & !code[13];
+    wire does = executes & !code[13] & !code[14] & !code[15];
     wire steps = does & code[2];
     wire waits = does & code[5];
     wire over = (!waits | waited) & (!steps | crc_over);
@@ -563,32 +925,35 @@ module carrystep_processor (
     assign x = index;
     assign a = sum;
     assign put_valid = does & code[11];
+    assign put_word = word;
     assign put_data = crc_word_out;
     assign start_valid = does & code[10];
     assign clear = clears;
-    assign broken = does & code[8] & !code[6];
-    assign home_valid = does & code[6] & code[7];
-    assign snapshot = does & code[8] & code[6];
-    assign kick = does & code[7] & !code[6];
-    assign enable = control[0];
-    assign stop = control[1];
+    assign broken = does & code[8] & !code[6] & !code[7];
+    assign seek_source_valid = does & code[6] & code[7] & code[8];
+    assign seek_valid = does & code[6] & code[7] & !code[8];
+    assign latch_arm = does & code[7] & code[9] & !code[6] & !code[8];
+    assign snapshot = does & code[8] & code[6] & !code[7];
+    assign kick = does & code[7] & !code[6] & !code[8];
+    assign enable = power;
+    assign stop = does & code[7] & code[8] & !code[6];
 
     always @(*) begin
         state = NONE;
         if (fault) begin
-            state = ({4'b0, cause} << AT_5) | BIT_0;
-        end
-        if (halted) begin
-            state = state | BIT_1;
-        end
-        if (idle) begin
-            state = state | BIT_2;
+            state = state | BIT_0;
         end
         if (ready) begin
-            state = state | BIT_3;
+            state = state | BIT_1;
         end
         if (armed) begin
-            state = state | BIT_4;
+            state = state | BIT_2;
+        end
+        if (idle) begin
+            state = state | BIT_6;
+        end
+        if (halted) begin
+            state = state | BIT_7;
         end
     end
 
@@ -607,25 +972,25 @@ module carrystep_processor (
 
     always @(*) begin
         holds = 1'b1;
-        if (code[10:8] == IF_ZERO) begin
+        if (code[11:9] == IF_ZERO) begin
             holds = sum == 8'd0;
         end
-        if (code[10:8] == IF_X7) begin
+        if (code[11:9] == IF_X7) begin
             holds = index[7];
         end
-        if (code[10:8] == IF_X6) begin
-            holds = index[6];
+        if (code[11:9] == IF_FULL) begin
+            holds = index[7:4] == TOP;
         end
-        if (code[10:8] == IF_NOTHING) begin
+        if (code[11:9] == IF_NOTHING) begin
             holds = empty;
         end
-        if (code[10:8] == IF_FAULT) begin
+        if (code[11:9] == IF_FAULT) begin
             holds = fault;
         end
-        if (code[10:8] == IF_STARTABLE) begin
-            holds = ready & !armed;
+        if (code[11:9] == IF_COMMIT) begin
+            holds = word == LAST_WORD;
         end
-        if (code[10:8] == IF_SPECIAL) begin
+        if (code[11:9] == IF_SPECIAL) begin
             holds = sum[7] & sum[6];
         end
     end
@@ -633,9 +998,9 @@ module carrystep_processor (
     always @(*) begin
         port = state;
         if (code[0]) begin
-            port = {5'b0, space};
-            if (fault & cause[3]) begin
-                port = {5'b0, space} | BIT_4;
+            port = {5'b0, space} << AT_4;
+            if (fault) begin
+                port = ({5'b0, space} << AT_4) | {4'b0, cause};
             end
         end
         if (code[1]) begin
@@ -644,24 +1009,37 @@ module carrystep_processor (
                 port = {2'b0, culprits};
             end
             if (code[0]) begin
-                port = {2'b0, homing};
+                port = {2'b0, seeking};
+            end
+        end
+        if (code[2]) begin
+            port = {2'b0, hits};
+            if (code[0]) begin
+                port = {4'b0, latch_edges};
+                if (latch_armed) begin
+                    port = {4'b0, latch_edges} | BIT_4;
+                end
             end
         end
     end
 
     always @(*) begin
-        value = port;
-        if ((code[10:8] == FROM_DATA) | (code[10:8] == FROM_DATA_AT_X)) begin
-            value = data_read_data;
+        other = ring_read_data;
+        if (code[8]) begin
+            other = index;
         end
-        if (code[10:8] == FROM_RING) begin
-            value = ring_read_data;
+        if (code[9]) begin
+            other = crc_word_out[7:0];
+            if (code[8]) begin
+                other = port;
+            end
         end
-        if (code[10:8] == FROM_X) begin
-            value = index;
-        end
-        if (code[10:8] == FROM_CHECK) begin
-            value = crc_word_out[7:0];
+    end
+
+    always @(*) begin
+        value = data_read_data;
+        if (code[10]) begin
+            value = other;
         end
     end
 
@@ -669,6 +1047,13 @@ module carrystep_processor (
         place = code[7:0];
         if (code[8]) begin
             place = index;
+        end
+    end
+
+    always @(*) begin
+        page = {1'b0, place};
+        if (code[9]) begin
+            page = {1'b0, place} | CONSTANTS;
         end
     end
 
@@ -690,16 +1075,16 @@ module carrystep_processor (
         .clock(clock),
         .read_address(pc),
         .read_data(instructions_read_data),
-        .write_address(NONE),
+        .write_address(NO_PLACE),
         .write_bits(NO_CODE),
         .write_data(NO_CODE)
     );
 
     carrystep_data data (
         .clock(clock),
-        .read_address(place),
+        .read_address(page),
         .read_data(data_read_data),
-        .write_address(place),
+        .write_address(page),
         .write_bits(data_write_bits),
         .write_data(sum)
     );
@@ -731,15 +1116,18 @@ module carrystep_processor (
             stage <= FETCH;
         end
         if (executes & over) begin
-            pc <= pc + ONE;
-            if (jumps & (holds ^ code[11])) begin
-                pc <= code[7:0];
+            pc <= pc + NEXT_PLACE;
+            if (jumps & (holds ^ code[12])) begin
+                pc <= code[8:0];
             end
         end
         if (sets) begin
             sum <= value;
             if (code[11]) begin
                 sum <= sum ^ value;
+            end
+            if (code[14]) begin
+                sum <= sum & value;
             end
         end
         if (acts & code[0]) begin
@@ -749,17 +1137,20 @@ module carrystep_processor (
             index <= index + ONE;
         end
         if (sets & (code[10:8] == FROM_RING)) begin
-            read <= read + ONE;
+            read <= read + NEXT_PLACE;
         end
         if (received) begin
-            written <= written + ONE;
+            written <= written + NEXT_PLACE;
         end
         if (room_valid) begin
             space <= room;
         end
         if (does & code[6] & !code[7] & !code[8]) begin
-            control <= sum[1:0];
+            power <= sum[0];
             clears <= code[9];
+        end
+        if (put_valid & over) begin
+            word <= word + NEXT_WORD;
         end
     end
 endmodule
@@ -767,7 +1158,7 @@ endmodule
 // Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
+    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -820,7 +1211,7 @@ endmodule
 // What the host can read: constants of the build, and the last words of state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
+    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -896,7 +1287,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h106e11e37ad8277a,
+    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -940,23 +1331,29 @@ module carrystep_link #(
     input  wire         start_ready,
     // The engine clears a stop.
     output wire         clear,
-    // The host requests a controlled stop, as long as it is asserted.
+    // The host requests a controlled stop.
     output wire         stop,
     // The host has broken the segment protocol.
     output wire         broken,
-    // The host replaces the mask of the axes that wait for their limit.
-    output wire         home_valid,
-    // The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
-    output wire   [5:0] home_mask,
+    // The host replaces the source of seeks.
+    output wire         seek_source_valid,
+    // The source: axis in bits 2..0, row in bits 4..3, own in bit 5, level in bit 6.
+    output wire   [6:0] seek_source,
+    // The host replaces the mask of the axes that wait for the source of their seek.
+    output wire         seek_valid,
+    // The axes that wait for it, valid with `seek_valid`; bit i is axis i.
+    output wire   [5:0] seek_mask,
+    // The host arms the latch.
+    output wire         latch_arm,
     // The host requests a snapshot of the state of all axes.
     output wire         snapshot,
-    // The host has sent a valid request: the watchdog restarts.
+    // The owner of the session has sent a valid request: the watchdog restarts.
     output wire         kick,
     // The host requests power for the motor drivers, as long as it is asserted.
     output wire         enable,
     // The engine outputs a word of the state of an axis in this clock.
     input  wire         state_valid,
-    // The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    // The copy to which it belongs: 0 hit of a seek, 1 live, 2 snapshot, 3 latch.
     input  wire   [1:0] state_page,
     // Its axis, as a number from 0.
     input  wire   [2:0] state_axis,
@@ -981,19 +1378,28 @@ module carrystep_link #(
     input  wire   [3:0] cause,
     // The axes that caused the stop; bit i is axis i.
     input  wire   [5:0] culprits,
-    // The axes that wait for their limit; bit i is axis i.
-    input  wire   [5:0] homing
+    // The axes that wait for the source of their seek; bit i is axis i.
+    input  wire   [5:0] seeking,
+    // The axes that have hit it, until the host ends the seek; bit i is axis i.
+    input  wire   [5:0] hits,
+    // The latch waits for its edge.
+    input  wire         latch_armed,
+    // The edges since the latch was armed that it did not latch, at most 15.
+    input  wire   [3:0] latch_edges
 );
 
     wire processor_answer_valid;
     wire [7:0] processor_x;
     wire [7:0] processor_a;
     wire processor_put_valid;
+    wire [2:0] processor_put_word;
     wire [31:0] processor_put_data;
     wire processor_start_valid;
     wire processor_clear;
     wire processor_broken;
-    wire processor_home_valid;
+    wire processor_seek_source_valid;
+    wire processor_seek_valid;
+    wire processor_latch_arm;
     wire processor_snapshot;
     wire processor_kick;
     wire processor_enable;
@@ -1004,15 +1410,18 @@ module carrystep_link #(
     assign answer = processor_a;
     assign put_valid = processor_put_valid;
     assign put_axis = processor_a[2:0];
-    assign put_word = processor_x[4:2];
+    assign put_word = processor_put_word;
     assign put_data = processor_put_data;
     assign start_valid = processor_start_valid;
     assign start_mask = processor_a[5:0];
     assign clear = processor_clear;
     assign stop = processor_stop;
     assign broken = processor_broken;
-    assign home_valid = processor_home_valid;
-    assign home_mask = processor_a[5:0];
+    assign seek_source_valid = processor_seek_source_valid;
+    assign seek_source = processor_a[6:0];
+    assign seek_valid = processor_seek_valid;
+    assign seek_mask = processor_a[5:0];
+    assign latch_arm = processor_latch_arm;
     assign snapshot = processor_snapshot;
     assign kick = processor_kick;
     assign enable = processor_enable;
@@ -1027,13 +1436,16 @@ module carrystep_link #(
         .a(processor_a),
         .facts(register_mirror_data),
         .put_valid(processor_put_valid),
+        .put_word(processor_put_word),
         .put_data(processor_put_data),
         .put_ready(put_ready),
         .start_valid(processor_start_valid),
         .start_ready(start_ready),
         .clear(processor_clear),
         .broken(processor_broken),
-        .home_valid(processor_home_valid),
+        .seek_source_valid(processor_seek_source_valid),
+        .seek_valid(processor_seek_valid),
+        .latch_arm(processor_latch_arm),
         .snapshot(processor_snapshot),
         .kick(processor_kick),
         .enable(processor_enable),
@@ -1048,7 +1460,10 @@ module carrystep_link #(
         .room(room),
         .room_valid(room_valid),
         .culprits(culprits),
-        .homing(homing)
+        .seeking(seeking),
+        .hits(hits),
+        .latch_armed(latch_armed),
+        .latch_edges(latch_edges)
     );
 
     carrystep_register_mirror #(

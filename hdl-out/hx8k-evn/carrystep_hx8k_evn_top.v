@@ -40,8 +40,11 @@ module carrystep_hx8k_evn_top (
     wire clear;
     wire stop;
     wire broken;
-    wire home_valid;
-    wire [5:0] home_mask;
+    wire seek_source_valid;
+    wire [6:0] seek_source;
+    wire seek_valid;
+    wire [5:0] seek_mask;
+    wire latch_arm;
     wire snapshot;
     wire kick;
     wire enable;
@@ -58,7 +61,10 @@ module carrystep_hx8k_evn_top (
     wire armed;
     wire [3:0] cause;
     wire [5:0] culprits;
-    wire [5:0] homing;
+    wire [5:0] seeking;
+    wire [5:0] hits;
+    wire latch_armed;
+    wire [3:0] latch_edges;
 
     carrystep_uart #(
         .BIT_CLOCKS(32'd25)
@@ -74,7 +80,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h99d728631f623e95),
+        .BUILD_ID(64'he595423c8ed9e29d),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),
@@ -98,8 +104,11 @@ module carrystep_hx8k_evn_top (
         .clear(clear),
         .stop(stop),
         .broken(broken),
-        .home_valid(home_valid),
-        .home_mask(home_mask),
+        .seek_source_valid(seek_source_valid),
+        .seek_source(seek_source),
+        .seek_valid(seek_valid),
+        .seek_mask(seek_mask),
+        .latch_arm(latch_arm),
         .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
@@ -116,7 +125,10 @@ module carrystep_hx8k_evn_top (
         .armed(armed),
         .cause(cause),
         .culprits(culprits),
-        .homing(homing),
+        .seeking(seeking),
+        .hits(hits),
+        .latch_armed(latch_armed),
+        .latch_edges(latch_edges),
         .clock(clock)
     );
 
@@ -162,6 +174,12 @@ module carrystep_hx8k_evn_top (
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),
+        .INPUTS_0(32'd0),
+        .INPUTS_0_LOW(32'd0),
+        .INPUTS_1(32'd0),
+        .INPUTS_1_LOW(32'd0),
+        .LATCH_LOOKS(32'd0),
+        .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
@@ -178,8 +196,11 @@ module carrystep_hx8k_evn_top (
         .clear(clear),
         .stop(stop),
         .broken(broken),
-        .home_valid(home_valid),
-        .home_mask(home_mask),
+        .seek_source_valid(seek_source_valid),
+        .seek_source(seek_source),
+        .seek_valid(seek_valid),
+        .seek_mask(seek_mask),
+        .latch_arm(latch_arm),
         .snapshot(snapshot),
         .kick(kick),
         .enable(enable),
@@ -196,11 +217,17 @@ module carrystep_hx8k_evn_top (
         .armed(armed),
         .cause(cause),
         .culprits(culprits),
-        .homing(homing),
+        .seeking(seeking),
+        .hits(hits),
+        .latch_armed(latch_armed),
+        .latch_edges(latch_edges),
         .clock(clock),
         .estop(estop),
+        .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
+        .inputs_0(6'd0),
+        .inputs_1(6'd0),
         .step(step),
         .dir(dir),
         .enabled(enabled),

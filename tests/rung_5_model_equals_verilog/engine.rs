@@ -45,8 +45,10 @@ struct Seen {
     /// Edges after the call of a stop, which belong to ramps.
     ramped: u64,
     cleared: u64,
-    /// Axes that found their limit in homing while other axes were still waiting.
-    homed: u64,
+    /// Hits of seeks.
+    hits: u64,
+    /// Edges of the latch that it did not latch.
+    further: u64,
 }
 
 impl Seen {
@@ -57,7 +59,8 @@ impl Seen {
             let rising = (now.step & !before.step).count_ones();
             self.edges += u64::from(rising);
             self.together += u64::from(rising > 1);
-            self.homed += u64::from(now.homing != 0 && before.homing & !now.homing != 0);
+            self.hits += u64::from(now.hits & !before.hits != 0);
+            self.further += u64::from(now.latch_edges > before.latch_edges);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
                 (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
@@ -69,8 +72,9 @@ impl Seen {
     }
 
     fn assert_everything(&self) {
-        let Self { clocks, edges, together, causes, ramped, cleared, homed } = *self;
-        let all = [[clocks, edges, together, ramped, cleared, homed].as_slice(), &causes].concat();
+        let Self { clocks, edges, together, causes, ramped, cleared, hits, further } = *self;
+        let counts = [clocks, edges, together, ramped, cleared, hits, further];
+        let all = [counts.as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
         let stops: u64 = causes.iter().sum();
         effort::figures(&format!("{edges} edges, {stops} stops of all {} causes", CAUSES.len()));

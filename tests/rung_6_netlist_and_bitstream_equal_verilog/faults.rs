@@ -115,26 +115,36 @@ fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
 /// effect.
 const BUSY: usize = 100;
 
+/// The columns of a logic tile that hold the functions of its LUTs and the modes of its flip-flops;
+/// the others connect wires.
+const FUNCTIONS: Range<usize> = 36..46;
+
+/// Flips some of these bits, one at a time, at equal distances. Returns how many are caught.
+fn caught_of(stages: &Stages, bits: &[(&str, usize, usize)], count: usize) -> usize {
+    let flip = |i: usize| {
+        let (tile, row, column) = bits[(2 * i + 1) * bits.len() / (2 * count)];
+        let caught = is_caught(stages, &flipped(&stages.placed.asc, tile, row, column));
+        let what = if caught { "caught" } else { "no change" };
+        effort::say(&format!("{tile} row {row} column {column}: {what}"));
+        caught
+    };
+    (0..count).filter(|&i| flip(i)).count()
+}
+
 #[test]
 fn flipped_bits_in_the_bitstream_are_caught() {
     let stages = stages::shipped();
-    let asc = &stages.placed.asc;
-    let bits: Vec<_> =
-        set(asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY).flatten().collect();
-    let count = if effort::is_long() { 60 } else { 3 };
-    let mut seen = 0;
-    for i in 0..count {
-        let (tile, row, column) = bits[(2 * i + 1) * bits.len() / (2 * count)];
-        let caught = is_caught(stages, &flipped(asc, tile, row, column));
-        effort::say(&format!(
-            "{tile} row {row} column {column}: {}",
-            if caught { "caught" } else { "no change" }
-        ));
-        seen += usize::from(caught);
-    }
+    let busy = set(&stages.placed.asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY);
+    let (functions, connections): (Vec<_>, Vec<_>) =
+        busy.flatten().partition(|(.., column)| FUNCTIONS.contains(column));
+    let count = if effort::is_long() { 30 } else { 2 };
+    let seen = caught_of(stages, &connections, count);
+    // A few of these bits enable the clock of a column, which the Verilog read back does not show.
+    assert!(seen * 10 >= count * 9, "{seen} of {count} flipped connections are caught");
+    // A LUT of two signals uses only 4 of its 16 bits, so that most of its bits have no effect.
+    let seen = caught_of(stages, &functions, count);
+    assert!(seen * 4 >= count, "{seen} of {count} flipped bits of functions are caught");
     kept::say();
-    // A LUT may have bits for inputs that never come together, or that stand for one wire.
-    assert!(seen * 10 >= count * 8, "{seen} of {count} flipped bits are seen");
 }
 
 #[test]

@@ -230,7 +230,7 @@ fn page_gives_the_ticks_of_the_proofs() {
     assert_eq!(few, one, "one sentence gives the clocks of both");
     let [single, six] = [1, 6].map(|axes| clocks("engine", &|case| case[0] == axes));
     let six = six.replace(" and ", " (as shipped) and in ");
-    for module in ["time_slot", "stops", "limits"] {
+    for module in ["time_slot", "stops", "switches"] {
         assert!(cases(module).iter().all(|case| case[0] as usize == AXES), "{module}");
     }
     let pair = clocks("event_wheel", &|case| case[0] == 2);

@@ -1,7 +1,7 @@
 //! Records a session between a host and a board, in Rust-HDL's modules of line, link and engine.
 //! The recording of the pins is the reference for every later stage.
 
-use crate::link_bench::{BoardPins, LinkBench, Said, frame, on_the_line, unframe};
+use crate::link_bench::{BoardPins, Host, LinkBench};
 use carrystep_boards::Board;
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
@@ -87,64 +87,46 @@ impl Session {
     }
 }
 
-/// Sends a request and receives its answer.
-fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said {
-    bench.send(&on_the_line(&frame(sequence, address, words)));
-    let answer = bench.answer(60_000).expect("an answer");
-    Said::of(&unframe(&answer).expect("a frame"))
-}
-
-/// Returns a function that writes words with consecutive sequence numbers and checks that each
-/// write is executed.
-fn writer() -> impl FnMut(&mut LinkBench, u8, &[u32]) {
-    let mut next = 0;
-    move |bench, address, words| {
-        let said = ask(bench, next, 0x80 | address, words);
-        next += 1;
-        assert_eq!(said.next, next, "{said:?}");
-    }
-}
-
 fn talk(bench: &mut LinkBench) {
-    let mut write = writer();
-    write(bench, CONTROL, &[1]);
+    let mut host = Host::open(bench, 1);
+    host.write(bench, CONTROL, &[1]);
     let cruise = |v: i64| [149, v as u32, (v >> 32) as u32, 0, 0x0020_0000, 0xdbc0, 0, 1];
-    write(bench, of_axis(SEGMENT, 0), &cruise(1 << 60));
-    write(bench, of_axis(SEGMENT, 5), &cruise(-(1 << 60)));
-    write(bench, START, &[0b10_0001]);
+    host.write(bench, of_axis(SEGMENT, 0), &cruise(1 << 60));
+    host.write(bench, of_axis(SEGMENT, 5), &cruise(-(1 << 60)));
+    host.write(bench, START, &[0b10_0001]);
     bench.rest(9_000);
     // A freeze ends at once, whereas a ramp would take a hundred thousand cycles.
     bench.pins.estop = true;
     bench.rest(3_000);
-    let said = ask(bench, 9, of_axis(POSITION, 5), &[]);
+    let said = bench.read(of_axis(POSITION, 5));
     assert_eq!(said.fault, Some(Cause::EStop), "{said:?}");
     assert!(said.halted, "{said:?}");
     bench.pins.estop = false;
     bench.rest(3_000);
-    write(bench, CLEAR, &[0]);
-    assert_eq!(ask(bench, 9, POSITION, &[]).fault, None);
+    host.write(bench, CLEAR, &[0]);
+    assert_eq!(bench.read(POSITION).fault, None);
     assert!(bench.steps > 5, "{} steps", bench.steps);
 }
 
 fn meet_a_limit(bench: &mut LinkBench) {
-    let mut write = writer();
-    write(bench, CONTROL, &[1]);
+    let mut host = Host::open(bench, 1);
+    host.write(bench, CONTROL, &[1]);
     let v: i64 = -(1 << 56);
-    write(bench, of_axis(SEGMENT, 5), &[1 << 20, v as u32, (v >> 32) as u32, 0, 0, 0, 0, 1]);
-    write(bench, START, &[0b10_0000]);
+    host.write(bench, of_axis(SEGMENT, 5), &[1 << 20, v as u32, (v >> 32) as u32, 0, 0, 0, 0, 1]);
+    host.write(bench, START, &[0b10_0000]);
     bench.rest(30_000);
     bench.pins.limit_min = 1 << 5;
     let polls = (0..100).map(|_| {
         bench.rest(10_000);
-        ask(bench, 9, of_axis(POSITION, 5), &[])
+        bench.read(of_axis(POSITION, 5))
     });
     let said = polls.into_iter().find(|said| said.halted).expect("the ramp is over");
     assert_eq!((said.fault, said.culprits), (Some(Cause::Limit), 1 << 5), "{said:?}");
     bench.pins.limit_min = 0;
     bench.rest(3_000);
-    write(bench, CLEAR, &[0]);
+    host.write(bench, CLEAR, &[0]);
     // Without a fault, no cause is reported.
-    let said = ask(bench, 9, of_axis(POSITION, 5), &[]);
+    let said = bench.read(of_axis(POSITION, 5));
     assert_eq!((said.fault, said.culprits), (None, 0), "{said:?}");
     assert!(said.data.cast_signed() < -3, "{said:?}");
 }

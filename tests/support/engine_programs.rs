@@ -1,10 +1,12 @@
 //! Random programs for the engine: queues that are filled and run dry, joint moves whose axes
-//! reverse and end in one tick, and all programs of the other cores. E-stop, limits, stops and
-//! silence of the host occur in any clock.
+//! reverse and end in one tick, and all programs of the other cores. E-stop, limits, stops, seeks,
+//! edges of the latch and silence of the host occur in any clock.
 
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
-use carrystep_core::engine::{Guard, LimitWiring, QUEUE};
+use carrystep_core::engine::{
+    Guard, InputRow, Latch, LimitWiring, MAX_AXES, QUEUE, SWITCH_ROWS, SeekSource,
+};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use carrystep_simulators::engine::{Event, Events};
 use proptest::prelude::*;
@@ -94,9 +96,17 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         2 => Just((Event::EStop(true), Event::EStop(false))),
         5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMin(mask), Event::LimitMin(0))),
         5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
+        3 => (0..=all(axes)).prop_map(|mask| (Event::Inputs0(mask), Event::Inputs0(0))),
+        // Bit 0 is the interlock, which is open for too short a time in many episodes.
+        2 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask & !1), Event::Inputs1(0))),
+        5 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask | 1), Event::Inputs1(0))),
+        3 => Just((Event::Latch(true), Event::Latch(false))),
+        2 => Just((Event::LatchArm, Event::LatchArm)),
         3 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
-        6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
+        4 => (1..=all(axes)).prop_map(|mask| (Event::Seek(mask), Event::Seek(0))),
+        2 => (source(axes), source(axes))
+            .prop_map(|(one, other)| (Event::SeekSource(one), Event::SeekSource(other))),
         3 => Just((Event::Snapshot, Event::Snapshot)),
         1 => Just((Event::Broken, Event::Kick)),
         2 => Just((Event::Reset(true), Event::Reset(false))),
@@ -107,25 +117,58 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         .prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
 }
 
-/// All axes wait for their limits, which become active one after the other, whichever way the axes
-/// move. The host takes snapshots meanwhile.
-fn homings(axes: usize) -> impl Strategy<Value = Events> {
+/// Any source, now and then one that no engine has.
+fn source(axes: usize) -> impl Strategy<Value = SeekSource> {
+    let axis = prop_oneof![9 => 0..axes as u8, 1 => 0..MAX_AXES as u8];
+    (axis, 0..SWITCH_ROWS, any::<bool>(), any::<bool>())
+        .prop_map(|(axis, row, own, level)| SeekSource { axis, row, own, level })
+}
+
+/// The switches of a row.
+fn switches(row: u8, active: u8) -> Event {
+    match row {
+        0 => Event::LimitMin(active),
+        1 => Event::LimitMax(active),
+        2 => Event::Inputs0(active),
+        _ => Event::Inputs1(active),
+    }
+}
+
+/// Axes seek a switch, whose row becomes active or inactive bit by bit, whichever way the axes
+/// move. The latch is connected to the same switches, and the host takes snapshots meanwhile. Then
+/// it ends the seek, or seeks again.
+fn seeks(axes: usize) -> impl Strategy<Value = Events> {
     let later = prop_oneof![1 => Just(0_u64), 1 => 1_u64..300, 3 => 300_u64..4000];
-    let limits = prop::collection::vec((0..=all(axes), later), 1..4);
-    (0_u64..60_000, limits).prop_map(move |(at, limits)| {
-        let mut events = vec![(at, Event::Home(all(axes)))];
-        let (mut then, mut reached) = (at, 0);
-        for (mask, later) in limits {
-            then += later;
-            reached |= mask;
-            events.push((then, Event::LimitMin(reached)));
-            events.push((then, Event::LimitMax(reached)));
-            events.push((then + later / 2, Event::Snapshot));
-        }
-        let ends = [Event::LimitMin(0), Event::LimitMax(0), Event::Home(0)];
-        events.extend(ends.map(|event| (then + 2000, event)));
-        events
-    })
+    let masks = prop::collection::vec((0..=all(axes), later), 1..4);
+    let mask = prop_oneof![3 => Just(all(axes)), 1 => 0..=all(axes)];
+    let again = prop_oneof![2 => Just(0), 1 => Just(all(axes))];
+    (0_u64..60_000, source(axes), mask, masks, again).prop_map(
+        move |(at, source, mask, masks, again)| {
+            let SeekSource { row, level, .. } = source;
+            // The interlock stays closed.
+            let most = if row == 3 { all(axes) & !1 } else { all(axes) };
+            let levels = |reached: u8| switches(row, most & if level { reached } else { !reached });
+            let mut events = vec![
+                (at.saturating_sub(3000), levels(0)),
+                (at, Event::SeekSource(source)),
+                (at, Event::Seek(mask)),
+                (at, Event::LatchArm),
+            ];
+            let (mut then, mut reached) = (at, 0);
+            for (mask, later) in masks {
+                then += later;
+                reached |= mask;
+                events.push((then, levels(reached)));
+                events.push((then, Event::Latch(true)));
+                events.push((then + later / 2, Event::Snapshot));
+                events.push((then + later / 2, Event::Latch(false)));
+            }
+            events.push((then + 2000, Event::Seek(again)));
+            events.push((then + 4000, switches(row, 0)));
+            events.push((then + 6000, Event::Seek(0)));
+            events
+        },
+    )
 }
 
 /// The same program with the start behind as many rows of segments as fit into the queues, so that
@@ -148,7 +191,7 @@ fn signs_of_life() -> impl Strategy<Value = Events> {
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 1 => homings(axes)];
+    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes)];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life()).prop_map(|(episodes, life)| {
         let mut events = episodes.concat();
@@ -191,8 +234,11 @@ pub fn build(
     let mut build = EngineBuild::minimal(&build, 1);
     build.pins = build.pins.iter().copied().cycle().take(axes).collect();
     let low = limits == LimitWiring::Pair;
+    let all = InputRow { exist: all(axes), low: 0 };
     build.guard = Guard {
-        round: 2,
+        round: 4,
+        inputs: [all; 2],
+        latch: Some(Latch { low: false, looks: 2 }),
         debounce: 3,
         watchdog: 40,
         enable: 2,
@@ -210,11 +256,27 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
     let first = build(AXES, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
     let second = build(AXES, 96_000_000, 16, StartPhase::Zero, LimitWiring::Pair);
     let mut third = build(AXES, 112_000_000, 16, StartPhase::Zero, LimitWiring::Each);
-    third.guard = Guard { round: 8, debounce: 1, watchdog: 0, enable: 0, ..third.guard };
+    third.guard = Guard {
+        round: 8,
+        debounce: 1,
+        watchdog: 0,
+        enable: 0,
+        inputs: [InputRow { exist: 0x2d, low: 0x09 }, InputRow { exist: 0x33, low: 0x33 }],
+        latch: Some(Latch { low: true, looks: 16 }),
+        ..third.guard
+    };
     third.pins.reverse();
     third.guard.stop.reverse();
     let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, LimitWiring::One);
-    fourth.guard = Guard { round: 4, debounce: 5, watchdog: 21, enable: 7, ..fourth.guard };
+    fourth.guard = Guard {
+        round: 16,
+        debounce: 5,
+        watchdog: 21,
+        enable: 7,
+        inputs: [InputRow { exist: 0x3f, low: 0x3e }, InputRow { exist: 0x01, low: 0x01 }],
+        latch: Some(Latch { low: true, looks: 1 }),
+        ..fourth.guard
+    };
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
     [first, second, third, fourth]

@@ -138,8 +138,9 @@ fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -
     let taken =
         (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
     let state = |outputs: &EngineOutputs| {
-        let EngineOutputs { fault, halted, idle, enabled, homing, .. } = *outputs;
-        (fault, halted, idle, enabled, homing)
+        let EngineOutputs { fault, halted, idle, enabled, seeking, hits, .. } = *outputs;
+        let EngineOutputs { latch_armed, latch_edges, .. } = *outputs;
+        (fault, halted, idle, enabled, seeking, hits, latch_armed, latch_edges)
     };
     !taken && !now.started && state(now) == state(next)
 }

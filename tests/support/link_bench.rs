@@ -1,13 +1,16 @@
 //! A bench with link and engine, and a host at the other end of the line. Link and engine are
-//! Rust-HDL's modules; the model of the link runs in lock-step with them.
+//! Rust-HDL's modules; the model of the link runs in lock-step with them. A bench of models alone
+//! is faster.
 
 mod board;
 mod frames;
+mod host;
 mod hosts;
 mod ports;
 
 pub use board::BoardPins;
-pub use frames::{Said, frame, on_the_line, unframe};
+pub use frames::{Said, on_the_line, owners_read, read, summed, unframe, wide, write};
+pub use host::Host;
 pub use ports::Both;
 
 use hosts::{Receiver, Sender, SpiHost};
@@ -16,13 +19,13 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs};
 use carrystep_core::link::{END, LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
-use carrystep_model::Link;
+use carrystep_model::{Engine, Link};
 use std::collections::VecDeque;
 
 /// Both modules, the line and the host's end of it.
 pub struct LinkBench {
     wire: Wire,
-    engine: EngineSim,
+    engine: AnyEngine,
     /// Bytes that are still to be sent.
     bytes: VecDeque<u8>,
     /// Inputs from the switches.
@@ -43,6 +46,13 @@ pub struct LinkBench {
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
     Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
+    Model { model: Box<Link>, sender: Sender, receiver: Receiver },
+}
+
+/// The engine, in Rust-HDL or as a model.
+enum AnyEngine {
+    RustHdl(EngineSim),
+    Model(Box<Engine>),
 }
 
 impl LinkBench {
@@ -70,10 +80,23 @@ impl LinkBench {
         )
     }
 
+    /// The models of link and engine, connected by a UART.
+    pub fn models(build: &EngineBuild, uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
+        let (sender, receiver) = (Sender::new(bit_clocks), Receiver::new(bit_clocks));
+        let model = Box::new(Link::new(build, uart));
+        let engine = AnyEngine::Model(Box::new(Engine::new(build)));
+        Self::with(engine, Wire::Model { model, sender, receiver })
+    }
+
     fn new(build: &EngineBuild, wire: Wire) -> Self {
+        Self::with(AnyEngine::RustHdl(EngineSim::new(build).expect("an engine")), wire)
+    }
+
+    fn with(engine: AnyEngine, wire: Wire) -> Self {
         Self {
             wire,
-            engine: EngineSim::new(build).expect("an engine"),
+            engine,
             bytes: VecDeque::new(),
             pins: EngineInputs::default(),
             outputs: EngineOutputs::default(),
@@ -92,7 +115,7 @@ impl LinkBench {
     /// True if all bytes are sent.
     pub fn has_sent(&self) -> bool {
         let busy = match &self.wire {
-            Wire::Uart { sender, .. } => sender.left > 0,
+            Wire::Uart { sender, .. } | Wire::Model { sender, .. } => sender.left > 0,
             Wire::Spi { host, .. } => host.sends.is_some_and(|byte| byte != END),
         };
         self.bytes.is_empty() && !busy
@@ -102,7 +125,9 @@ impl LinkBench {
     pub fn clock(&mut self) -> Option<u8> {
         let mut seen = LinkInputs::default();
         match &mut self.wire {
-            Wire::Uart { sender, .. } => seen.rx = sender.clock(&mut self.bytes),
+            Wire::Uart { sender, .. } | Wire::Model { sender, .. } => {
+                seen.rx = sender.clock(&mut self.bytes);
+            }
             Wire::Spi { host, .. } => {
                 host.clock(&mut self.bytes);
                 let [sck, select_n, mosi] = host.pins();
@@ -111,7 +136,11 @@ impl LinkBench {
         }
         let asked = self.wire.settle(&seen).0;
         let told = asked.engine.with_pins(&self.pins);
-        let before = std::mem::replace(&mut self.outputs, self.engine.settle(&told)).step;
+        let outputs = match &mut self.engine {
+            AnyEngine::RustHdl(engine) => engine.settle(&told),
+            AnyEngine::Model(engine) => engine.outputs(&told),
+        };
+        let before = std::mem::replace(&mut self.outputs, outputs).step;
         self.steps += u64::from((self.outputs.step & !before).count_ones());
         seen.engine = self.outputs;
         let (shown, level) = self.wire.settle(&seen);
@@ -122,7 +151,10 @@ impl LinkBench {
             board.add(seen.rx, &self.pins, shown.tx, &self.outputs);
         }
         let byte = self.wire.clock(&seen, &shown, level, self.clocks);
-        self.engine.clock();
+        match &mut self.engine {
+            AnyEngine::RustHdl(engine) => engine.clock(),
+            AnyEngine::Model(engine) => engine.clock(&told),
+        }
         self.clocks += 1;
         byte
     }
@@ -164,6 +196,10 @@ impl Wire {
                 let (line, miso) = line.settle(host.pins(), link.offered());
                 (LinkOutputs { tx: miso, ..link.settle(seen, line) }, miso)
             }
+            Self::Model { model, .. } => {
+                let shown = model.outputs();
+                (shown, shown.tx)
+            }
         }
     }
 
@@ -172,6 +208,7 @@ impl Wire {
         let (bytes, offered) = match self {
             Self::Uart { link, .. } => link.bytes(),
             Self::Spi { link, line, .. } => (line.last(), link.offered()),
+            Self::Model { .. } => return,
         };
         match self {
             Self::Uart { .. } => {
@@ -182,6 +219,7 @@ impl Wire {
                 let pins = [("sck", sck), ("select_n", select_n), ("mosi", mosi), ("miso", level)];
                 both.add(seen, shown, (bytes, offered), &pins);
             }
+            Self::Model { .. } => {}
         }
     }
 
@@ -206,6 +244,10 @@ impl Wire {
                 link.clock();
                 line.clock();
                 host.look(level)
+            }
+            Self::Model { model, receiver, .. } => {
+                model.clock(seen);
+                receiver.clock(level)
             }
         }
     }

@@ -19,22 +19,23 @@ mod adder;
 mod axis;
 pub(crate) mod builds;
 mod edge;
+mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
-mod homing_control;
-mod limits;
 mod parallel_core;
 mod promises;
 mod pulser;
 mod queue;
 mod readout;
 mod resets;
+mod seek_control;
 mod sequencer;
 mod shaper;
 mod solver;
 mod stops;
 mod supervisor;
+mod switches;
 mod table;
 mod tick;
 mod time_slot;
@@ -137,8 +138,9 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         supervisor::proof(engine),
         queue::proof(engine),
         readout::proof(engine),
-        limits::proof(engine),
-        homing_control::proof(engine),
+        switches::proof(engine),
+        seek_control::proof(engine),
+        edge_latch::proof(engine),
         resets::proof(engine),
         time_slot::proof(engine),
         event_wheel::proof(engine),

@@ -116,7 +116,7 @@ fn pages_give_what_the_tests_of_link_and_simulators_do() {
         "docs/protocol.md",
         &[
             format!("at most ({writes} over SPI)"),
-            format!("over SPI have at most {} unacknowledged writes", word(writes)),
+            format!("of unacknowledged writes: {} segments", word(writes)),
         ],
     );
     assert_eq!(whole(behind("tests/support/effort.rs", "{ whole } else { whole / ")), 10);
@@ -162,7 +162,7 @@ fn pages_give_the_default_time_between_power_and_start() {
 
 #[test]
 fn specification_gives_the_beats_of_the_model() {
-    let sample = constant("crates/model/src/engine/motion/limits.rs", "SAMPLE_BEAT");
+    let sample = constant("crates/model/src/engine/motion/switches.rs", "SAMPLE_BEAT");
     says(
         "docs/clock-by-clock.md",
         &[format!("The sample is the level of the pin in beat {sample}.")],

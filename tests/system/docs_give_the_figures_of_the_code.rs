@@ -9,8 +9,9 @@ use carrystep_core::engine::{
 use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
 use carrystep_core::link::{
-    ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
-    MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, REQUEST_HEAD, WINDOW, image,
+    ANSWER_BYTES, BAUD_PERCENT, CRC_BYTES, END, ESC, ESC_END, ESC_ESC, MAX_BIT_CLOCKS,
+    MIN_BIT_CLOCKS, REQUEST_HEAD, SEGMENTS_AXIS_WORDS, SEGMENTS_HEAD_WORDS, SESSION_BYTES, WINDOW,
+    image,
 };
 use carrystep_core::tick::{FIXED_CLOCK_HZ, default_tick};
 use carrystep_core::{AXES, Timebase};
@@ -246,41 +247,47 @@ fn pages_give_the_size_of_the_link() {
 #[test]
 fn protocol_page_gives_lengths_and_numbers_of_frames() {
     let read = REQUEST_HEAD + CRC_BYTES;
+    let owners_read = read + SESSION_BYTES;
     // With an END before it and one after it.
     let on_the_line = |bytes: usize| bytes + 2;
-    let [asked, answered] = [read, ANSWER_BYTES].map(on_the_line);
-    let reads = word(MOST_AXES.into());
+    let [asked, owner_asked, answered] = [read, owners_read, ANSWER_BYTES].map(on_the_line);
     assert_eq!((answered as f64 / asked as f64).round(), 2.0, "twice");
     says(
         "docs/protocol.md",
         &[
-            format!("| CRC {read}, {} or {LONGEST_REQUEST} bytes", read + 4),
+            format!("read sequence | address | CRC {read} bytes"),
+            format!("owner's read sequence | address | session (2) | CRC {owners_read} bytes"),
+            format!("session (2) | words ... | CRC {} bytes or more", owners_read + 4),
             format!("data (4) | CRC {ANSWER_BYTES} bytes"),
             format!("a frame ends with END (`{END:02X}`)"),
             format!("the byte `{END:02X}` is sent as `{ESC:02X} {ESC_END:02X}`"),
             format!("the byte `{ESC:02X}` as `{ESC:02X} {ESC_ESC:02X}`"),
-            format!("a frame of {} bytes is a read", word(read as u64)),
+            format!(
+                "a frame of {} or {} bytes is a read",
+                word(read as u64),
+                word(owners_read as u64)
+            ),
             format!("The number is one of the {WINDOW} before `next`"),
             format!("up to {WINDOW} unacknowledged writes"),
             format!("over {WINDOW} a number is not unique any more"),
-            format!("have at most {reads} unanswered reads"),
+            format!("have at most {} unanswered reads", word(2 * u64::from(MOST_AXES))),
             format!("| unanswered reads | {MOST_AXES} at most |"),
             format!(
-                "a read has {asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
+                "a read has {asked} to {owner_asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
             ),
             format!("has room, 0 to {QUEUE}"),
-            format!("the move ({QUEUE} at most)"),
         ],
     );
     // Ten bits a byte on a UART.
-    let bytes = on_the_line(LONGEST_REQUEST);
-    let most = 3_000_000 / 10 / bytes;
+    let words = SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * AXES + 1;
+    let bytes = owners_read + 4 * words;
+    let most = 3_000_000 / 10 / on_the_line(bytes) / 100 * 100;
     says(
         "docs/performance.md",
         &[
-            format!("A segment is {bytes} bytes on the line"),
-            format!("so the bytes of 3 Mbaud carry at most {most} segments a second"),
-            format!("{AXES} x 500 = {}", AXES * 500),
+            format!("Segments of {} axes with the same ticks", word(AXES as u64)),
+            format!("go in one frame of {bytes} bytes"),
+            format!("so the bytes of 3 Mbaud carry at most {most} of them a second"),
         ],
     );
 }

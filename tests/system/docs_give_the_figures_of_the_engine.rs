@@ -3,10 +3,10 @@
 
 use carrystep_core::build::{MIN_CLOCKS_PER_TICK, check_parallel_axes};
 use carrystep_core::engine::{
-    COMMIT, ENGINE_PORTS, EngineBuild, Guard, MAX_AXES, MAX_ROUND, PUT_BEAT, SEGMENT_WORDS,
-    StateItem, TIME_SLOT_CLOCKS, least_clocks,
+    COMMIT, ENGINE_PORTS, EngineBuild, Guard, InputRow, MAX_AXES, MAX_ROUND, PUT_BEAT,
+    SEGMENT_WORDS, SWITCH_ROWS, StateItem, TIME_SLOT_CLOCKS, least_clocks,
 };
-use carrystep_core::link::{ANSWER, SEGMENT_FRAME_WORDS};
+use carrystep_core::link::SEGMENT_FRAME_WORDS;
 use carrystep_core::ports::Width;
 use carrystep_core::tick::{FIXED_CLOCK_HZ, Ticks};
 use carrystep_core::{AXES, Timebase};
@@ -72,7 +72,7 @@ fn specification_gives_the_beats_of_the_layout() {
         "docs/clock-by-clock.md",
         &[
             format!("room_valid in beat {} of its time slot", at("BEAT_PUT")),
-            format!("Instead, after beat {} of its time slot,", at("BEAT_LAST")),
+            format!("as they are in beat {0} of that time slot. After beat {0}:", at("BEAT_LAST")),
             output("BEAT_STATE_P_LOW", StateItem::PLow) + " P, low half |",
             format!(
                 "| {} | {} if the axis runs, else {} |",
@@ -80,6 +80,7 @@ fn specification_gives_the_beats_of_the_layout() {
                 StateItem::Left as u8,
                 StateItem::Discarded as u8
             ),
+            output("BEAT_STATE_SWITCH", StateItem::Switch) + " in a tick in which a switch",
             output("BEAT_STATE_POSITION", StateItem::Position) + " `counted`, the position |",
             output("BEAT_STATE_P_HIGH", StateItem::PHigh) + " P, high half |",
             output("BEAT_STATE_TICK", StateItem::Ticks) + " `ticks` |",
@@ -107,27 +108,21 @@ fn specification_gives_the_beats_of_the_layout() {
 fn specification_gives_the_samples_of_a_round() {
     let machine = moves::shipped("demo").0.machine;
     let engine = machine.engine();
-    let accepted = |round: u32| {
-        let guard = Guard { round, ..engine.guard.clone() };
-        EngineBuild { guard, ..engine.clone() }.check().is_ok()
+    let least = |inputs: [InputRow; 2]| {
+        let accepted = |round: &u32| {
+            let guard = Guard { round: *round, inputs, ..engine.guard.clone() };
+            EngineBuild { guard, ..engine.clone() }.check().is_ok()
+        };
+        (0..=MAX_ROUND).find(accepted).expect("a round")
     };
-    let least = (0..=MAX_ROUND).find(|&round| accepted(round)).expect("a round");
-    // The model compares the tick of the round with the number of the one that samples the highs.
-    let high = whole(behind(
-        "crates/model/src/engine/motion/limits.rs",
-        "let pins = if tick_of_round == ",
-    ));
-    let low = whole(behind(
-        "crates/model/src/engine/motion/limits.rs",
-        "(self.supervisor.tick_of_round == ",
-    ));
-    assert!(high < u64::from(least), "each round samples both ends");
+    let limits = least([InputRow::default(); 2]);
+    let inputs = least([InputRow { exist: 1, low: 0 }; 2]);
+    assert!(limits >= 2 && inputs >= SWITCH_ROWS.into(), "each round samples all rows");
     says(
         "docs/clock-by-clock.md",
         &[
-            format!("`R` (a power of two, at least {least})"),
-            format!("`limit_min` in the tick with tick_of_round {low},"),
-            format!("`limit_max` in the tick with tick_of_round {high}."),
+            format!("`R` (a power of two, at least {limits})"),
+            format!("R is at least {inputs} then"),
         ],
     );
 }
@@ -232,13 +227,11 @@ fn homing_page_gives_the_repeatability_that_its_test_requires() {
     let test = "crates/virtual-board/tests/homing.rs";
     let late = whole(behind(test, "(0..=late + "));
     let apart = whole(behind(test, "first.abs_diff(*second) <= "));
-    let next = ANSWER.iter().find(|field| field.name == "next").expect("a field");
     says(
         "docs/homing.md",
         &[
             format!("x this longest value, plus {} step.", word(late)),
             format!("it is the same within {} step.", word(apart)),
-            format!("back to the same value (modulo {})", 1 << next.bits),
         ],
     );
     let pulled = whole(behind("crates/files/src/machine/home.rs", "self.guard)) + "));

@@ -3,10 +3,11 @@
 
 use carrystep_core::engine::{ENGINE_PORTS, QUEUE};
 use carrystep_core::link::registers::{
-    AXES_AT, CONTROL_ENABLE, CONTROL_STOP, MOST_AXES, POSITION, SEGMENT, START, of_axis,
+    AXES_AT, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP, of_axis,
 };
 use carrystep_core::link::{
-    ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, SEGMENT_FRAME_WORDS, Uart, WRITE,
+    ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, REFUSALS, REQUEST_HEAD,
+    SEGMENT_FRAME_WORDS, SEGMENTS_AXIS_WORDS, SEGMENTS_HEAD_WORDS, SESSION_BYTES, Uart, WRITE,
 };
 use carrystep_core::ports::Width;
 use carrystep_tests::pages::{part, says, word};
@@ -18,8 +19,11 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
     let axis_of = |address: u8| address & (MOST_AXES - 1);
     let top = (MOST_AXES - 1).ilog2();
     let crc = ANSWER_BYTES - CRC_BYTES;
-    let cause = ANSWER.iter().find(|field| field.name == "cause").expect("a field");
-    assert!(cause.top.is_some() && crc == ANSWER_DATA + 4);
+    assert_eq!(crc, ANSWER_DATA + 4);
+    let several = |axes: usize| {
+        let words = SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * axes + 1;
+        REQUEST_HEAD + SESSION_BYTES + 4 * words + CRC_BYTES
+    };
     says(
         "docs/protocol.md",
         &[
@@ -29,23 +33,29 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
                 "- **Segment**: address `{segment:02X} + axis` and {} words:",
                 word(SEGMENT_FRAME_WORDS as u64)
             ),
-            format!("Addresses from `{:02X}` on are not for writes.", segment + MOST_AXES),
+            format!("Addresses from `{:02X}` on are not for writes.", segment + MOST_AXES + 1),
+            format!("- **Segments of several axes**: address `{:02X}`.", WRITE | SEGMENTS),
+            format!(
+                "{} + {} k bytes: {} for six axes",
+                several(0),
+                several(1) - several(0),
+                several(6)
+            ),
+            format!("- **`OPEN`** (`{:02X}`)", WRITE | OPEN),
+            format!("- **`STOP`** (`{:02X}`)", WRITE | STOP),
             format!("the axis in bits 0 to {top} of the address"),
             format!(
-                "After a write below `{segment:02X}` (`CONTROL`, `START`, `CLEAR`, `HOME`, `SNAPSHOT`)"
+                "After a write below `{segment:02X}` (`CONTROL`, `START`, `CLEAR`, `SEEK`, `SNAPSHOT`, `OPEN`, `STOP`, `LATCH`)"
             ),
             format!("to segments and to reads from `{AXES_AT:02X}` on can"),
             format!("(the answer to its segment, or to a read from `{AXES_AT:02X}` on)"),
             format!("2. Write `CONTROL` = {CONTROL_ENABLE} to power the drivers."),
-            format!("**Stop**: set bit {} of `CONTROL`;", CONTROL_STOP.ilog2()),
-            format!("write `CONTROL` without bit {};", CONTROL_STOP.ilog2()),
             format!("Words and the CRC are {CRC_BYTES} bytes each"),
             format!("| {ANSWER_DATA}..{} | | data |", crc - 1),
             format!("| {crc}..{} | | CRC |", ANSWER_BYTES - 1),
-            format!("bits {}..0 of the cause of the stop", cause.bits - 1),
-            format!("| cause | bit {} of the cause |", cause.bits),
         ],
     );
+    says("docs/protocol.md", &REFUSALS.map(|why| format!("{} `{why}`: ", why.number())));
     assert!(axis_of(of_axis(POSITION, 5)) == 5 && (WRITE | START) < segment);
 }
 
@@ -91,33 +101,30 @@ fn pages_give_the_rates_that_the_test_of_the_link_tries() {
     // The host has its turn after each millisecond of the board's time.
     let turns = behind("crates/virtual-board/tests/support/mod.rs", "MS: u64 = CLOCK_HZ / ");
     assert_eq!(turns, 1000.0);
-    let more =
-        whole(behind("crates/link/src/host/homing/request.rs", "self.debounce.saturating_add("));
-    says(
-        "docs/protocol.md",
-        &[format!("the samples of the debounce time and {} rounds more", word(more))],
-    );
     says("docs/performance.md", &["which runs once per millisecond, as over USB".to_owned()]);
     says("docs/virtual-board.md", &[format!("/dev/pts/3: {DEFAULT_BAUD} baud")]);
 }
 
 #[test]
 fn link_page_gives_the_block_rams_of_each_memory() {
-    const RAM: (u64, u64) = (256, 16);
+    const RAM: u64 = 256 * 16;
     let rams = |file: &str, name: &str| {
         let source = format!("crates/hdl/src/link/{file}");
         let address = whole(behind(&source, &format!("{name}: Memory<")));
         let bits = whole(behind(&source, &format!("{name}: Memory<{address}, ")));
-        (1_u64 << address).div_ceil(RAM.0) * bits.div_ceil(RAM.1)
+        ((1_u64 << address) * bits).div_ceil(RAM)
     };
     let small = ["instructions", "data", "ring"].map(|name| rams("processor.rs", name));
-    assert_eq!(small, [1; 3], "one each");
+    assert_eq!(small, [2, 1, 1]);
     let facts = rams("register_mirror.rs", "known");
     let all = small.iter().sum::<u64>() + facts;
     says(
         "docs/link.md",
         &[
-            format!("it has {} block RAMs: one each for the program, its data and", word(all)),
+            format!(
+                "it has {} block RAMs: two for the program, one each for its data and",
+                word(all)
+            ),
             format!("that wait, and {} for `facts`.", word(facts)),
         ],
     );
@@ -136,7 +143,7 @@ fn protocol_page_gives_the_time_outs_of_the_rust_client() {
     let (tries, share) = (word(whole((silence / resend).floor())), part(whole(watchdog / period)));
     let serial = constant("crates/link/src/line/serial.rs", "AHEAD_MS");
     // Ten bits for each byte that the client holds, and then the bytes that the system may hold.
-    let held = host("out: [u8; ");
+    let held = host("const OUT: usize = ");
     let wait = |baud: f64| (10.0 * held / baud * 1e3 + serial).round();
     let callers = constant("crates/cli/src/control/control_socket.rs", "CALLERS");
     says(

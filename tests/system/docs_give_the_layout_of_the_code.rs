@@ -84,6 +84,7 @@ fn engine_page_draws_the_beats_of_the_layout() {
                 ("P ", "BEAT_STATE_P_LOW"),
                 ("n ", "BEAT_STATE_LEFT"),
                 ("pos", "BEAT_STATE_POSITION"),
+                ("sw ", "BEAT_STATE_SWITCH"),
                 ("P'", "BEAT_STATE_P_HIGH"),
                 ("tick", "BEAT_STATE_TICK"),
                 ("stat", "BEAT_STATE_STATUS"),
@@ -185,7 +186,7 @@ fn engine_page_counts_the_block_rams() {
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),
-        memory("limits.rs", "switches"),
+        memory("switches.rs", "switch_memory"),
         memory("event_wheel.rs", "event_memory"),
     ];
     assert!(others.into_iter().all(|memory| rams(memory) == 1));
@@ -220,7 +221,7 @@ fn engine_page_counts_the_block_rams() {
 fn protocol_page_gives_the_fields_of_the_answer() {
     let page = pages::file("docs/protocol.md");
     let (_, table) = page.split_once("## The answer\n").expect("the answer");
-    let (table, _) = table.split_once("\n\n`free`").expect("the end of the table");
+    let (table, _) = table.split_once("\n\nBits 4 and 5").expect("the end of the table");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| ")).skip(1);
     let shown: Vec<[String; 3]> = rows
         .filter(|row| !row.starts_with("-"))
@@ -241,9 +242,6 @@ fn protocol_page_gives_the_fields_of_the_answer() {
             field.bit,
             [field.byte.to_string(), place(field.bit, field.bits), field.name.to_owned()],
         ));
-        if let Some((byte, bit)) = field.top {
-            wanted.push((byte, bit, [byte.to_string(), bit.to_string(), field.name.to_owned()]));
-        }
     }
     wanted.sort_by_key(|(byte, bit, _)| (*byte, *bit));
     let wanted: Vec<[String; 3]> = wanted.into_iter().map(|(_, _, row)| row).collect();

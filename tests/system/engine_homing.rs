@@ -3,7 +3,7 @@
 //! clock, and planted bugs are caught.
 
 use carrystep_core::engine::{
-    AxisStatus, Cause, Guard, LimitWiring, StateItem, StatePage, commanded_steps,
+    AxisStatus, Cause, Guard, LimitWiring, SeekSource, StateItem, StatePage, commanded_steps,
 };
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
@@ -46,12 +46,16 @@ fn cruise() -> Program {
     program
 }
 
+/// Each axis waits for its own limit at its low end.
+const OWN: SeekSource = SeekSource { axis: 0, row: 0, own: true, level: true };
+
 /// The axis waits for its limit from the start; the limit is active for some ticks from clock
 /// `then` on.
 fn events(then: u64) -> Events {
     let limit = 1 << HOMING;
     vec![
-        (100, Event::Home(limit)),
+        (99, Event::SeekSource(OWN)),
+        (100, Event::Seek(limit)),
         (then, Event::LimitMin(limit)),
         (then + 3_000, Event::LimitMin(0)),
     ]
@@ -87,7 +91,7 @@ fn homing_axis_slows_down_alone_at_its_limit() {
         let met = homed
             .outputs
             .iter()
-            .find(|(cycle, out)| *cycle > 200 && out.homing == 0)
+            .find(|(cycle, out)| *cycle > 200 && out.seeking == 0)
             .expect("it meets its limit")
             .0;
         // The ramp takes 128 ticks, and a step needs two more ticks to reach the pins.
@@ -107,7 +111,8 @@ fn homing_axis_slows_down_alone_at_its_limit() {
 #[test]
 fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
     let other = vec![
-        (100, Event::Home(1 << HOMING)),
+        (99, Event::SeekSource(OWN)),
+        (100, Event::Seek(1 << HOMING)),
         (THEN, Event::LimitMin(1 << 3)),
         (THEN + 3_000, Event::LimitMin(0)),
     ];
@@ -119,10 +124,17 @@ fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
 }
 
 #[test]
-fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
+fn start_after_the_hit_is_cancelled_until_the_seek_is_ended() {
     let program = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
     let recording = run(LimitWiring::Pair, &program, &events(THEN));
-    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
+    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), None);
+    let (_, last) = recording.outputs.last().expect("outputs");
+    assert!(last.hits == 1 << HOMING && !last.armed && last.idle, "{last:?}");
+    // Without a seek that has hit, the same start finds an empty queue.
+    let ended = [events(THEN), vec![(THEN + 100_000, Event::Seek(0))]].concat();
+    let recording = run(LimitWiring::Pair, &program, &ended);
+    let (_, last) = recording.outputs.last().expect("outputs");
+    assert_eq!(last.hits, 0, "{last:?}");
 }
 
 /// The words on the page of the limit are those of the tick after the one in which it was found,
@@ -138,15 +150,16 @@ fn state_at_the_limit_is_that_of_the_next_tick() {
         let inputs = host.inputs(false);
         let found = engine.settle(&inputs);
         match found.state {
-            Some(word) if word.page == StatePage::Limit => {
+            // The page of a switch is its row.
+            Some(word) if word.page == StatePage::Seek && word.item != StateItem::Switch => {
                 assert_eq!(word.axis as usize, HOMING);
                 at_limit.push((word.item, word.word));
             }
             Some(word) if word.item == StateItem::Ticks => live = Some(word.word),
             _ => {}
         }
-        waited |= found.homing != 0;
-        if waited && found.homing == 0 && ticks_when_found.is_none() {
+        waited |= found.seeking != 0;
+        if waited && found.seeking == 0 && ticks_when_found.is_none() {
             ticks_when_found = live;
         }
         host.advance(&found);
@@ -194,22 +207,14 @@ fn verilog_homes_in_the_same_clock_as_the_model() {
 }
 
 const BUGS: [planted::Bug; 5] = [
-    (
-        "a limit that is waited for stops all",
-        "limits_hit & !homing_control_waits &",
-        "limits_hit &",
-    ),
-    ("the limit is met once more on the way", "& !homing_control_slows", ""),
-    (
-        "all axes slow down",
-        "mine_slows <= (slowing & axis_one_hot_next)",
-        "mine_slows <= (slowing)",
-    ),
+    ("a limit of the seek stops all", "switches_found & !seek_control_forgives", "switches_found"),
+    ("the limit is met once more on the way", "(mine | mine_slows)", "mine"),
+    ("all axes slow down", "(slowing & axis_one_hot_next)", "(slowing)"),
     ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
     (
-        "a start does not wait for an axis that slows",
-        "queue_goes_on | homing_control_slows",
-        "queue_goes_on",
+        "a start does not notice an axis that slows",
+        "drops <= drops | (masked & seek_control_slows);",
+        "drops <= drops;",
     ),
 ];
 

@@ -203,7 +203,7 @@ const BUGS: [planted::Bug; 6] = [
         "if (calls & !called) begin",
         "if (calls) begin",
     ),
-    ("a limit stops the other way", "(back ^ max)", "(back ~^ max)"),
+    ("a limit stops the other way", "(back ^ row[0])", "(back ~^ row[0])"),
     (
         "an e-stop does not freeze",
         "if (urgent | (strobe & found_freezing) | ending)",

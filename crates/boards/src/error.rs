@@ -61,6 +61,16 @@ pub enum BoardError {
         /// Name of the port.
         port: String,
     },
+    /// The machine has an input for which no board has a pin yet.
+    #[error(
+        "{board} has no pin for {input}: leave it out of [machine.inputs], or instantiate the engine in a design of your own"
+    )]
+    Input {
+        /// Name of the board.
+        board: String,
+        /// The input, in words.
+        input: &'static str,
+    },
     /// The board's serial chip does not support this baud rate.
     #[error(
         "{board}'s serial chip takes at most {most} baud, not {wanted}: set `baud` in [machine.link]"

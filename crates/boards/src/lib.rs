@@ -7,7 +7,7 @@
 //! needs these too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{Guard, LimitWiring};
 use carrystep_core::link::{BaudError, Uart};
 use carrystep_files::error::{InputError, SourceText};
 use schemars::JsonSchema;
@@ -301,6 +301,25 @@ impl Board {
             "limits = \"one\" would do"
         };
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
+    }
+
+    /// Checks that the machine has no input besides e-stop and limits, because no board has pins for
+    /// others yet.
+    ///
+    /// # Errors
+    /// [`BoardError::Input`] names the first such input.
+    pub fn connects_inputs(&self, guard: &Guard) -> Result<(), BoardError> {
+        let [first, second] = guard.inputs.map(|row| row.exist);
+        let inputs = [
+            (first & 1 != 0, "the probe"),
+            (second & 1 != 0, "the interlock"),
+            ((first | second) & !1 != 0, "general inputs"),
+            (guard.latch.is_some(), "the latch"),
+        ];
+        match inputs.into_iter().find(|(exists, _)| *exists) {
+            None => Ok(()),
+            Some((_, input)) => Err(BoardError::Input { board: self.name.clone(), input }),
+        }
     }
 
     /// The wire of one bit of a port, such as `step[0]`.

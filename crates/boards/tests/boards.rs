@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_boards::{Board, ConfigurationMode, OSCILLATOR, PORTS, board, boards};
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{Guard, InputRow, Latch, LimitWiring};
 use carrystep_files::{InputError, SourceText};
 use std::path::Path;
 
@@ -326,6 +326,25 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
         "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
          limits = \"each\" or \"one\" would do"
     );
+    let guard = Guard::minimal(vec![1]);
+    assert_eq!(icestick.connects_inputs(&guard), Ok(()));
+    let latch = Some(Latch { low: false, looks: 1 });
+    let row = |exist| InputRow { exist, low: 0 };
+    for (inputs, latch, input) in [
+        ([row(1), row(3)], latch, "the probe"),
+        ([row(2), row(1)], None, "the interlock"),
+        ([row(0), row(4)], latch, "general inputs"),
+        ([row(0), row(0)], latch, "the latch"),
+    ] {
+        let refused = icestick.connects_inputs(&Guard { inputs, latch, ..guard.clone() });
+        assert_eq!(
+            said(&refused.unwrap_err()),
+            format!(
+                "icestick has no pin for {input}: leave it out of [machine.inputs], or instantiate the engine in a \
+                 design of your own"
+            )
+        );
+    }
     assert_eq!(
         said(&icestick.wire("limit_max[0]").unwrap_err()),
         "icestick has no pin for limit_max[0]"

@@ -11,8 +11,10 @@ use carrystep_core::link::{BuildId, LineKind, Uart};
 use carrystep_files::{Axis, Machine, decimal};
 use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
-use carrystep_link::{BuildFacts, Host, HostError, Patience};
-use std::io;
+use carrystep_link::{
+    Answer, BuildFacts, Ended, Host, HostError, Patience, Status, random_session,
+};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -179,6 +181,41 @@ fn connect(
     Ok((board, control))
 }
 
+/// Opens a session with the board in order to drive it. While axes of another host move, or its
+/// segments wait, this says so and waits for their end: a host that has died is stopped by the
+/// board's watchdog. Ctrl-C and `carrystep stop` end the wait.
+///
+/// # Errors
+/// A stop is in force, the board stays busy, or the wait was ended.
+pub fn open(connection: &mut Connection) -> Result<(), Failure> {
+    let Connection { board, axes, control, port, .. } = connection;
+    let stopped = |status: &Status| match status.answer {
+        Answer { fault: true, cause, culprits, .. } => {
+            Err(broken(&HostError::Fault { cause, culprits }, axes))
+        }
+        _ => Ok(()),
+    };
+    stopped(board.status())?;
+    let mut told = false;
+    let ended = board.open_while(random_session(), |progress| {
+        if !std::mem::replace(&mut told, true) {
+            // If this write fails, there is no channel left to report it.
+            let _ = writeln!(
+                io::stderr(),
+                "{port}: axes move or segments wait, of another host: waiting for their end; \
+                 `carrystep stop` stops them"
+            );
+        }
+        control.wish(progress.status)
+    });
+    match ended.map_err(|error| broken(&error, axes))? {
+        Ended::Done | Ended::SeekEnded => stopped(board.status()),
+        Ended::Stopped => Err(Failure::Run(
+            "stopped while it waited for the axes of another host; nothing was sent".to_owned(),
+        )),
+    }
+}
+
 /// The message for a port that cannot be opened. The doctor knows more causes than the system's
 /// error.
 fn opening(port: &str, error: &OpenError) -> String {
@@ -217,9 +254,7 @@ pub fn broken(error: &ConnectedBoardError, axes: &[String]) -> Failure {
 pub fn lost(error: &ConnectedBoardError, axes: &[String], facts: &BuildFacts) -> Failure {
     let why = match error {
         HostError::Line(why) => format!("{error}: {why}"),
-        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => {
-            error.to_string()
-        }
+        HostError::Lost { .. } => error.to_string(),
         _ => return broken(error, axes),
     };
     let watchdog = watchdog((facts.watchdog_ticks, facts.tick_ns));

@@ -6,9 +6,10 @@ use crate::connection::{self, Connection};
 use crate::failure::Failure;
 use crate::found;
 use crate::job;
-use crate::memory::{self, BoardMemory, MetLimit};
+use crate::limits::ClosedLimits;
+use crate::memory::{self, BoardMemory};
 use carrystep_core::engine::Cause;
-use carrystep_files::{Axis, MoveSource};
+use carrystep_files::MoveSource;
 use carrystep_link::supply::Supply;
 use carrystep_link::{Command, Ended, HostError, Status};
 use carrystep_plan::{AxisTotals, Survey};
@@ -25,15 +26,8 @@ mod program;
 pub struct Streamed {
     survey: Survey,
     seconds: f64,
-    near: Vec<Near>,
-}
-
-/// The motion of an axis beside a limit that it has met.
-struct Near {
-    /// Direction of its first motion: 1, -1, or 0 if it does not move.
-    first: i8,
-    /// Distance that it must move away until the switch is open, in steps.
-    clear: u32,
+    /// Direction of the first motion of each axis: 1, -1, or 0 if it does not move.
+    first: Vec<i8>,
 }
 
 impl Streamed {
@@ -60,39 +54,12 @@ impl Streamed {
         if let Some(error) = starved {
             return Err(Failure::input(format!("{path}: {error}")));
         }
-        let near = |(axis, totals): (&Axis, &AxisTotals)| {
-            let first = totals.travel.first.as_ref();
-            Near {
-                first: first.map_or(0, |leg| leg.forward().signum() as i8),
-                clear: axis.move_off(survey.machine()),
-            }
+        let first = |totals: &AxisTotals| {
+            totals.travel.first.as_ref().map_or(0, |leg| leg.forward().signum() as i8)
         };
-        let axes = survey.machine().axes.iter().zip(&survey.totals().axes);
-        let near = axes.map(near).collect();
+        let first = survey.totals().axes.iter().map(first).collect();
         let seconds = survey.totals().ticks as f64 * survey.build().timebase.tick_seconds();
-        Ok(Self { survey, seconds, near })
-    }
-
-    /// Refuses a program whose first motion takes an axis further toward a limit that it has met
-    /// and not left.
-    fn check_limits(
-        &self,
-        memory: &BoardMemory,
-        status: &Status,
-        axes: &[String],
-    ) -> Result<(), Failure> {
-        for (number, Near { first, .. }) in self.near.iter().enumerate() {
-            let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else {
-                continue;
-            };
-            let (axis, steps) = (&axes[number], limit.to_go(status.positions[number]));
-            let (way, back) = if *first > 0 { ("forward", "back") } else { ("back", "forward") };
-            return Err(Failure::input(format!(
-                "axis {axis} has met its limit going {way}, and today's gateware may not see a switch that is closed already: \
-                 jog it {back} by {steps} steps or more, or home it; --into-limit moves it {way} all the same"
-            )));
-        }
-        Ok(())
+        Ok(Self { survey, seconds, first })
     }
 }
 
@@ -122,11 +89,19 @@ impl Ways {
 /// The board has stopped already, a limit forbids the motion, or the line to the board is
 /// lost.
 pub fn drive(
-    connection: Connection,
+    mut connection: Connection,
     streamed: &Streamed,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
-    let mut memory = BoardMemory::recall(&connection);
+    let mut memory = BoardMemory::recall(&mut connection);
+    if !into_limit {
+        // Before the session is opened: a refusal leaves the board and its memory as they are.
+        let Connection { board, axes, .. } = &mut connection;
+        let closed = ClosedLimits::read(board).map_err(|error| connection::broken(&error, axes))?;
+        let wiring = streamed.survey.machine().guard.limits;
+        closed.check(wiring, &streamed.first, &memory.limits(), axes)?;
+    }
+    connection::open(&mut connection)?;
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -134,15 +109,6 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    if start.answer.fault {
-        return Err(told(HostError::Fault {
-            cause: start.answer.cause,
-            culprits: start.answer.culprits,
-        }));
-    }
-    if !into_limit {
-        streamed.check_limits(&memory, &start, &axes)?;
-    }
     let program = PlannedProgram::new(&streamed.survey);
     let line = Line::new(&axes, streamed.seconds);
     let mut ways = Ways::default();
@@ -154,11 +120,12 @@ pub fn drive(
     };
     let outcome = match powered {
         Ended::Stopped => Ok(Ended::Stopped),
-        Ended::Done => board.stream(program, &mut watch),
+        Ended::Done | Ended::SeekEnded => board.stream(program, &mut watch),
     };
     drop(line);
     let ended = match outcome {
-        Ok(Ended::Done) => How::Done,
+        // The command seeks nothing here; whether all moves were made is judged by the positions.
+        Ok(Ended::Done | Ended::SeekEnded) => How::Done,
         Ok(Ended::Stopped) => How::Stopped,
         Err(HostError::Fault { .. }) => How::Fault,
         Err(error) => return Err(connection::lost(&error, &axes, &facts)),
@@ -174,17 +141,10 @@ pub fn drive(
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
-        for (number, near) in streamed
-            .near
-            .iter()
-            .enumerate()
-            .filter(|(number, _)| end.answer.culprits >> number & 1 == 1)
-        {
-            let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
-            memory.set_limit(
-                number,
-                Some(MetLimit { direction, at: end.positions[number], clear: near.clear }),
-            );
+        let met = |(number, _): &(usize, &i8)| end.answer.culprits >> number & 1 == 1;
+        for (number, &first) in streamed.first.iter().enumerate().filter(met) {
+            let direction = if ways.last[number] == 0 { first } else { ways.last[number] };
+            memory.set_limit(number, Some(direction));
         }
     }
     // If the file cannot be written, the old one no longer matches the board and is ignored.

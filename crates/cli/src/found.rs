@@ -38,10 +38,17 @@ pub struct FoundBoard {
     pub phases: u32,
     /// Ticks of silence after which it stops; 0: never.
     pub watchdog_ticks: u32,
+    /// Number of ticks since the board was configured, modulo 2^32; unknown if the report comes from
+    /// a driving command.
+    #[serde(default)]
+    pub ticks: Option<u32>,
     /// The drivers have power.
     pub ready: bool,
     /// All axes are done.
     pub idle: bool,
+    /// An axis moves or a segment waits, of whichever host.
+    #[serde(default)]
+    pub moving: bool,
     /// A start is armed and waits for its axes.
     pub armed: bool,
     /// A stop has been called; only a clear resumes.
@@ -78,8 +85,8 @@ pub struct AxisFound {
     pub machine: Option<f64>,
     /// Steps that freezes have discarded; unknown if the report comes from a driving command.
     pub discarded: Option<u32>,
-    /// True if the axis waits for its limit.
-    pub homing: bool,
+    /// True if the axis waits for the source of its seek.
+    pub seeking: bool,
     /// True if the axis caused the stop.
     pub culprit: bool,
 }
@@ -101,7 +108,7 @@ impl FoundBoard {
     /// Builds the report from a board's status. `discarded` are the discarded steps of each axis,
     /// if they were read.
     pub fn new(status: &Status, known: &Known, discarded: Option<&[u32]>) -> Self {
-        let Answer { ready, idle, armed, fault, halted, homing, culprits, .. } = status.answer;
+        let Answer { ready, idle, armed, fault, halted, seeking, culprits, .. } = status.answer;
         let Known { port, facts, axes, steps_per_unit } = known;
         let cause = cause(&status.answer);
         let axis = |(number, axis): (usize, &String)| {
@@ -112,7 +119,7 @@ impl FoundBoard {
                 place: steps_per_unit.get(number).map(|steps| f64::from(position) / steps),
                 machine: None,
                 discarded: discarded.and_then(|all| all.get(number).copied()),
-                homing: homing >> number & 1 == 1,
+                seeking: seeking >> number & 1 == 1,
                 culprit: fault && culprits >> number & 1 == 1,
             }
         };
@@ -124,8 +131,10 @@ impl FoundBoard {
             tick_ns: facts.tick_ns,
             phases: facts.phases,
             watchdog_ticks: facts.watchdog_ticks,
+            ticks: None,
             ready,
             idle,
+            moving: !idle && !halted,
             armed,
             fault,
             halted,
@@ -171,23 +180,27 @@ impl fmt::Display for FoundBoard {
             (None, _, true) => writeln!(f, "at rest; {power}")?,
             (None, _, false) => writeln!(f, "moving; {power}")?,
         }
+        if let Some(ticks) = self.ticks {
+            writeln!(f, "{ticks} ticks since its configuration, modulo 2^32")?;
+        }
         if let (Some(meaning), Some(remedy)) = (&self.meaning, &self.remedy) {
             writeln!(f, "why:   {meaning}\nto do: {remedy}")?;
         }
         let in_units = self.axes.iter().any(|axis| axis.place.is_some());
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
-        for AxisFound { axis, position, place, machine, discarded, homing, culprit } in &self.axes {
+        for AxisFound { axis, position, place, machine, discarded, seeking, culprit } in &self.axes
+        {
             let machine = machine.map_or_else(String::new, |machine| {
                 format!("  homed: at {machine:.4} of the machine")
             });
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
-            let homing = if *homing { "  waits for its limit" } else { "" };
+            let seeking = if *seeking { "  seeks" } else { "" };
             let culprit = if *culprit { "  it caused the stop" } else { "" };
             writeln!(
                 f,
-                "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}"
+                "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{seeking}{culprit}"
             )?;
         }
         Ok(())

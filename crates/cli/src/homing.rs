@@ -111,15 +111,9 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
     };
     match why {
         HomingFault::NotFound => {
-            let unseen = match machine.guard.limits {
-                LimitWiring::Pair | LimitWiring::None => "",
-                LimitWiring::Each | LimitWiring::One => {
-                    ". A switch that is still closed after moving off is not seen in this wiring"
-                }
-            };
             let far = of(|home| home.max_travel);
             format!(
-                "no limit was met: moved {far}, which is max_travel; look at the switch, its wiring and limit_level{unseen}"
+                "no limit was met: moved {far}, which is max_travel; look at the switch, its wiring and limit_level"
             )
         }
         HomingFault::Closed => format!(

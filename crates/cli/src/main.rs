@@ -22,6 +22,7 @@ mod homing;
 mod interrupt;
 mod job;
 mod junit;
+mod limits;
 mod memory;
 #[cfg(unix)]
 mod operated;

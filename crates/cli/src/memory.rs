@@ -7,24 +7,26 @@
 //! and its drivers have kept their power. Three values detect a change:
 //!
 //! ```text
-//! next        the number of the next write: any write of another host changes it
+//! session     the number of the last session: another host opens one of its own before it writes,
+//!             and a configuration leaves none
 //! positions   of all axes: any move changes them
-//! ready       0 after a configuration until a host switches the drivers on: detects a restart
+//! ready       the drivers have power
 //! ```
 //!
-//! If one of them differs from the stored value, the content is discarded. One case is not
-//! detected: a restart, after which another host switches the drivers on, makes as many writes as
-//! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
+//! If one of them differs from the stored value, the content is discarded. The board does not tell
+//! the number of its session; it only tells whether a number that it is asked about is the one.
 
 use crate::connection::{ConnectedBoard, Connection};
+use crate::limits::ClosedLimits;
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write as _};
+use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// The environment variable that overrides the folder.
 const FOLDER: &str = "CARRYSTEP_STATE";
 
@@ -34,7 +36,7 @@ struct Record {
     schema: u32,
     port: String,
     build: String,
-    next: u8,
+    session: Option<NonZeroU16>,
     ready: bool,
     axes: Vec<AxisRecord>,
 }
@@ -47,27 +49,8 @@ struct AxisRecord {
     steps_per_unit: f64,
     /// The machine coordinate of the register's zero in steps, if the axis is homed.
     offset: Option<i64>,
-    limit: Option<MetLimit>,
-}
-
-/// A limit that an axis has met and not yet left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MetLimit {
-    /// The direction in which the axis moved: 1 or -1.
-    pub direction: i8,
-    /// The position at which it came to rest, in steps of the register.
-    pub at: i32,
-    /// Distance that it must move back until the switch is open, in steps.
-    pub clear: u32,
-}
-
-impl MetLimit {
-    /// The distance that an axis at this position must still move away, in steps; 0 if it is far
-    /// enough.
-    pub fn to_go(self, position: i32) -> u32 {
-        let away = i64::from(self.at.wrapping_sub(position)) * i64::from(self.direction);
-        u32::try_from(i64::from(self.clear) - away).unwrap_or(0)
-    }
+    /// The direction, 1 or -1, in which the axis has met a limit whose switch is still closed.
+    limit: Option<i8>,
 }
 
 /// What is known about a board.
@@ -79,8 +62,8 @@ pub struct BoardMemory {
 
 impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
-    /// discarded.
-    pub fn recall(connection: &Connection) -> Self {
+    /// discarded. No session may be open; an error of the line counts as a change.
+    pub fn recall(connection: &mut Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
         // The canonical path, so that every link to the port gives the same name.
         let port = Path::new(port)
@@ -92,24 +75,26 @@ impl BoardMemory {
         let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
         let blank = vec![AxisRecord::default(); axes.len()];
         let Status { answer, positions } = *board.status();
-        let mut record = Record {
-            schema: SCHEMA,
-            port,
-            build,
-            next: answer.next,
-            ready: answer.ready,
-            axes: blank,
-        };
+        let mut record =
+            Record { schema: SCHEMA, port, build, session: None, ready: answer.ready, axes: blank };
         let stored = path.as_ref().and_then(|path| std::fs::read(path).ok());
         if let Some(stored) = stored.and_then(|text| serde_json::from_slice::<Record>(&text).ok())
             && (stored.schema, &stored.port, &stored.build) == (SCHEMA, &record.port, &record.build)
-            && (stored.next, stored.ready, stored.axes.len())
-                == (record.next, record.ready, record.axes.len())
+            && (stored.ready, stored.axes.len()) == (record.ready, record.axes.len())
             && stored.axes.iter().zip(positions).all(|(axis, position)| axis.position == position)
+            // A read of the owner would restart the watchdog of axes that move.
+            && (answer.idle || answer.halted)
+            && stored.session.is_some_and(|number| board.keeps(number).unwrap_or(false))
         {
+            record.session = stored.session;
             record.axes = stored.axes;
+            if let Ok(closed) = ClosedLimits::read(board) {
+                for (number, axis) in record.axes.iter_mut().enumerate() {
+                    axis.limit = axis.limit.filter(|_| closed.any(number));
+                }
+            }
         }
-        for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit) {
+        for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit.iter()) {
             // A coordinate in steps is meaningless if the size of a step has changed.
             if axis.steps_per_unit.to_bits() != steps.to_bits() {
                 *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
@@ -130,9 +115,14 @@ impl BoardMemory {
         Some((i64::from(position) + (*offset)?) as f64 / steps_per_unit)
     }
 
-    /// The limit that an axis has met and not yet left.
-    pub fn limit(&self, axis: usize) -> Option<MetLimit> {
+    /// The direction, 1 or -1, in which an axis has met a limit whose switch is still closed.
+    pub fn limit(&self, axis: usize) -> Option<i8> {
         self.record.axes.get(axis)?.limit
+    }
+
+    /// The same for all axes.
+    pub fn limits(&self) -> Vec<Option<i8>> {
+        self.record.axes.iter().map(|axis| axis.limit).collect()
     }
 
     /// Sets the machine coordinate of an axis' register zero, in steps; `None` means not homed.
@@ -145,9 +135,9 @@ impl BoardMemory {
         self.record.axes.iter_mut().for_each(|axis| axis.offset = None);
     }
 
-    /// Sets the limit that an axis has met; `None` means that it is clear of limits.
-    pub fn set_limit(&mut self, axis: usize, limit: Option<MetLimit>) {
-        self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.limit = limit);
+    /// Sets the direction in which an axis has met a limit; `None` means that it is clear of limits.
+    pub fn set_limit(&mut self, axis: usize, direction: Option<i8>) {
+        self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.limit = direction);
     }
 
     /// Writes the memory together with the board's present state. The file appears only when it is
@@ -158,10 +148,10 @@ impl BoardMemory {
     /// longer matches the board and is ignored.
     pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
         let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;
-        (self.record.next, self.record.ready) = (answer.next, answer.ready);
+        self.record.ready = answer.ready;
+        self.record.session = board.session().or(self.record.session);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
-            axis.limit = axis.limit.filter(|limit| limit.to_go(position) > 0);
             // A motor without power does not keep its position.
             axis.offset = axis.offset.filter(|_| answer.ready);
         }
@@ -194,21 +184,5 @@ fn folder() -> Option<PathBuf> {
         None => {
             Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("carrystep").join("boards"))
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn axis_is_clear_of_its_limit_after_moving_back_the_clear_distance() {
-        let back = MetLimit { direction: -1, at: -105, clear: 20 };
-        assert_eq!(
-            [-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)),
-            [20, 19, 1, 0, 0, 25]
-        );
-        let forth = MetLimit { direction: 1, at: 105, clear: 20 };
-        assert_eq!([105, 86, 85, -300].map(|position| forth.to_go(position)), [20, 1, 0, 0]);
     }
 }

@@ -18,16 +18,18 @@ mod cause;
 mod error;
 mod figures;
 mod ports;
+mod seek;
 mod state;
 
-pub use build::{EngineBuild, Guard, LimitWiring};
+pub use build::{EngineBuild, Guard, InputRow, Latch, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 pub use ports::{ENGINE_PORTS, is_recorded, ports_of};
+pub use seek::SeekSource;
 pub use state::{
-    AxisStatus, STATE_AXIS_BITS, STATE_ITEM_BITS, STATUS_BITS, StateItem, StatePage, StateWord,
-    address as state_address, commanded_steps,
+    AxisStatus, STATE_AXIS_BITS, STATE_ITEM_BITS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
+    StateItem, StatePage, StateWord, address as state_address, commanded_steps,
 };
 
 pub use crate::schedule::{
@@ -57,6 +59,12 @@ pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
 
 /// Greatest number of consecutive samples that the debounce of a limit can require.
 pub const MAX_DEBOUNCE_SAMPLES: u32 = 127;
+
+/// Greatest number of consecutive ticks for which the latch can require its pin to be active.
+pub const MAX_LOOKS: u8 = 16;
+
+/// Rows of switches: limits at the low and at the high ends, and two rows of other inputs.
+pub const SWITCH_ROWS: u8 = 4;
 
 /// Checks that the time slots of all axes fit into a tick, and that each phase has room for its
 /// events.
@@ -127,8 +135,12 @@ pub struct EngineInputs {
     pub stop: bool,
     /// The host has violated the segment protocol.
     pub broken: bool,
-    /// New mask of the axes that wait for their limit, if the host writes one.
-    pub home: Option<u8>,
+    /// New source of seeks, if the host writes one.
+    pub seek_source: Option<SeekSource>,
+    /// New mask of the axes that wait for the source of their seek, if the host writes one.
+    pub seek: Option<u8>,
+    /// The host arms the latch.
+    pub latch_arm: bool,
     /// The host requests a snapshot of the state of all axes.
     pub snapshot: bool,
     /// The host has sent a valid request; this restarts the watchdog.
@@ -141,14 +153,18 @@ pub struct EngineInputs {
     pub limit_min: u8,
     /// Levels of the limit pins at the high ends; bit i is axis i.
     pub limit_max: u8,
+    /// Levels of the pins of the rows 2 and 3 of switches; bit i is input i.
+    pub inputs: [u8; 2],
+    /// Level of the latch's pin.
+    pub latch: bool,
 }
 
 impl EngineInputs {
     /// These inputs, with the levels of the pins from `other`.
     #[must_use]
     pub const fn with_pins(self, other: &Self) -> Self {
-        let Self { estop, limit_min, limit_max, .. } = *other;
-        Self { estop, limit_min, limit_max, ..self }
+        let Self { estop, limit_min, limit_max, inputs, latch, .. } = *other;
+        Self { estop, limit_min, limit_max, inputs, latch, ..self }
     }
 
     /// Converts what is active at the pins into their levels, by the polarity of the guard.
@@ -159,6 +175,8 @@ impl EngineInputs {
             estop: self.estop != guard.estop_low,
             limit_min: self.limit_min ^ low,
             limit_max: self.limit_max ^ low,
+            inputs: [self.inputs[0] ^ guard.inputs[0].low, self.inputs[1] ^ guard.inputs[1].low],
+            latch: self.latch != matches!(guard.latch, Some(Latch { low: true, .. })),
             ..self
         }
     }
@@ -190,8 +208,14 @@ pub struct EngineOutputs {
     pub armed: bool,
     /// The drivers have had power for the guard's `enable` time, and the host still requests it.
     pub ready: bool,
-    /// Mask of the axes that wait for their limit.
-    pub homing: u8,
+    /// Mask of the axes that wait for the source of their seek.
+    pub seeking: u8,
+    /// Mask of the axes that have hit the source of their seek, until the host ends the seek.
+    pub hits: u8,
+    /// The latch waits for its edge.
+    pub latch_armed: bool,
+    /// Edges since the latch was armed that it did not latch, at most 15.
+    pub latch_edges: u8,
     /// The word of state that is output in this cycle, if any.
     pub state: Option<StateWord>,
     /// The live words of all axes have been output in this tick; 1 in one cycle of it.

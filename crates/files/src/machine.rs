@@ -14,6 +14,7 @@ use carrystep_core::link::{BaudError, LineKind, Uart};
 use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
 use guard::RawGuard;
 use home::{RawOrder, RawPlace};
+use inputs::RawInputs;
 use link::RawLink;
 use serde::Deserialize;
 use std::ops::Range;
@@ -24,6 +25,7 @@ use toml::Spanned;
 mod axis;
 mod guard;
 mod home;
+mod inputs;
 mod link;
 mod stop;
 mod units;
@@ -172,6 +174,8 @@ pub(crate) struct RawMachine {
     #[serde(default)]
     guard: RawGuard,
     #[serde(default)]
+    inputs: RawInputs,
+    #[serde(default)]
     link: RawLink,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
@@ -214,8 +218,9 @@ impl RawMachine {
             }
             axes.push(axis);
         }
-        let guard =
-            self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
+        let inputs = self.inputs.check(source, axes.len())?;
+        let stop = axes.iter().map(|axis| axis.stop).collect();
+        let guard = self.guard.check(source, &timebase, inputs, stop)?;
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);

@@ -54,6 +54,7 @@ fn page_lists_the_keys_of_the_reader() {
         ("## `[[machine.axis]]`", format!("{MOVE}[machine]\n{AXIS}colour = 1\n")),
         ("### `home`", format!("{MOVE}[machine]\n{AXIS}home = {{ colour = 1 }}\n")),
         ("## `[machine.guard]`", format!("{MOVE}[machine.guard]\ncolour = 1\n{AXIS}")),
+        ("## `[machine.inputs]`", format!("{MOVE}[machine.inputs]\ncolour = 1\n{AXIS}")),
         ("## `[machine.link]`", format!("{MOVE}[machine.link]\ncolour = 1\n{AXIS}")),
         ("## The move file", format!("colour = 1\n{MOVE}[machine]\n{AXIS}")),
         ("### `[[move]]`", format!("{MOVE}colour = 1\n[machine]\n{AXIS}")),
@@ -154,12 +155,16 @@ fn examples_are_valid_and_the_first_has_every_key() {
     let blocks: Vec<&str> =
         PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     machine(blocks[0]);
-    for heading in
-        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
-    {
+    for heading in [
+        "## `[machine]`",
+        "## `[[machine.axis]]`",
+        "## `[machine.guard]`",
+        "## `[machine.inputs]`",
+        "## `[machine.link]`",
+    ] {
         for row in rows(heading) {
             let key = quoted(row[0]);
-            let table = ["guard", "link", "axis"].contains(&key);
+            let table = ["guard", "inputs", "link", "axis"].contains(&key);
             let there = blocks[0].contains(&if table {
                 format!("machine.{key}]")
             } else {

@@ -10,9 +10,9 @@
 //!                        '-------'  '-------'<==|       |       v           v
 //!                          ^ pulses, losses     '-------'   .-------.   .-------.
 //!                          |                        v V     | wheel |   | stops |
-//!                        .--------.             .--------.  '-------'   '-------'
-//!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
-//!                        '--------'   |         '--------'      |             v halted, cause
+//!                        .--------.            .----------. '-------'   '-------'
+//!   step, dir <----------| pulser |<--.        | switches |-----|-> found ^   | frozen, ramp,
+//!                        '--------'   |        '----------'     |             v halted, cause
 //!                        one per axis '---- the events of this phase
 //! ```
 //!
@@ -22,7 +22,8 @@
 //!
 //! Interface: the host writes segments word by word (`put`) into a queue of seven segments per axis
 //! and starts axes by a mask. The engine outputs the state of all axes in every tick (`state`), on
-//! request as a snapshot. The inputs `estop`, `limit_min` and `limit_max` come directly from pins.
+//! request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`, `inputs_1` and
+//! `latch` come directly from pins.
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
@@ -45,34 +46,36 @@ use carrystep_core::engine::{CAUSE_BITS, least_clocks};
 use rust_hdl::prelude::*;
 
 pub mod adder;
+pub mod edge_latch;
 pub mod event_wheel;
-pub mod homing_control;
 pub mod layout;
-pub mod limits;
 pub mod pulser;
 pub mod queue;
 pub mod readout;
 pub mod resets;
+pub mod seek_control;
 mod sim;
 pub mod stops;
 pub mod store;
 pub mod supervisor;
+pub mod switches;
 pub mod time_slot;
 mod wiring;
 
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
+use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
-use homing_control::HomingControl;
-use limits::LimitSwitches;
 use pulser::Pulser;
 use queue::Queue;
 use readout::Readout;
 use resets::Resets;
+use seek_control::SeekControl;
 use stops::Stops;
 use store::Store;
 use supervisor::Supervisor;
+use switches::Switches;
 use time_slot::TimeSlot;
 
 /// The engine of N axes, 1 to 8.
@@ -112,11 +115,19 @@ pub struct Engine<const N: usize> {
     /// The host has broken the segment protocol; asserted for one clock or longer. The engine
     /// freezes all axes.
     pub broken: Input<Bit>,
-    /// The host replaces the mask of the axes that wait for their limit.
-    pub home_valid: Input<Bit>,
-    /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
-    /// axis i.
-    pub home_mask: Input<Word<N>>,
+    /// The host replaces the source of seeks.
+    pub seek_source_valid: Input<Bit>,
+    /// The source from the next clock on, valid with `seek_source_valid`: in bits 2 to 0 the axis
+    /// and in bits 4 and 3 the row of a switch; in bit 5 that each axis waits for its own switch in
+    /// that row; in bit 6 the debounced state that is the hit, 1 active.
+    pub seek_source: Input<Word<7>>,
+    /// The host replaces the mask of the axes that wait for the source.
+    pub seek_valid: Input<Bit>,
+    /// The axes that wait for the source from the next clock on, valid with `seek_valid`; bit i is
+    /// axis i. A mask of 0 ends the seek.
+    pub seek_mask: Input<Word<N>>,
+    /// The host arms the latch for one edge, and sets the count of further edges to 0.
+    pub latch_arm: Input<Bit>,
     /// The host requests a snapshot of the state of all axes; asserted for one clock or longer.
     pub snapshot: Input<Bit>,
     /// A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
@@ -132,14 +143,24 @@ pub struct Engine<const N: usize> {
     /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are
     /// used only if `LIMITS` is 1.
     pub limit_max: Input<Word<N>>,
+    /// The pins of the inputs that `INPUTS_0` names; bit 0 is the probe; asynchronous. Each is
+    /// debounced as the limits are.
+    pub inputs_0: Input<Word<N>>,
+    /// The pins of the inputs that `INPUTS_1` names; bit 0 is the interlock, which stops all axes
+    /// by a ramp; asynchronous.
+    pub inputs_1: Input<Word<N>>,
+    /// The pin of the latch; asynchronous. It is used unless `LATCH_LOOKS` is 0.
+    pub latch: Input<Bit>,
     /// A word of the state of an axis is output in this clock.
     pub state_valid: Signal<Out, Bit>,
-    /// The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    /// The copy to which it belongs: 0 hit of a seek, 1 live, 2 snapshot, 3 latch. Of the item 2
+    /// it is the row of the switch: 0 and 1 limits at the low and the high ends, 2 and 3 inputs.
     pub state_page: Signal<Out, Word<2>>,
     /// The axis, as a number from 0.
     pub state_axis: Signal<Out, Word<3>>,
-    /// The meaning of the word: 0 discarded steps, 1 remaining ticks, 3 number of the tick, 4 and 5
-    /// P (low and high half), 6 position in steps, 7 status.
+    /// The meaning of the word: 0 discarded steps, 1 remaining ticks, 2 switch (bit 7 its debounced
+    /// state, bit 6 the level of its pin), 3 number of the tick, 4 and 5 P (low and high half), 6
+    /// position in steps, 7 status.
     pub state_item: Signal<Out, Word<3>>,
     /// The word. Of the status only bits 15 to 0 have a meaning.
     pub state: Signal<Out, Word<32>>,
@@ -164,8 +185,8 @@ pub struct Engine<const N: usize> {
     /// The engine is returning to its state at configuration, after `reset`.
     pub resetting: Signal<Out, Bit>,
     /// The first cause of the stop: 0 e-stop, 1 overrun, 2 protocol, 3 watchdog,
-    /// 4 overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
-    /// asserted.
+    /// 4 overspeed, 5 limit, 6 underrun, 7 stop of the host, 8 interlock. It has no meaning while
+    /// `fault` is not asserted.
     pub cause: Signal<Out, Word<CAUSE_BITS>>,
     /// The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
     /// asserted.
@@ -175,8 +196,14 @@ pub struct Engine<const N: usize> {
     /// The host requests power for the drivers and they have been powered for long enough, so that
     /// a start can be accepted.
     pub ready: Signal<Out, Bit>,
-    /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Signal<Out, Word<N>>,
+    /// The axes that wait for the source of their seek; bit i is axis i.
+    pub seeking: Signal<Out, Word<N>>,
+    /// The axes that have hit the source, until the host ends the seek; bit i is axis i.
+    pub hits: Signal<Out, Word<N>>,
+    /// The latch waits for its edge.
+    pub latch_armed: Signal<Out, Bit>,
+    /// The edges since the latch was armed that it did not latch, at most 15.
+    pub latch_edges: Signal<Out, Word<4>>,
     /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
     time_slot: TimeSlot<N>,
@@ -184,8 +211,9 @@ pub struct Engine<const N: usize> {
     queue: Queue,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
-    limits: LimitSwitches<N>,
-    homing_control: HomingControl<N>,
+    switches: Switches<N>,
+    seek_control: SeekControl<N>,
+    edge_latch: EdgeLatch,
     readout: Readout,
     stops: Stops<N>,
     resets: Resets,
@@ -201,6 +229,7 @@ pub struct Engine<const N: usize> {
     taken_word: Register<Word<3>>,
     unfed: Register<Bit>,  // an axis of the mask has no waiting segment
     held: Register<Bit>,   // an axis of the mask still runs after this tick
+    drops: Register<Bit>,  // an axis of the mask has hit the source of its seek
     active: Register<Bit>, // an axis runs or has a waiting segment
     rest_1: Register<Bit>, // no axis was active in the last tick
     rest_2: Register<Bit>, // no axis was active in the last two ticks
@@ -244,8 +273,9 @@ impl<const N: usize> Engine<N> {
             time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop),
             event_wheel: EventWheel::new(&build.timebase),
-            limits: LimitSwitches::new(&build.guard),
-            homing_control: HomingControl::new(),
+            switches: Switches::new(&build.guard),
+            seek_control: SeekControl::new(),
+            edge_latch: EdgeLatch::new(&build.guard),
             stops: Stops::new(&build.guard),
             supervisor: Supervisor::new(&build.guard),
             pulser,

@@ -3,7 +3,7 @@
 //! ```text
 //!          .------. received .---------. put, start, home, control
 //!  rx ---->|      |--------->|         |--------------------------------> engine
-//!          | line |          |processor| state, room, culprits, homing
+//!          | line |          |processor| state, room, culprits, seeking
 //!          |      | answer   |         |<-------------------------------- engine
 //!  tx <----|      |<---------|         | facts  .-------. words
 //!          '------'          '---------'<-------| facts |<--------------- engine
@@ -79,23 +79,29 @@ pub struct Link<const N: usize> {
     pub start_ready: Input<Bit>,
     /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The host requests a controlled stop, as long as it is asserted.
+    /// The host requests a controlled stop.
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// The host replaces the mask of the axes that wait for their limit.
-    pub home_valid: Signal<Out, Bit>,
-    /// The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
-    pub home_mask: Signal<Out, Word<N>>,
+    /// The host replaces the source of seeks.
+    pub seek_source_valid: Signal<Out, Bit>,
+    /// The source: axis in bits 2..0, row in bits 4..3, own in bit 5, level in bit 6.
+    pub seek_source: Signal<Out, Word<7>>,
+    /// The host replaces the mask of the axes that wait for the source of their seek.
+    pub seek_valid: Signal<Out, Bit>,
+    /// The axes that wait for it, valid with `seek_valid`; bit i is axis i.
+    pub seek_mask: Signal<Out, Word<N>>,
+    /// The host arms the latch.
+    pub latch_arm: Signal<Out, Bit>,
     /// The host requests a snapshot of the state of all axes.
     pub snapshot: Signal<Out, Bit>,
-    /// The host has sent a valid request: the watchdog restarts.
+    /// The owner of the session has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Signal<Out, Bit>,
     /// The engine outputs a word of the state of an axis in this clock.
     pub state_valid: Input<Bit>,
-    /// The copy to which it belongs: 0 at the limit, 1 live, 2 snapshot.
+    /// The copy to which it belongs: 0 hit of a seek, 1 live, 2 snapshot, 3 latch.
     pub state_page: Input<Word<2>>,
     /// Its axis, as a number from 0.
     pub state_axis: Input<Word<3>>,
@@ -120,8 +126,14 @@ pub struct Link<const N: usize> {
     pub cause: Input<Word<CAUSE_BITS>>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
-    /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Input<Word<N>>,
+    /// The axes that wait for the source of their seek; bit i is axis i.
+    pub seeking: Input<Word<N>>,
+    /// The axes that have hit it, until the host ends the seek; bit i is axis i.
+    pub hits: Input<Word<N>>,
+    /// The latch waits for its edge.
+    pub latch_armed: Input<Bit>,
+    /// The edges since the latch was armed that it did not latch, at most 15.
+    pub latch_edges: Input<Word<4>>,
     processor: LinkProcessor<N>,
     register_mirror: RegisterMirror,
 }
@@ -170,7 +182,7 @@ impl<const N: usize> Logic for Link<N> {
 
         self.put_valid.next = self.processor.put_valid.val();
         self.put_axis.next = self.processor.a.val().get_bits::<3>(0);
-        self.put_word.next = self.processor.x.val().get_bits::<3>(2);
+        self.put_word.next = self.processor.put_word.val();
         self.put_data.next = self.processor.put_data.val();
         self.processor.put_ready.next = self.put_ready.val();
         self.processor.room.next = self.room.val();
@@ -178,8 +190,11 @@ impl<const N: usize> Logic for Link<N> {
         self.start_valid.next = self.processor.start_valid.val();
         self.start_mask.next = self.processor.a.val().get_bits::<N>(0);
         self.processor.start_ready.next = self.start_ready.val();
-        self.home_valid.next = self.processor.home_valid.val();
-        self.home_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.seek_source_valid.next = self.processor.seek_source_valid.val();
+        self.seek_source.next = self.processor.a.val().get_bits::<7>(0);
+        self.latch_arm.next = self.processor.latch_arm.val();
+        self.seek_valid.next = self.processor.seek_valid.val();
+        self.seek_mask.next = self.processor.a.val().get_bits::<N>(0);
         self.clear.next = self.processor.clear.val();
         self.stop.next = self.processor.stop.val();
         self.broken.next = self.processor.broken.val();
@@ -195,7 +210,10 @@ impl<const N: usize> Logic for Link<N> {
         self.processor.armed.next = self.armed.val();
         self.processor.cause.next = self.cause.val();
         self.processor.culprits.next = self.culprits.val();
-        self.processor.homing.next = self.homing.val();
+        self.processor.seeking.next = self.seeking.val();
+        self.processor.hits.next = self.hits.val();
+        self.processor.latch_armed.next = self.latch_armed.val();
+        self.processor.latch_edges.next = self.latch_edges.val();
         self.processor.facts.next = self.register_mirror.data.val();
 
         self.register_mirror.address.next = self.processor.x.val();

@@ -80,18 +80,18 @@ pub const STOP_ACCEL: Described = Described::per_axis(
     "1 to 2^62",
     "acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2",
 );
-/// The length of a round, which is the unit of the guard's times. Each limit is sampled once per
+/// The length of a round, which is the unit of the guard's times. Each switch is sampled once per
 /// round.
 pub const ROUND_TICKS: Described = Described::new(
     "ROUND_TICKS",
     "a power of two from 2 to 1024",
     "length of a round, the unit of the times below, in ticks",
 );
-/// The number of samples by which the limits are debounced.
+/// The number of samples by which the switches are debounced.
 pub const DEBOUNCE_SAMPLES: Described = Described::new(
     "DEBOUNCE_SAMPLES",
     "1 to 127",
-    "equal consecutive samples, one per round, that change a limit's debounced state",
+    "equal consecutive samples, one per round, that change a switch's debounced state",
 );
 /// The timeout of the watchdog.
 pub const WATCHDOG_ROUNDS: Described = Described::new(
@@ -114,6 +114,33 @@ pub const LIMITS: Described = Described::new(
 /// The active level of the limit switches.
 pub const LIMITS_LOW: Described =
     Described::new("LIMITS_LOW", "0 or 1", "active level of the limit switches: 0 high, 1 low");
+/// The inputs of row 2 that exist.
+pub const INPUTS_0: Described = Described::new(
+    "INPUTS_0",
+    "a mask with one bit per axis",
+    "the inputs at `inputs_0` that exist; bit 0 is the probe",
+);
+/// The active level of the inputs of row 2.
+pub const INPUTS_0_LOW: Described =
+    Described::new("INPUTS_0_LOW", "a part of INPUTS_0", "those of them that are active low");
+/// The inputs of row 3 that exist.
+pub const INPUTS_1: Described = Described::new(
+    "INPUTS_1",
+    "a mask with one bit per axis",
+    "the inputs at `inputs_1` that exist; bit 0 is the interlock",
+);
+/// The active level of the inputs of row 3.
+pub const INPUTS_1_LOW: Described =
+    Described::new("INPUTS_1_LOW", "a part of INPUTS_1", "those of them that are active low");
+/// The number of strobes that must find the latch's pin active.
+pub const LATCH_LOOKS: Described = Described::new(
+    "LATCH_LOOKS",
+    "0 to 16",
+    "consecutive ticks that must find the latch active for an edge; 0: no latch",
+);
+/// The active level of the latch.
+pub const LATCH_LOW: Described =
+    Described::new("LATCH_LOW", "0 or 1", "active level of the latch: 0 high, 1 low");
 /// The kind of stop that a limit triggers.
 pub const LIMIT_FREEZES: Described = Described::new(
     "LIMIT_FREEZES",
@@ -150,7 +177,7 @@ pub const BIT_CLOCKS: Described = Described::new(
 );
 
 /// All parameters, in the order in which a module lists them.
-pub const PARAMETERS: [Described; 20] = [
+pub const PARAMETERS: [Described; 26] = [
     BUILD_ID,
     CLOCK_HZ,
     TICK_NS,
@@ -169,6 +196,12 @@ pub const PARAMETERS: [Described; 20] = [
     LIMITS,
     LIMITS_LOW,
     LIMIT_FREEZES,
+    INPUTS_0,
+    INPUTS_0_LOW,
+    INPUTS_1,
+    INPUTS_1_LOW,
+    LATCH_LOOKS,
+    LATCH_LOW,
     ESTOP_LOW,
     EVENT_MEMORY,
 ];

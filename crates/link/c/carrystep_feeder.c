@@ -88,7 +88,7 @@ static void ask(carrystep_session *session, const carrystep_feeder *feeder)
 carrystep_fed carrystep_feed(carrystep_session *session, carrystep_feeder *feeder)
 {
     look_ahead(feeder, session->axes);
-    while (session->length < CARRYSTEP_SLOTS) {
+    while (session->length < CARRYSTEP_SLOTS && !session->seek_ended) {
         int axis = hungriest(session, feeder);
         if (axis >= 0) {
             if (!hand_over(session, feeder, axis)) {

@@ -15,7 +15,7 @@ uint32_t carrystep_crc(const uint8_t *bytes, size_t length)
 
 bool carrystep_is_segment(uint8_t address)
 {
-    return address >= (CARRYSTEP_WRITE | CARRYSTEP_SEGMENT);
+    return address >= (CARRYSTEP_WRITE | CARRYSTEP_SEGMENT) && address < (CARRYSTEP_WRITE | CARRYSTEP_SEGMENTS);
 }
 
 bool carrystep_names_axis(const carrystep_answer *answer)
@@ -48,11 +48,15 @@ static uint32_t word_at(const uint8_t *frame, size_t at)
            (uint32_t)frame[at + 3] << 24;
 }
 
-size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request *request)
+size_t carrystep_encode(uint8_t *line, uint8_t sequence, uint16_t session, const carrystep_request *request)
 {
     uint8_t frame[CARRYSTEP_LONGEST_REQUEST] = {sequence, request->address};
     size_t length = CARRYSTEP_REQUEST_HEAD;
     size_t out = 0;
+    if (request->writes || session != 0) {
+        frame[length++] = (uint8_t)(session & 0xffu);
+        frame[length++] = (uint8_t)(session >> 8);
+    }
     if (request->writes && carrystep_is_segment(request->address)) {
         const carrystep_segment *segment = &request->segment;
         length = put_word(frame, length, segment->ticks - 1u);
@@ -97,10 +101,10 @@ static bool take(const uint8_t *frame, uint8_t length, carrystep_answer *answer)
     answer->armed = CARRYSTEP_ANSWER_ARMED(frame) != 0;
     answer->cause = CARRYSTEP_ANSWER_CAUSE(frame);
     answer->free = CARRYSTEP_ANSWER_FREE(frame);
-    answer->refused = CARRYSTEP_ANSWER_REFUSED(frame) != 0;
+    answer->reason = CARRYSTEP_ANSWER_REASON(frame);
     answer->written = CARRYSTEP_ANSWER_WRITTEN(frame) != 0;
     answer->culprits = CARRYSTEP_ANSWER_CULPRITS(frame);
-    answer->homing = CARRYSTEP_ANSWER_HOMING(frame);
+    answer->seeking = CARRYSTEP_ANSWER_SEEKING(frame);
     answer->data = word_at(frame, CARRYSTEP_ANSWER_DATA);
     return true;
 }

@@ -35,7 +35,8 @@ typedef struct {
     carrystep_segment segment; /* of a segment */
 } carrystep_request;
 
-/* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. */
+/* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. `reason`
+ * is 0, or the CARRYSTEP_REASON_ for which the request was not executed. */
 typedef struct {
     uint8_t sequence;
     uint8_t address;
@@ -47,10 +48,10 @@ typedef struct {
     bool armed;
     uint8_t cause;
     uint8_t free;
-    bool refused;
+    uint8_t reason;
     bool written; /* the request was a write */
     uint8_t culprits;
-    uint8_t homing;
+    uint8_t seeking;
     uint32_t data;
 } carrystep_answer;
 
@@ -81,9 +82,9 @@ bool carrystep_names_axis(const carrystep_answer *answer);
 /* The axis that such an address names. */
 uint8_t carrystep_axis_of(uint8_t address);
 
-/* Encodes a request to `line`, which has CARRYSTEP_LINE_BYTES bytes. Returns the number of bytes
- * used. */
-size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request *request);
+/* Encodes a request of this session to `line`, which has CARRYSTEP_LINE_BYTES bytes. A read of
+ * session 0 is free: it belongs to no session. Returns the number of bytes used. */
+size_t carrystep_encode(uint8_t *line, uint8_t sequence, uint16_t session, const carrystep_request *request);
 
 /* Processes the next byte from the line. If it completes an answer, *answer is set. */
 carrystep_received carrystep_decode(carrystep_decoder *decoder, uint8_t byte, carrystep_answer *answer);

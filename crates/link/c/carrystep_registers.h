@@ -26,14 +26,20 @@
 #define CARRYSTEP_WRITE 0x80u
 /* Length of the sequence number and the address of a request in bytes. */
 #define CARRYSTEP_REQUEST_HEAD 2u
-/* Number of words of a segment, the commit included. */
+/* Length of the session number in a request in bytes. */
+#define CARRYSTEP_SESSION_BYTES 2u
+/* Number of words of a SEGMENT frame, the commit included. */
 #define CARRYSTEP_SEGMENT_FRAME_WORDS 8u
-/* Length of the longest request in bytes, without END and ESC. */
-#define CARRYSTEP_LONGEST_REQUEST 38u
+/* Number of words of a SEGMENTS frame before its axes: the mask, and ticks - 1. */
+#define CARRYSTEP_SEGMENTS_HEAD_WORDS 2u
+/* Number of words for each axis of a SEGMENTS frame: V, A, J. */
+#define CARRYSTEP_SEGMENTS_AXIS_WORDS 6u
+/* Length of the longest request (SEGMENTS for eight axes) in bytes, without END and ESC. */
+#define CARRYSTEP_LONGEST_REQUEST 212u
 /* Length of an answer in bytes, without END and ESC. */
-#define CARRYSTEP_ANSWER_BYTES 15u
+#define CARRYSTEP_ANSWER_BYTES 16u
 /* Number of the first data byte in an answer. */
-#define CARRYSTEP_ANSWER_DATA 7u
+#define CARRYSTEP_ANSWER_DATA 8u
 /* Number of writes that may be unacknowledged, and by which a repeated one may lie behind. */
 #define CARRYSTEP_WINDOW 0x7fu
 /* Value of the register IDENTITY. */
@@ -42,10 +48,10 @@
 #define CARRYSTEP_PROTOCOL_VERSION UINT32_C(0x00000002)
 /* Bit of CONTROL: power the drivers. */
 #define CARRYSTEP_CONTROL_ENABLE UINT32_C(0x00000001)
-/* Bit of CONTROL: stop all axes. */
-#define CARRYSTEP_CONTROL_STOP UINT32_C(0x00000002)
+/* Bit of OPEN: stop all axes if the gateware is busy. */
+#define CARRYSTEP_OPEN_FORCE UINT32_C(0x00000001)
 /* Lowest address at which a register of an axis is read. */
-#define CARRYSTEP_AXES_AT 0x18u
+#define CARRYSTEP_AXES_AT 0x10u
 /* Bits of STATUS: the slot of the running segment. */
 #define CARRYSTEP_STATUS_SLOT UINT32_C(0x0000001f)
 /* Bit of STATUS: the axis runs a segment. */
@@ -78,18 +84,32 @@
 #define CARRYSTEP_TICK_NS 0x06u
 /* Number of phases in a tick (read) */
 #define CARRYSTEP_PHASES 0x07u
-/* Ticks without a valid frame after which all axes are stopped; 0: no watchdog (read) */
+/* Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
-/* TICKS of the other words at the limit (read, axis 0) */
-#define CARRYSTEP_LIMIT_TICKS 0x18u
-/* P in the tick after the one in which homing found the limit, low half (read, axis 0) */
-#define CARRYSTEP_LIMIT_P_LOW 0x20u
-/* P at the limit, high half (read, axis 0) */
-#define CARRYSTEP_LIMIT_P_HIGH 0x28u
-/* Position at the limit in steps (read, axis 0) */
-#define CARRYSTEP_LIMIT_POSITION 0x30u
-/* STATUS at the limit (read, axis 0) */
-#define CARRYSTEP_LIMIT_STATUS 0x38u
+/* Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed (read) */
+#define CARRYSTEP_CAPTURES 0x09u
+/* Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock) (read) */
+#define CARRYSTEP_INPUTS 0x0au
+/* Levels of the same pins, 1 active, when they were sampled last (read) */
+#define CARRYSTEP_INPUT_LEVELS 0x0bu
+/* Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0) */
+#define CARRYSTEP_LIMIT_MIN_SWITCH 0x10u
+/* Limit at the high end, likewise (read, axis 0) */
+#define CARRYSTEP_LIMIT_MAX_SWITCH 0x50u
+/* Input of row 2 in the time slot of this axis, likewise; of axis 0 it is the probe (read, axis 0) */
+#define CARRYSTEP_INPUT_0_SWITCH 0x90u
+/* Input of row 3 in the time slot of this axis, likewise; of axis 0 it is the interlock (read, axis 0) */
+#define CARRYSTEP_INPUT_1_SWITCH 0xd0u
+/* TICKS at the hit of a seek (read, axis 0) */
+#define CARRYSTEP_SEEK_TICKS 0x18u
+/* P in the tick after the hit of a seek, low half (read, axis 0) */
+#define CARRYSTEP_SEEK_P_LOW 0x20u
+/* P at the hit, high half (read, axis 0) */
+#define CARRYSTEP_SEEK_P_HIGH 0x28u
+/* POSITION at the hit (read, axis 0) */
+#define CARRYSTEP_SEEK_POSITION 0x30u
+/* STATUS at the hit (read, axis 0) */
+#define CARRYSTEP_SEEK_STATUS 0x38u
 /* Number of steps that freezes have discarded since configuration (read, axis 0) */
 #define CARRYSTEP_DISCARDED 0x40u
 /* Ticks of the running segment after the next one; no meaning while the axis does not run (read, axis 0) */
@@ -118,18 +138,40 @@
 #define CARRYSTEP_SNAPSHOT_POSITION 0xb0u
 /* STATUS in that tick (read, axis 0) */
 #define CARRYSTEP_SNAPSHOT_STATUS 0xb8u
-/* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
+/* DISCARDED in the tick of the latch; no meaning if the axis ran (read, axis 0) */
+#define CARRYSTEP_LATCH_DISCARDED 0xc0u
+/* LEFT in the tick of the latch; no meaning if the axis did not run (read, axis 0) */
+#define CARRYSTEP_LATCH_LEFT 0xc8u
+/* TICKS of the latch; the same for all axes (read, axis 0) */
+#define CARRYSTEP_LATCH_TICKS 0xd8u
+/* P in that tick, low half (read, axis 0) */
+#define CARRYSTEP_LATCH_P_LOW 0xe0u
+/* P in that tick, high half (read, axis 0) */
+#define CARRYSTEP_LATCH_P_HIGH 0xe8u
+/* POSITION in that tick (read, axis 0) */
+#define CARRYSTEP_LATCH_POSITION 0xf0u
+/* STATUS in that tick (read, axis 0) */
+#define CARRYSTEP_LATCH_STATUS 0xf8u
+/* Bit 0: power the drivers (write) */
 #define CARRYSTEP_CONTROL 0x20u
 /* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
 /* Any value ends a complete stop: queues empty, P at its start value, position kept (write) */
 #define CARRYSTEP_CLEAR 0x22u
-/* Axes, one bit each: the next limit latches the state and ramps down this axis only (write) */
-#define CARRYSTEP_HOME 0x23u
+/* Byte 0: the axes that wait for a source, one bit each, 0 ends the seek; byte 1: the source, axis of the switch in bits 2..0, row in 4..3, own switch of each axis in 5, state that is the hit in 6 (write) */
+#define CARRYSTEP_SEEK 0x23u
 /* Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick (write) */
 #define CARRYSTEP_SNAPSHOT 0x24u
+/* Makes the session number of this frame the owner; bit 0: stop all axes if it is busy (write) */
+#define CARRYSTEP_OPEN 0x25u
+/* Any value stops all axes, each with its ramp; executed for every host (write) */
+#define CARRYSTEP_STOP 0x26u
+/* Any value arms the latch: its next edge latches the state of all axes (write) */
+#define CARRYSTEP_LATCH 0x27u
 /* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
+/* Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis) */
+#define CARRYSTEP_SEGMENTS 0x48u
 
 /* The causes of a stop, by their number in the field `cause` of an answer. */
 #define CARRYSTEP_CAUSE_ESTOP 0u
@@ -140,6 +182,18 @@
 #define CARRYSTEP_CAUSE_LIMIT 5u
 #define CARRYSTEP_CAUSE_UNDERRUN 6u
 #define CARRYSTEP_CAUSE_STOP 7u
+#define CARRYSTEP_CAUSE_INTERLOCK 8u
+
+/* The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused. */
+
+/* A write before this one was lost: its number is not `next`. */
+#define CARRYSTEP_REASON_SEQUENCE 1u
+/* The request cannot be executed now: try again. */
+#define CARRYSTEP_REASON_BUSY 2u
+/* The request does not have the session number of the gateware's owner. */
+#define CARRYSTEP_REASON_SESSION 3u
+/* An axis that it names has hit the source of its seek, and the host has not ended the seek. */
+#define CARRYSTEP_REASON_SEEK_ENDED 4u
 
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
@@ -147,29 +201,29 @@
 #define CARRYSTEP_ANSWER_SEQUENCE(answer) ((uint8_t)((answer)[0] >> 0 & 255u))
 /* the address of the request */
 #define CARRYSTEP_ANSWER_ADDRESS(answer) ((uint8_t)((answer)[1] >> 0 & 255u))
-/* number of the next write; all before it were executed, or dropped during a fault */
+/* number of the owner's next write; all before it were executed, or dropped during a fault */
 #define CARRYSTEP_ANSWER_NEXT(answer) ((uint8_t)((answer)[2] >> 0 & 255u))
 /* a stop has been triggered; segments and starts are dropped until a clear */
 #define CARRYSTEP_ANSWER_FAULT(answer) ((uint8_t)((answer)[3] >> 0 & 1u))
-/* the stop is complete: no axis moves any more */
-#define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
-/* no axis moves, no queue holds a segment, and no start is armed */
-#define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the drivers have had power for the enable time, as a start requires */
-#define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
+#define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
 /* a start is armed; another start is refused as busy */
-#define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
-/* the cause of the stop, if `fault` is set; otherwise 0 */
-#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)(((answer)[3] >> 5 & 7u) | ((answer)[4] >> 4 & 1u) << 3))
-/* number of segments for which the queue of the addressed axis has room */
-#define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
-/* this write was not executed: out of sequence, or busy */
-#define CARRYSTEP_ANSWER_REFUSED(answer) ((uint8_t)((answer)[4] >> 3 & 1u))
+#define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the request was a write; a read of the same address has 0 here */
-#define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[4] >> 7 & 1u))
+#define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
+/* no axis moves, no queue holds a segment, and no start is armed */
+#define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 6 & 1u))
+/* the stop is complete: no axis moves any more */
+#define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 7 & 1u))
+/* number of segments for which the queue of the addressed axis has room; of SEGMENTS the least of its axes */
+#define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 255u))
 /* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
-/* the axes that still wait for their limit, one bit each */
-#define CARRYSTEP_ANSWER_HOMING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
+/* the axes that wait for the source of their seek, one bit each */
+#define CARRYSTEP_ANSWER_SEEKING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))
+/* the cause of the stop, if `fault` is set; otherwise 0 */
+#define CARRYSTEP_ANSWER_CAUSE(answer) ((uint8_t)((answer)[7] >> 0 & 15u))
+/* why the request was refused; 0 if it was not */
+#define CARRYSTEP_ANSWER_REASON(answer) ((uint8_t)((answer)[7] >> 4 & 15u))
 
 #endif

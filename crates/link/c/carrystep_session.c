@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define WRITES(register) (CARRYSTEP_WRITE | (register))
+#define SINGLES (CARRYSTEP_MOST_AXES + 2u)
 
 typedef char carrystep_slots_are_1_to_127[CARRYSTEP_SLOTS >= 1 && CARRYSTEP_SLOTS <= CARRYSTEP_WINDOW ? 1 : -1];
 
@@ -25,9 +26,11 @@ void carrystep_begin(carrystep_session *session, uint32_t resend, uint32_t pause
     session->pause = pause;
 }
 
-void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes)
+/* Owns the session with this number from now on; none if it is 0. */
+static void own(carrystep_session *session, uint16_t number)
 {
-    session->first = next;
+    session->number = number;
+    session->first = 0;
     session->length = 0;
     session->sent = 0;
     session->reached = 0;
@@ -35,9 +38,19 @@ void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes)
     session->busy = false;
     session->starting = false;
     session->powering = false;
-    session->axes = axes < CARRYSTEP_MOST_AXES ? axes : (uint8_t)CARRYSTEP_MOST_AXES;
+    session->seek_ended = false;
     memset(session->under_way, 0, sizeof session->under_way);
     memset(session->room, 0, sizeof session->room);
+}
+
+bool carrystep_opening(const carrystep_session *session)
+{
+    return session->opening != 0;
+}
+
+bool carrystep_owns(const carrystep_session *session)
+{
+    return session->number != 0;
 }
 
 /* ---- writes ---- */
@@ -65,7 +78,7 @@ bool carrystep_may_start(const carrystep_session *session)
 
 static bool push(carrystep_session *session, const carrystep_request *request)
 {
-    if (session->axes == 0 || session->length == CARRYSTEP_SLOTS) {
+    if (session->number == 0 || session->length == CARRYSTEP_SLOTS) {
         return false;
     }
     if (request->address == WRITES(CARRYSTEP_START) && !carrystep_may_start(session)) {
@@ -81,6 +94,8 @@ static bool push(carrystep_session *session, const carrystep_request *request)
         }
     } else if (request->address == WRITES(CARRYSTEP_START)) {
         session->starting = true;
+    } else if (request->address == WRITES(CARRYSTEP_SEEK)) {
+        session->seek_ended = false;
     } else if (request->address == WRITES(CARRYSTEP_CONTROL)) {
         session->powering = (request->word & CARRYSTEP_CONTROL_ENABLE) != 0;
     }
@@ -118,6 +133,11 @@ void carrystep_withdraw(carrystep_session *session)
     }
 }
 
+bool carrystep_seek_ended(const carrystep_session *session)
+{
+    return session->seek_ended;
+}
+
 static size_t send_write(carrystep_session *session, uint32_t now, uint8_t *line)
 {
     uint32_t waited = now - session->since;
@@ -138,39 +158,41 @@ static size_t send_write(carrystep_session *session, uint32_t now, uint8_t *line
     if (session->reached < session->sent) {
         session->reached = session->sent;
     }
-    return carrystep_encode(line, sequence, &session->slots[slot(session, (uint8_t)(session->sent - 1u))]);
+    return carrystep_encode(line, sequence, session->number,
+                            &session->slots[slot(session, (uint8_t)(session->sent - 1u))]);
 }
 
 /* Processes a refusal. The gateware refuses every write behind a missing one, so one loss causes
  * many refusals with rising numbers. Only the first of them begins a new round. */
-static void refusal(carrystep_session *session, uint8_t behind, uint32_t now)
+static void refusal(carrystep_session *session, uint8_t behind, bool busy, uint32_t now)
 {
     if (!session->has_refused || behind <= session->refused) {
         session->sent = 0;
-        session->busy = behind == 0;
+        session->busy = busy;
         session->since = now;
     }
     session->has_refused = true;
     session->refused = behind;
 }
 
-/* Whether this answers a write of this host, as far as that can be known. Of acknowledged writes
- * only the number is left, so a late answer to one of them is accepted. */
-static bool own(const carrystep_session *session, const carrystep_answer *answer)
+/* Whether this answers an unacknowledged write. */
+static bool answers(const carrystep_session *session, const carrystep_answer *answer)
 {
     uint8_t behind = (uint8_t)(answer->sequence - session->first);
-    if (!answer->written || behind > CARRYSTEP_WINDOW) {
-        return true;
-    }
-    return behind < session->reached && session->slots[slot(session, behind)].address == answer->address;
+    return answer->written && behind < session->reached &&
+           session->slots[slot(session, behind)].address == answer->address;
 }
 
-/* Processes the acknowledgement in an answer: all writes before `next` were executed. */
-static bool count(carrystep_session *session, const carrystep_answer *answer, uint32_t now)
+/* Processes the acknowledgement in an answer: all writes before `next` were executed. An answer
+ * whose `next` this host cannot have caused is from a time before this session, and is ignored. */
+static void count(carrystep_session *session, const carrystep_answer *answer, uint32_t now)
 {
     uint8_t advance = (uint8_t)(answer->next - session->first);
-    if (!own(session, answer) || advance > session->reached) {
-        return false;
+    bool busy = answer->reason == CARRYSTEP_REASON_BUSY;
+    bool refused = (busy || answer->reason == CARRYSTEP_REASON_SEQUENCE) && answers(session, answer);
+    bool ends_seek = answer->reason == CARRYSTEP_REASON_SEEK_ENDED && answers(session, answer);
+    if (advance > session->reached) {
+        return;
     }
     for (uint8_t done = 0; done < advance; done++) {
         settle(session, &session->slots[session->at]);
@@ -185,60 +207,145 @@ static bool count(carrystep_session *session, const carrystep_answer *answer, ui
         session->has_refused = false;
         session->busy = false;
     }
-    if (answer->refused && session->length > 0) {
-        refusal(session, (uint8_t)(answer->sequence - answer->next), now);
+    if (ends_seek) {
+        /* The gateware has executed none of these writes, and the next one has the number of the
+         * first of them. */
+        session->reached = 0;
+        session->sent = 0;
+        session->has_refused = false;
+        carrystep_withdraw(session);
+        session->seek_ended = true;
     }
-    return true;
+    if (refused) {
+        refusal(session, (uint8_t)(answer->sequence - answer->next), busy, now);
+    }
+    if (carrystep_names_axis(answer)) {
+        uint8_t axis = carrystep_axis_of(answer->address);
+        uint8_t under_way = session->under_way[axis];
+        uint8_t room = (uint8_t)(answer->free > under_way ? answer->free - under_way : 0);
+        /* Room only grows until this host sends a segment. */
+        session->room[axis] = room > session->room[axis] ? room : session->room[axis];
+    }
 }
 
-/* ---- reads ---- */
+/* ---- requests outside of the sequence: reads, OPEN and STOP ---- */
 
-bool carrystep_read(carrystep_session *session, uint8_t address)
+static bool same(const carrystep_session *session, unsigned index, bool writes, uint8_t address)
 {
-    int place = -1;
-    for (int index = 0; index < (int)CARRYSTEP_MOST_AXES; index++) {
-        if (session->reads[index].open && session->reads[index].address == address) {
-            return true;
-        }
-        if (!session->reads[index].open && place < 0) {
-            place = index;
-        }
-    }
-    if (place < 0) {
-        return false;
-    }
-    session->reads[place].address = address;
-    session->reads[place].sequence = session->read_sequence++;
-    session->reads[place].open = true;
-    session->reads[place].asked = false;
-    return true;
+    return session->singles[index].open && session->singles[index].request.writes == writes &&
+           session->singles[index].request.address == address;
 }
 
-static size_t send_read(carrystep_session *session, uint32_t now, uint8_t *line)
+static void add(carrystep_session *session, bool writes, uint8_t address)
 {
-    for (int index = 0; index < (int)CARRYSTEP_MOST_AXES; index++) {
-        if (session->reads[index].open &&
-            (!session->reads[index].asked || now - session->reads[index].when >= session->resend)) {
-            carrystep_request request;
-            memset(&request, 0, sizeof request);
-            request.address = session->reads[index].address;
-            session->reads[index].asked = true;
-            session->reads[index].when = now;
-            return carrystep_encode(line, session->reads[index].sequence, &request);
-        }
-    }
-    return 0;
-}
-
-static void answered(carrystep_session *session, const carrystep_answer *answer)
-{
-    for (int index = 0; index < (int)CARRYSTEP_MOST_AXES; index++) {
-        if (!answer->written && session->reads[index].open && session->reads[index].asked &&
-            session->reads[index].address == answer->address && session->reads[index].sequence == answer->sequence) {
-            session->reads[index].open = false;
+    for (unsigned index = 0; index < SINGLES; index++) {
+        if (!session->singles[index].open) {
+            memset(&session->singles[index], 0, sizeof session->singles[index]);
+            session->singles[index].request.writes = writes;
+            session->singles[index].request.address = address;
+            session->singles[index].sequence = session->single_sequence++;
+            session->singles[index].open = true;
             return;
         }
     }
+}
+
+static bool writing(const carrystep_session *session, uint8_t address)
+{
+    bool found = false;
+    for (unsigned index = 0; index < SINGLES; index++) {
+        found = found || same(session, index, true, address);
+    }
+    return found;
+}
+
+static void withdraw(carrystep_session *session, uint8_t address)
+{
+    for (unsigned index = 0; index < SINGLES; index++) {
+        if (same(session, index, true, address)) {
+            session->singles[index].open = false;
+        }
+    }
+}
+
+bool carrystep_read(carrystep_session *session, uint8_t address)
+{
+    unsigned reads = 0;
+    for (unsigned index = 0; index < SINGLES; index++) {
+        if (same(session, index, false, address)) {
+            return true;
+        }
+        reads += session->singles[index].open && !session->singles[index].request.writes ? 1u : 0u;
+    }
+    if (reads == CARRYSTEP_MOST_AXES) {
+        return false;
+    }
+    add(session, false, address);
+    return true;
+}
+
+/* Forgets the session with its writes, and an OPEN without an answer. */
+static void leave(carrystep_session *session)
+{
+    withdraw(session, WRITES(CARRYSTEP_OPEN));
+    session->opening = 0;
+    own(session, 0);
+}
+
+void carrystep_open(carrystep_session *session, uint16_t number, uint8_t axes)
+{
+    leave(session);
+    session->opening = number;
+    session->axes = axes < CARRYSTEP_MOST_AXES ? axes : (uint8_t)CARRYSTEP_MOST_AXES;
+    add(session, true, WRITES(CARRYSTEP_OPEN));
+}
+
+void carrystep_stop(carrystep_session *session)
+{
+    carrystep_withdraw(session);
+    withdraw(session, WRITES(CARRYSTEP_STOP));
+    add(session, true, WRITES(CARRYSTEP_STOP));
+}
+
+bool carrystep_stopping(const carrystep_session *session)
+{
+    return writing(session, WRITES(CARRYSTEP_STOP));
+}
+
+/* Sends the next of these requests; writes come first. */
+static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *line)
+{
+    unsigned found = SINGLES;
+    for (unsigned index = 0; index < SINGLES; index++) {
+        bool due = session->singles[index].open &&
+                   (!session->singles[index].asked || now - session->singles[index].when >= session->resend);
+        bool before = found == SINGLES ||
+                      (session->singles[index].request.writes && !session->singles[found].request.writes);
+        if (due && before) {
+            found = index;
+        }
+    }
+    if (found == SINGLES) {
+        return 0;
+    }
+    session->singles[found].asked = true;
+    session->singles[found].when = now;
+    return carrystep_encode(line, session->singles[found].sequence,
+                            same(session, found, true, WRITES(CARRYSTEP_OPEN)) ? session->opening : session->number,
+                            &session->singles[found].request);
+}
+
+/* Whether this answers one of these requests, which it completes. */
+static bool answered(carrystep_session *session, const carrystep_answer *answer)
+{
+    for (unsigned index = 0; index < SINGLES; index++) {
+        if (same(session, index, answer->written, answer->address) && session->singles[index].asked &&
+            session->singles[index].sequence == answer->sequence) {
+            session->singles[index].open = false;
+            return true;
+        }
+    }
+    return false;
 }
 
 bool carrystep_writing(const carrystep_session *session)
@@ -248,8 +355,8 @@ bool carrystep_writing(const carrystep_session *session)
 
 bool carrystep_waiting(const carrystep_session *session)
 {
-    for (int index = 0; index < (int)CARRYSTEP_MOST_AXES; index++) {
-        if (session->reads[index].open) {
+    for (unsigned index = 0; index < SINGLES; index++) {
+        if (session->singles[index].open) {
             return true;
         }
     }
@@ -260,7 +367,7 @@ bool carrystep_waiting(const carrystep_session *session)
 
 size_t carrystep_transmit(carrystep_session *session, uint32_t now, uint8_t *line)
 {
-    size_t length = send_read(session, now, line);
+    size_t length = send_single(session, now, line);
     return length > 0 ? length : send_write(session, now, line);
 }
 
@@ -274,18 +381,19 @@ carrystep_event carrystep_receive(carrystep_session *session, uint8_t byte, uint
     case CARRYSTEP_ANSWERED:
         break;
     }
-    if (session->axes > 0) {
-        if (!count(session, answer, now)) {
-            return CARRYSTEP_OUT_OF_STEP;
-        }
-        session->armed = answer->armed;
-        if (carrystep_names_axis(answer)) {
-            uint8_t axis = carrystep_axis_of(answer->address);
-            uint8_t under_way = session->under_way[axis];
-            session->room[axis] = (uint8_t)(answer->free > under_way ? answer->free - under_way : 0);
-        }
-    }
     session->unpowered = !answer->ready && !answer->fault;
-    answered(session, answer);
+    session->armed = answer->armed;
+    bool single = answered(session, answer);
+    if (answer->written && answer->address == WRITES(CARRYSTEP_OPEN)) {
+        if (single) {
+            own(session, answer->reason == 0 ? session->opening : 0);
+            session->opening = 0;
+        }
+    } else if (answer->reason != CARRYSTEP_REASON_SESSION) {
+        count(session, answer, now);
+    } else if (session->number != 0) {
+        leave(session);
+        return CARRYSTEP_LOST;
+    }
     return CARRYSTEP_HEARD;
 }

@@ -4,7 +4,8 @@
  *     static carrystep_session link;
  *     static carrystep_feeder program;
  *     carrystep_begin(&link, 40, 2);
- *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...    then carrystep_check() and carrystep_adopt()
+ *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...    then carrystep_check()
+ *     carrystep_open(&link, number, axes); ...          until carrystep_owns(): busy is asked again
  *     for (;;) {
  *         uint8_t line[CARRYSTEP_LINE_BYTES];
  *         carrystep_feed(&link, &program);
@@ -45,16 +46,18 @@ typedef struct {
     uint8_t refused;
     bool has_refused;
     bool busy;
-    /* reads */
+    /* requests outside of the sequence: reads, then OPEN and STOP */
     struct {
-        uint8_t address;
+        carrystep_request request;
         uint8_t sequence;
         bool open;
         bool asked;
         uint32_t when;
-    } reads[CARRYSTEP_MOST_AXES];
-    uint8_t read_sequence;
+    } singles[CARRYSTEP_MOST_AXES + 2u];
+    uint8_t single_sequence;
     /* the gateware */
+    uint16_t number;  /* the session that this host owns; 0: none */
+    uint16_t opening; /* the session that it has asked for; 0: none */
     uint8_t axes;
     uint8_t under_way[CARRYSTEP_MOST_AXES];
     uint8_t room[CARRYSTEP_MOST_AXES];
@@ -62,13 +65,16 @@ typedef struct {
     bool armed;
     bool unpowered; /* the last answer came from drivers without power */
     bool powering;  /* this host has asked for power */
+    bool seek_ended;
 } carrystep_session;
 
 typedef enum {
-    CARRYSTEP_QUIET,      /* the byte completes no answer */
-    CARRYSTEP_HEARD,      /* the byte completes an answer, and *answer is set */
-    CARRYSTEP_DAMAGED,    /* the byte ends a damaged frame; the request will be sent again */
-    CARRYSTEP_OUT_OF_STEP /* the gateware was restarted, or another host uses it: connect again */
+    CARRYSTEP_QUIET,   /* the byte completes no answer */
+    CARRYSTEP_HEARD,   /* the byte completes an answer, and *answer is set */
+    CARRYSTEP_DAMAGED, /* the byte ends a damaged frame; the request will be sent again */
+    CARRYSTEP_LOST     /* *answer says that the gateware does not keep this session any more: another
+                          host has opened one, or the gateware was restarted. This host owns none from
+                          now on: stop, open and clear, or leave the gateware to the other host. */
 } carrystep_event;
 
 typedef enum {
@@ -81,14 +87,27 @@ typedef enum {
 /* Checks that a host made for build `wanted` may drive the gateware with these register values. */
 carrystep_verdict carrystep_check(uint32_t identity, uint32_t protocol, uint64_t build, uint64_t wanted);
 
-/* Begins a session, in which registers may be read, but not written. `resend`: time without an
- * answer, ms, until a request is sent again; it must exceed the delay of the line. `pause`: time
- * until a request that was refused as busy is sent again, ms. */
+/* Begins the dialogue, without a session: registers may be read, and the axes may be stopped.
+ * `resend`: time without an answer, ms, until a request is sent again; it must exceed the delay of
+ * the line. `pause`: time until a request that was refused as busy is sent again, ms. */
 void carrystep_begin(carrystep_session *session, uint32_t resend, uint32_t pause);
 
-/* Numbers the following writes from `next`, which the last answer reported, for a build with this
- * number of axes. */
-void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes);
+/* Asks for a session with this number, 1 to 65535, with a build of `axes` axes. It is granted if no
+ * axis moves and no segment waits, or if a stop is complete; then carrystep_owns returns true.
+ * Otherwise the answer has CARRYSTEP_REASON_BUSY: ask again, or stop the axes before. Writes of an
+ * earlier session are forgotten. */
+void carrystep_open(carrystep_session *session, uint16_t number, uint8_t axes);
+
+/* Whether carrystep_open has no answer yet; whether this host owns a session. */
+bool carrystep_opening(const carrystep_session *session);
+bool carrystep_owns(const carrystep_session *session);
+
+/* Stops all axes, each with its ramp, of whichever host. No session is needed. Writes that were
+ * never sent are removed. After the stop (`halted`), write CLEAR. */
+void carrystep_stop(carrystep_session *session);
+
+/* Whether carrystep_stop has no answer yet. */
+bool carrystep_stopping(const carrystep_session *session);
 
 /* Starts to read a register; carrystep_receive returns the answer. False if eight are being read.
  */
@@ -99,12 +118,12 @@ bool carrystep_read(carrystep_session *session, uint8_t address);
  * Write CONTROL = 1 first and wait for `ready`. */
 bool carrystep_may_start(const carrystep_session *session);
 
-/* Queues a write of a register. False if there is no room, if carrystep_adopt was not called, or
- * for a START if carrystep_may_start returns false. */
+/* Queues a write of a register. False if there is no room, if this host owns no session, or for a
+ * START if carrystep_may_start returns false. */
 bool carrystep_write(carrystep_session *session, uint8_t address, uint32_t word);
 
 /* Queues a segment for an axis. The caller must observe session->room. False if there is no room
- * for a write, no such axis, no tick in the segment, or if carrystep_adopt was not called.
+ * for a write, no such axis, no tick in the segment, or if this host owns no session.
  * carrystep_feed calls this for whole programs. */
 bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_segment *segment);
 
@@ -112,8 +131,12 @@ bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_seg
 bool carrystep_waiting(const carrystep_session *session);
 bool carrystep_writing(const carrystep_session *session);
 
-/* Removes the writes that were never sent, so that the next one, such as a stop, is sent at once.
- */
+/* Whether the gateware has refused a segment or a START because one of its axes has hit the source
+ * of its seek. That write and all behind it were removed, since none of them can be executed, and
+ * carrystep_feed queues nothing until this host writes SEEK. */
+bool carrystep_seek_ended(const carrystep_session *session);
+
+/* Removes the writes that were never sent, so that the next one is sent at once. */
 void carrystep_withdraw(carrystep_session *session);
 
 /* Encodes the next request to `line` (CARRYSTEP_LINE_BYTES). Returns the number of bytes, 0 if

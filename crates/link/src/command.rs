@@ -6,6 +6,26 @@ use thiserror::Error;
 
 pub use carrystep_core::Segment;
 
+/// Segments of several axes with the same ticks, which one frame carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct WideSegment {
+    /// The axes, one bit each.
+    pub mask: u8,
+    /// Number of ticks, 1 or more.
+    pub ticks: u32,
+    /// V, A and J of each axis as in [`Segment`]; those of other axes have no meaning.
+    pub cubics: [[i64; 3]; MOST_AXES as usize],
+    /// Whether the axes stop when the segment is over.
+    pub last: bool,
+}
+
+impl WideSegment {
+    /// Number, and V, A and J, of each of its axes in ascending order.
+    pub fn axes(&self) -> impl Iterator<Item = (u8, [i64; 3])> + '_ {
+        (0..MOST_AXES).zip(self.cubics).filter(|(axis, _)| self.mask >> axis & 1 == 1)
+    }
+}
+
 /// One command of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Command {

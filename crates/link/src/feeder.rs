@@ -2,7 +2,7 @@
 //! start as early as possible.
 
 pub use crate::command::SegmentSource;
-use crate::command::{ProgramError, Segment};
+use crate::command::{ProgramError, Segment, WideSegment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
 
@@ -23,18 +23,28 @@ struct Axis {
 /// Chooses what to send next. Of the axes with a free queue place, the one whose sent segments last
 /// for the shortest time comes first. A start is sent when each of its axes has its first segment,
 /// no other start is pending, and no segment can be sent instead.
+///
+/// A wide feeder joins the next segments of several axes to one frame if they have the same ticks
+/// and the same place in their axes' time: those of axes that move along one path.
 #[derive(Debug, Clone)]
 pub struct Feeder<S> {
     source: S,
+    wide: bool,
     axes: [Axis; MOST_AXES as usize],
     start: Option<u8>,
     last_start: bool,
 }
 
 impl<S: SegmentSource> Feeder<S> {
-    /// A feeder that has sent nothing yet.
+    /// A feeder that has sent nothing yet, and sends a frame for each segment.
     pub fn new(source: S) -> Self {
-        Self { source, axes: [Axis::default(); MOST_AXES as usize], start: None, last_start: false }
+        let axes = [Axis::default(); MOST_AXES as usize];
+        Self { source, wide: false, axes, start: None, last_start: false }
+    }
+
+    /// A wide feeder.
+    pub fn wide(source: S) -> Self {
+        Self { wide: true, ..Self::new(source) }
     }
 
     /// Reads the next segment of each axis, and the next start, from the source.
@@ -63,19 +73,36 @@ impl<S: SegmentSource> Feeder<S> {
         may_start: bool,
     ) -> Result<Option<Body>, ProgramError> {
         self.look_ahead(axes);
-        let able = |(axis, room): &(&mut Axis, &u8)| axis.ahead.is_some() && **room > 0;
-        let hungriest =
-            (0..axes).zip(self.axes.iter_mut().zip(room)).filter(|(_, pair)| able(pair));
-        if let Some((number, (axis, _))) = hungriest.min_by_key(|(_, (axis, _))| axis.ticks)
-            && let Some(segment) = axis.ahead.take()
-        {
+        let able = |(axis, room): &(&Axis, &u8)| axis.ahead.is_some() && **room > 0;
+        let waiting = (0..axes).zip(self.axes.iter().zip(room)).filter(|(_, pair)| able(pair));
+        let hungriest = waiting.min_by_key(|(_, (axis, _))| axis.ticks);
+        if let Some((number, (&Axis { ticks, ahead: Some(segment), .. }, _))) = hungriest {
             if segment.ticks == 0 {
                 return Err(ProgramError::NoTicks { axis: number });
             }
-            axis.waiting += u32::from(!axis.open);
-            axis.open = !segment.last;
-            axis.ticks += u64::from(segment.ticks);
-            return Ok(Some(Body::Segment { axis: number, segment }));
+            let mut wide =
+                WideSegment { ticks: segment.ticks, last: segment.last, ..WideSegment::default() };
+            let queues = self.axes.iter_mut().zip(room).zip(&mut wide.cubics);
+            for (other, ((axis, &room), cubic)) in (0..axes).zip(queues) {
+                let joins = |ahead: &Segment| {
+                    let same = (ahead.ticks, ahead.last) == (segment.ticks, segment.last);
+                    self.wide && room > 0 && axis.ticks == ticks && same
+                };
+                if let Some(Segment { v, a, j, .. }) =
+                    axis.ahead.take_if(|ahead| other == number || joins(ahead))
+                {
+                    wide.mask |= 1 << other;
+                    *cubic = [v, a, j];
+                    axis.waiting += u32::from(!axis.open);
+                    axis.open = !segment.last;
+                    axis.ticks += u64::from(segment.ticks);
+                }
+            }
+            return Ok(Some(if wide.mask == 1 << number {
+                Body::Segment { axis: number, segment }
+            } else {
+                Body::Segments(wide)
+            }));
         }
         match self.start {
             Some(mask) if may_start && self.start_is_due(axes)? => {
@@ -96,7 +123,6 @@ impl<S: SegmentSource> Feeder<S> {
     ///
     /// # Errors
     /// [`ProgramError`] if the start can never be sent.
-    /// [`ProgramError`] where the start can never be sent.
     pub fn start_is_due(&self, axes: u8) -> Result<bool, ProgramError> {
         let Some(mask) = self.start else { return Ok(false) };
         for (number, axis) in

@@ -1,10 +1,14 @@
 //! Requests and answers, and their conversion to and from the bytes of a frame.
 
-use crate::command::Segment;
+use crate::command::{Segment, WideSegment};
 use crate::registers::{
     self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
 };
-use crate::registers::{AXES_AT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS};
+use crate::registers::{
+    AXES_AT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS, SEGMENTS, SEGMENTS_AXIS_WORDS,
+    SEGMENTS_HEAD_WORDS, SESSION_BYTES,
+};
+use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use thiserror::Error;
 
@@ -47,6 +51,8 @@ pub enum Body {
         /// The segment; it has at least 1 tick.
         segment: Segment,
     },
+    /// Appends a segment to the queue of each of several axes.
+    Segments(WideSegment),
 }
 
 impl Body {
@@ -56,6 +62,21 @@ impl Body {
             Self::Read { address } => address,
             Self::Write { address, .. } => address | WRITE,
             Self::Segment { axis, .. } => WRITE | of_axis(SEGMENT, axis),
+            Self::Segments(_) => WRITE | SEGMENTS,
+        }
+    }
+
+    /// Whether this is a write.
+    pub const fn writes(&self) -> bool {
+        !matches!(self, Self::Read { .. })
+    }
+
+    /// The axes to whose queues this appends a segment, one bit each.
+    pub const fn axes(&self) -> u8 {
+        match *self {
+            Self::Segment { axis, .. } => 1 << (axis & (MOST_AXES - 1)),
+            Self::Segments(wide) => wide.mask,
+            Self::Read { .. } | Self::Write { .. } => 0,
         }
     }
 }
@@ -67,14 +88,19 @@ pub const fn of_axis(register: u8, axis: u8) -> u8 {
 
 /// The axis whose segments are written at this address; `None` for the address of another write.
 const fn axis_of_segment(address: u8) -> Option<u8> {
-    if address < WRITE | SEGMENT { None } else { Some(address & (MOST_AXES - 1)) }
+    match address.checked_sub(WRITE | SEGMENT) {
+        Some(axis) if axis < MOST_AXES => Some(axis),
+        _ => None,
+    }
 }
 
-/// A request: an operation with its sequence number.
+/// A request: an operation with its sequence number and its session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Request {
     /// Sequence number. Writes are numbered consecutively; a read may have any number.
     pub sequence: u8,
+    /// Number of the host's session. A read with 0 is free: it belongs to no session.
+    pub session: u16,
     /// The operation.
     pub body: Body,
 }
@@ -98,6 +124,10 @@ impl RequestBytes {
         }
         self.length += bytes.len();
     }
+
+    fn put_cubic(&mut self, cubic: [i64; 3]) {
+        cubic.into_iter().for_each(|long| self.put(&long.to_le_bytes()));
+    }
 }
 
 impl Request {
@@ -105,15 +135,22 @@ impl Request {
     pub fn to_bytes(&self) -> RequestBytes {
         let mut frame = RequestBytes { bytes: [0; LONGEST_REQUEST], length: 0 };
         frame.put(&[self.sequence, self.body.address()]);
+        if self.session != 0 || self.body.writes() {
+            frame.put(&self.session.to_le_bytes());
+        }
         match self.body {
             Body::Read { .. } => {}
             Body::Write { word, .. } => frame.put(&word.to_le_bytes()),
-            Body::Segment { segment, .. } => {
-                frame.put(&segment.ticks.wrapping_sub(1).to_le_bytes());
-                for long in [segment.v, segment.a, segment.j] {
-                    frame.put(&long.to_le_bytes());
-                }
-                frame.put(&u32::from(segment.last).to_le_bytes());
+            Body::Segment { segment: Segment { ticks, v, a, j, last }, .. } => {
+                frame.put(&ticks.wrapping_sub(1).to_le_bytes());
+                frame.put_cubic([v, a, j]);
+                frame.put(&u32::from(last).to_le_bytes());
+            }
+            Body::Segments(wide) => {
+                frame.put(&u32::from(wide.mask).to_le_bytes());
+                frame.put(&wide.ticks.wrapping_sub(1).to_le_bytes());
+                wide.axes().for_each(|(_, cubic)| frame.put_cubic(cubic));
+                frame.put(&u32::from(wide.last).to_le_bytes());
             }
         }
         let crc = CRC.checksum(frame.as_slice());
@@ -126,44 +163,108 @@ impl Request {
     /// # Errors
     /// [`FrameError`] if the frame must not be answered.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FrameError> {
+        let wrong = FrameError::Length(bytes.len());
         let (&[sequence, address, ..], Some((content, _))) =
             (bytes, bytes.split_last_chunk::<CRC_BYTES>())
         else {
-            return Err(FrameError::Length(bytes.len()));
+            return Err(wrong);
         };
-        let words = match address {
-            _ if bytes.len() == REQUEST_HEAD + CRC_BYTES => 0,
-            0..WRITE => return Err(FrameError::Length(bytes.len())),
-            _ if axis_of_segment(address).is_none() => 1,
-            _ => SEGMENT_FRAME_WORDS,
+        let content = content.get(REQUEST_HEAD..).ok_or(wrong)?;
+        let (session, words) = content.split_at_checked(SESSION_BYTES).unwrap_or((&[], content));
+        let word = |index: usize| word_at(words, 4 * index);
+        let expected = match address {
+            _ if words.is_empty() => 0,
+            0..WRITE => return Err(wrong),
+            _ if address == WRITE | SEGMENTS => {
+                let axes = (word(0) as u8).count_ones() as usize;
+                SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * axes + 1
+            }
+            _ if axis_of_segment(address).is_some() => SEGMENT_FRAME_WORDS,
+            _ => 1,
         };
-        if bytes.len() != REQUEST_HEAD + 4 * words + CRC_BYTES {
-            return Err(FrameError::Length(bytes.len()));
+        if words.len() != 4 * expected || matches!(session.len(), 1) {
+            return Err(wrong);
         }
         check(bytes)?;
-        let word = |index: usize| word_at(content, REQUEST_HEAD + 4 * index);
-        let long = |index: usize| {
-            (u64::from(word(index + 1)) << 32 | u64::from(word(index))).cast_signed()
+        let cubic = |index: usize| {
+            let long = |at| (u64::from(word(at + 1)) << 32 | u64::from(word(at))).cast_signed();
+            [long(index), long(index + 2), long(index + 4)]
         };
-        let body = match (words, axis_of_segment(address)) {
-            (0, _) => Body::Read { address },
-            (1, _) => Body::Write { address: address & !WRITE, word: word(0) },
-            (_, Some(axis)) if address == WRITE | of_axis(SEGMENT, axis) => {
-                let (v, a, j) = (long(1), long(3), long(5));
-                Body::Segment {
-                    axis,
-                    segment: Segment {
-                        ticks: word(0).wrapping_add(1),
-                        v,
-                        a,
-                        j,
-                        last: word(7) & 1 == 1,
-                    },
-                }
+        let body = match axis_of_segment(address) {
+            _ if words.is_empty() => Body::Read { address },
+            Some(axis) => {
+                let ([v, a, j], ticks) = (cubic(1), word(0).wrapping_add(1));
+                Body::Segment { axis, segment: Segment { ticks, v, a, j, last: word(7) & 1 == 1 } }
             }
-            _ => return Err(FrameError::Address(address)),
+            None if address == WRITE | SEGMENTS => {
+                let mut wide = WideSegment {
+                    mask: word(0) as u8,
+                    ticks: word(1).wrapping_add(1),
+                    last: word(expected - 1) & 1 == 1,
+                    ..WideSegment::default()
+                };
+                let mut at = SEGMENTS_HEAD_WORDS;
+                for (axis, place) in (0..MOST_AXES).zip(&mut wide.cubics) {
+                    if wide.mask >> axis & 1 == 1 {
+                        *place = cubic(at);
+                        at += SEGMENTS_AXIS_WORDS;
+                    }
+                }
+                Body::Segments(wide)
+            }
+            None if address < WRITE | SEGMENT => {
+                Body::Write { address: address & !WRITE, word: word(0) }
+            }
+            None => return Err(FrameError::Address(address)),
         };
-        Ok(Self { sequence, body })
+        let session = session.first_chunk().map_or(0, |number| u16::from_le_bytes(*number));
+        Ok(Self { sequence, session, body })
+    }
+}
+
+/// Why the gateware has not executed a request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Refusal {
+    /// A write before this one was lost.
+    Sequence,
+    /// The request cannot be executed now.
+    Busy,
+    /// The request does not belong to the session that owns the gateware.
+    Session,
+    /// The request names an axis that has hit the source of its seek, and the seek is not ended.
+    SeekEnded,
+    /// A reason that this version does not know, by its number.
+    Other(u8),
+}
+
+impl Refusal {
+    /// The refusal with this number in an answer; `None` for 0.
+    pub const fn from_number(number: u8) -> Option<Self> {
+        match number {
+            0 => None,
+            map::REASON_SEQUENCE => Some(Self::Sequence),
+            map::REASON_BUSY => Some(Self::Busy),
+            map::REASON_SESSION => Some(Self::Session),
+            map::REASON_SEEK_ENDED => Some(Self::SeekEnded),
+            other => Some(Self::Other(other)),
+        }
+    }
+
+    /// Its number in an answer.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Sequence => map::REASON_SEQUENCE,
+            Self::Busy => map::REASON_BUSY,
+            Self::Session => map::REASON_SESSION,
+            Self::SeekEnded => map::REASON_SEEK_ENDED,
+            Self::Other(number) => number,
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(map::REASONS.get(usize::from(self.number())).unwrap_or(&"?"))
     }
 }
 
@@ -190,14 +291,14 @@ pub struct Answer {
     pub cause: u8,
     /// Number of free queue places of the addressed axis.
     pub free: u8,
-    /// The write of this answer was not executed.
-    pub refused: bool,
+    /// Why the request was not executed; `None` if it was.
+    pub refusal: Option<Refusal>,
     /// The request was a write.
     pub written: bool,
     /// Mask of the axes that caused the stop.
     pub culprits: u8,
-    /// Mask of the axes that still wait for their limit.
-    pub homing: u8,
+    /// Mask of the axes that wait for the source of their seek.
+    pub seeking: u8,
     /// Value of the register that was read; after a write, the position of the addressed axis.
     pub data: u32,
 }
@@ -222,10 +323,10 @@ impl Answer {
             armed: map::armed(bytes),
             cause: map::cause(bytes),
             free: map::free(bytes),
-            refused: map::refused(bytes),
+            refusal: Refusal::from_number(map::reason(bytes)),
             written: map::written(bytes),
             culprits: map::culprits(bytes),
-            homing: map::homing(bytes),
+            seeking: map::seeking(bytes),
             data: word_at(bytes, ANSWER_DATA),
         })
     }
@@ -243,6 +344,11 @@ impl Answer {
     /// Whether this answers a read of this register.
     pub const fn is_read_of(&self, address: u8) -> bool {
         !self.written && self.address == address
+    }
+
+    /// Whether this answers a write of this register.
+    pub const fn is_write_of(&self, register: u8) -> bool {
+        self.written && self.address == register | WRITE
     }
 
     /// The name of the stop cause; `None` without a fault.

@@ -1,9 +1,12 @@
 //! The driver: controls one gateware on one line, from connecting to a clean stop. Every call
-//! blocks until it has finished.
+//! blocks until it has finished. A host that only looks or stops needs no session; all others call
+//! [`Host::open`] first.
 
+mod cancelled;
 mod error;
 mod homing;
 mod motion;
+mod session;
 mod snapshot;
 mod state;
 mod time;
@@ -11,18 +14,24 @@ mod time;
 pub use error::{HomingFault, HostError};
 pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 pub use motion::{Ended, Progress, Wish};
+#[cfg(feature = "std")]
+pub use session::random_session;
 pub use snapshot::{AxisState, Snapshot};
 #[cfg(feature = "std")]
 pub use time::SystemClock;
-pub use time::{Clock, Patience};
+pub use time::{Clock, Moment, Patience};
 
 use crate::facts::BuildFacts;
-use crate::frame::{Answer, Body, of_axis};
+use crate::frame::{Answer, Body, Request, of_axis};
 use crate::line::Line;
 use crate::registers as map;
 use crate::registers::{LONGEST_REQUEST, MOST_AXES};
-use crate::session::{Session, SessionError, WriteError};
+use crate::session::{Session, SessionLost, WriteError};
 use crate::slip;
+use crate::ticks::{ClockComparison, ClockDifference, TickCount};
+
+/// Room for bytes that wait for the line: a typical frame of all axes, and the longest one.
+const OUT: usize = 640;
 
 /// State of the machine, from the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,8 +53,12 @@ pub struct Host<L, C, const N: usize = 64> {
     status: Status,
     /// Whether the drivers were seen with power. They keep it until this host removes it.
     powered: bool,
+    ticks: TickCount,
+    clocks: ClockComparison,
+    /// Number of the read of TICKS without an answer, and the time before it was first sent, us.
+    ticks_asked: Option<(u8, u64)>,
     /// Bytes that are waiting for the line.
-    out: [u8; 256],
+    out: [u8; OUT],
     queued: usize,
     heard: u32,
     noise: u32,
@@ -72,7 +85,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             facts: BuildFacts::default(),
             status: Status::default(),
             powered: false,
-            out: [0; 256],
+            ticks: TickCount::default(),
+            clocks: ClockComparison::default(),
+            ticks_asked: None,
+            out: [0; OUT],
             queued: 0,
             heard: 0,
             noise: 0,
@@ -97,10 +113,13 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             };
         }
         host.facts.check(wanted)?;
-        let axes = host.facts.axes.min(MOST_AXES.into()) as u8;
-        host.session.adopt(host.status.answer.next, axes);
         host.read_status()?;
         Ok(host)
+    }
+
+    /// Number of axes of the build.
+    fn axes(&self) -> u8 {
+        self.facts.axes.min(MOST_AXES.into()) as u8
     }
 
     /// The facts that the gateware reported.
@@ -113,6 +132,21 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &self.status
     }
 
+    /// Reads the number of the gateware's tick, without the wraps of TICKS ([`TickCount`]).
+    ///
+    /// # Errors
+    /// [`HostError`] if the connection fails.
+    pub fn tick(&mut self) -> Result<i64, HostError<L::Error>> {
+        let ticks = self.register(map::TICKS)?;
+        Ok(self.ticks.see(ticks))
+    }
+
+    /// By how much the gateware's clock is faster than the host's, from all reads of TICKS so far;
+    /// [`Self::stream`] and [`Self::tick`] read it. `None` before two reads.
+    pub fn clock_difference(&self) -> Option<ClockDifference> {
+        self.clocks.difference()
+    }
+
     /// Returns the line.
     pub fn free(self) -> L {
         self.line
@@ -123,7 +157,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError`] if the connection fails.
     pub fn read_status(&mut self) -> Result<Status, HostError<L::Error>> {
-        for axis in 0..self.session.axes() {
+        for axis in 0..self.axes() {
             self.register(of_axis(map::POSITION, axis))?;
         }
         Ok(self.status)
@@ -162,7 +196,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// Writes a register, and waits until the gateware has executed the write.
     ///
     /// # Errors
-    /// [`HostError`] if the connection fails.
+    /// [`HostError::NoSession`] if [`Self::open`] was not called; [`HostError`] if the connection
+    /// fails.
     pub fn write(&mut self, address: u8, word: u32) -> Result<(), HostError<L::Error>> {
         self.listen();
         let body = Body::Write { address, word };
@@ -170,6 +205,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             match self.session.write(body) {
                 Ok(()) => break,
                 Err(WriteError::Full(_)) => self.pump(|_| ())?,
+                Err(WriteError::NoSession) => return Err(HostError::NoSession),
                 Err(WriteError::NoPower(error)) => return Err(error.into()),
             }
         }
@@ -191,6 +227,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let mut now = self.clock.milliseconds();
         while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {
             let Some(request) = self.session.transmit(now) else { break };
+            if let Request { sequence, body: Body::Read { address: map::TICKS }, .. } = request
+                && self.ticks_asked.is_none_or(|(asked, _)| asked != sequence)
+            {
+                self.ticks_asked = Some((sequence, self.clock.moment().us));
+            }
             for byte in slip::encode(request.to_bytes().as_slice()) {
                 self.out.get_mut(self.queued).into_iter().for_each(|place| *place = byte);
                 self.queued += 1;
@@ -205,14 +246,19 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         now = self.clock.milliseconds();
         for &byte in came.iter().take(done.received) {
             self.noise += u32::from(byte != map::END);
-            let answer = self.session.receive(byte, now).map_err(|error| match error {
-                SessionError::OutOfStep(error) => HostError::OutOfStep(error),
-                SessionError::Foreign(error) => HostError::Foreign(error),
-            })?;
-            let Some(answer) = answer else { continue };
+            let answer = match self.session.receive(byte, now) {
+                Ok(None) => continue,
+                Ok(Some(answer)) => answer,
+                Err(lost) => return Err(self.lost(lost)),
+            };
             (self.heard, self.noise) = (now, 0);
-            if self.powered && !answer.ready && !answer.fault {
-                return Err(HostError::Restarted);
+            if answer.is_read_of(map::TICKS)
+                && let Some((_, before)) =
+                    self.ticks_asked.take_if(|(asked, _)| *asked == answer.sequence)
+            {
+                let Moment { us, resolution_us } = self.clock.moment();
+                let (tick, after) = (self.ticks.see(answer.data), us + u64::from(resolution_us));
+                self.clocks.observe(self.facts.tick_ns, tick, before, after);
             }
             self.status.answer = answer;
             if let Some(axis) = axis_with_position(&answer)
@@ -223,7 +269,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             seen(&answer);
         }
         let silence = now.wrapping_sub(self.heard);
-        let known = self.session.axes() > 0;
+        let known = self.facts.identity == map::IDENTITY_VALUE;
         let patience = if known { self.patience.lost } else { self.patience.silence };
         match (self.session.waiting() && silence > patience, self.noise) {
             (false, _) => Ok(()),
@@ -231,6 +277,15 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             (true, 0) => Err(HostError::Silence { ms: silence }),
             (true, bytes) => Err(HostError::Noise { bytes }),
         }
+    }
+
+    /// The error for a session that the gateware does not keep any more.
+    fn lost(&mut self, lost: SessionLost) -> HostError<L::Error> {
+        self.status.answer = lost.answer;
+        let SessionLost { answer: Answer { ready, next, .. } } = lost;
+        // Only a restart takes the power away and leaves no session behind.
+        let restarted = core::mem::take(&mut self.powered) && !ready && next == 0;
+        if restarted { HostError::Restarted } else { lost.into() }
     }
 }
 

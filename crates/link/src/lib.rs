@@ -1,10 +1,10 @@
 //! The host's side of the link (docs/protocol.md). It is `no_std` and allocates no memory.
 //!
 //! ```text
-//! Host      connect, enable, stream, stop, clear, home        blocking; uses a Line and a Clock
+//! Host      connect, open, enable, stream, stop, clear, home  blocking; uses a Line and a Clock
 //!   Session   what to send next, what an answer means         without a line or a clock
 //!     Window    unacknowledged writes, sent again from the first that is missing
-//!     Reads     reads without an answer
+//!     Singles   reads, OPEN and STOP, which belong to no sequence
 //!     Feeder    the segments of a program, in the order in which the queues need them
 //!   frame, slip   requests and answers as bytes
 //! Line      a serial port (feature `serial`) or SPI (feature `spi`)
@@ -22,26 +22,29 @@ pub mod feeder;
 pub mod frame;
 pub mod host;
 pub mod line;
-pub mod reads;
 #[rustfmt::skip]
 pub mod registers;
 pub mod session;
+pub mod singles;
 pub mod slip;
 #[cfg(feature = "std")]
 pub mod supply;
+pub mod ticks;
 pub mod travel;
 pub mod window;
 
-pub use command::{Command, Program, ProgramError, Segment};
+pub use command::{Command, Program, ProgramError, Segment, WideSegment};
 pub use facts::{BuildFacts, GatewareMismatch};
 pub use feeder::{Feeder, SegmentSource};
-pub use frame::{Answer, Body, FrameError, Request};
+pub use frame::{Answer, Body, FrameError, Refusal, Request};
+#[cfg(feature = "std")]
+pub use host::random_session;
 pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
 pub use host::{AxisState, Snapshot};
-pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
+pub use host::{Clock, Ended, Host, HostError, Moment, Patience, Progress, Status, Wish};
 pub use line::{Exchanged, Line};
-pub use session::{Session, SessionError, Timing, WriteError};
-pub use window::{Foreign, OutOfStep};
+pub use session::{Session, SessionLost, Timing, WriteError};
+pub use ticks::{ClockComparison, ClockDifference, TickCount};
 
 /// Name and text of each file of the C library. A project needs all of them.
 pub const C_LIBRARY: [(&str, &str); 7] = [

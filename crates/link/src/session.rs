@@ -3,33 +3,42 @@
 
 use crate::command::ProgramError;
 use crate::feeder::{Feeder, SegmentSource};
-use crate::frame::{Answer, Body, Request, of_axis};
-use crate::reads::Reads;
-use crate::registers::{ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, POSITION, START};
+use crate::frame::{Answer, Body, Refusal, Request, of_axis};
+use crate::registers::{
+    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEEK, SNAPSHOT, START, STOP,
+};
+use crate::singles::Singles;
 use crate::slip::{Decoder, Received};
-use crate::window::{Foreign, Full, OutOfStep, Window};
+use crate::window::{Full, Window};
+use core::num::NonZeroU16;
 use thiserror::Error;
+
+/// Bits of SEEK: the axes that wait for the source.
+const SEEK_AXES: u32 = 0xff;
 
 /// Why a write was not accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WriteError {
-    /// There is no room, or [`Session::adopt`] was not called yet.
+    /// There is no room.
     #[error(transparent)]
     Full(#[from] Full),
+    /// This host owns no session.
+    #[error("this host has not opened a session with the gateware: open one before you write")]
+    NoSession,
     /// The write is a START, and the drivers have no power.
     #[error(transparent)]
     NoPower(ProgramError),
 }
 
-/// Why this host cannot continue with this gateware.
+/// Error: the gateware does not keep the number of this host's session any more. Another host has
+/// opened one since, or the gateware was restarted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum SessionError {
-    /// The gateware acknowledges writes that were never sent.
-    #[error(transparent)]
-    OutOfStep(#[from] OutOfStep),
-    /// The gateware answers another host.
-    #[error(transparent)]
-    Foreign(#[from] Foreign),
+#[error(
+    "another host has taken the gateware, or it was restarted: end one of the two hosts; then stop, clear and begin again"
+)]
+pub struct SessionLost {
+    /// The answer that says so.
+    pub answer: Answer,
 }
 
 /// Waiting times, in milliseconds.
@@ -54,9 +63,13 @@ impl Default for Timing {
 pub struct Session<const N: usize> {
     decoder: Decoder<ANSWER_BYTES>,
     window: Window<N>,
-    reads: Reads,
+    singles: Singles,
     timing: Timing,
-    /// Number of axes of the build; 0 until the gateware's sequence number was adopted.
+    /// Number of the session that this host owns; 0 if it owns none.
+    number: u16,
+    /// Number of the session that this host has asked for; 0 if it has asked for none.
+    opening: u16,
+    /// Number of axes of the build.
     axes: u8,
     /// Number of unacknowledged segments of each axis.
     under_way: [u8; MOST_AXES as usize],
@@ -64,6 +77,12 @@ pub struct Session<const N: usize> {
     room: [u8; MOST_AXES as usize],
     /// Whether a start is unacknowledged.
     starting: bool,
+    /// Whether a snapshot is unacknowledged.
+    capturing: bool,
+    /// Whether a write was refused because the seek of one of its axes has ended.
+    seek_ended: bool,
+    /// Whether the last write of SEEK named an axis.
+    seeking: bool,
     /// Whether a start is armed in the gateware.
     armed: bool,
     /// Whether the last answer reported drivers without power.
@@ -75,17 +94,22 @@ pub struct Session<const N: usize> {
 }
 
 impl<const N: usize> Session<N> {
-    /// A session without a known gateware. Registers may be read, but not written.
+    /// A dialogue without a session: registers may be read, and the axes may be stopped.
     pub fn new(timing: Timing) -> Self {
         Self {
             decoder: Decoder::default(),
-            window: Window::new(0),
-            reads: Reads::default(),
+            window: Window::new(),
+            singles: Singles::default(),
             timing,
+            number: 0,
+            opening: 0,
             axes: 0,
             under_way: [0; MOST_AXES as usize],
             room: [0; MOST_AXES as usize],
             starting: false,
+            capturing: false,
+            seek_ended: false,
+            seeking: false,
             armed: false,
             unpowered: false,
             powering: false,
@@ -93,20 +117,55 @@ impl<const N: usize> Session<N> {
         }
     }
 
-    /// Numbers the following writes from `next`, which an answer reported, for a build with this
-    /// number of axes.
-    pub fn adopt(&mut self, next: u8, axes: u8) {
-        self.window = Window::new(next);
+    /// Asks for a session with this number with a build of `axes` axes. It is granted if no axis
+    /// moves and no segment waits, or if a stop is complete; otherwise the answer to OPEN is
+    /// refused as busy, and may be repeated. Writes of an earlier session are forgotten.
+    pub fn open(&mut self, number: NonZeroU16, axes: u8) {
+        self.leave();
+        self.opening = number.get();
         self.axes = axes.min(MOST_AXES);
+        self.singles.write(OPEN, 0);
+    }
+
+    /// Takes a session with this number for this host's own, to find out by an owner's read whether
+    /// the gateware still keeps it.
+    pub(crate) fn assume(&mut self, number: NonZeroU16) {
+        self.leave();
+        self.begin(number.get());
+    }
+
+    /// Forgets the session with its writes, and an OPEN without an answer. Reads are free again.
+    pub fn leave(&mut self) {
+        self.singles.withdraw(OPEN);
+        self.opening = 0;
+        self.begin(0);
+    }
+
+    fn begin(&mut self, number: u16) {
+        self.number = number;
+        self.window = Window::new();
         self.under_way = [0; MOST_AXES as usize];
         self.room = [0; MOST_AXES as usize];
         self.starting = false;
+        self.capturing = false;
+        self.seek_ended = false;
+        self.seeking = false;
         self.powering = false;
     }
 
-    /// Number of axes of the build.
-    pub const fn axes(&self) -> u8 {
-        self.axes
+    /// Number of the session that this host owns.
+    pub const fn number(&self) -> Option<NonZeroU16> {
+        NonZeroU16::new(self.number)
+    }
+
+    /// Whether an OPEN has no answer yet.
+    pub const fn opening(&self) -> bool {
+        self.opening != 0
+    }
+
+    /// Whether a STOP has no answer yet.
+    pub fn stopping(&self) -> bool {
+        self.singles.writing(STOP)
     }
 
     /// Number of damaged frames that were received.
@@ -116,7 +175,7 @@ impl<const N: usize> Session<N> {
 
     /// Whether any answer is outstanding.
     pub fn waiting(&self) -> bool {
-        !self.window.is_empty() || self.reads.waiting()
+        !self.window.is_empty() || self.singles.waiting()
     }
 
     /// Whether any write is unacknowledged.
@@ -124,38 +183,66 @@ impl<const N: usize> Session<N> {
         !self.window.is_empty()
     }
 
+    /// Whether a SNAPSHOT is unacknowledged.
+    pub const fn capturing(&self) -> bool {
+        self.capturing
+    }
+
+    /// Whether the gateware has refused a segment or a START because one of its axes has hit the
+    /// source of its seek. That write and all behind it were removed, since none of them can be
+    /// executed, and [`Self::feed`] queues nothing until this host writes SEEK.
+    pub const fn seek_ended(&self) -> bool {
+        self.seek_ended
+    }
+
+    /// Whether this host has begun a seek and has not ended it.
+    pub const fn seeking(&self) -> bool {
+        self.seeking
+    }
+
     /// Starts to read a register; [`Self::receive`] returns the answer.
     ///
     /// # Errors
     /// [`Full`] if eight registers are being read.
     pub fn read(&mut self, address: u8) -> Result<(), Full> {
-        self.reads.ask(address)
+        self.singles.read(address)
     }
 
-    /// Queues a write; writes are executed in order, each exactly once. [`Self::adopt`] must be
-    /// called first.
+    /// Stops all axes, each with its ramp; no session is needed. Writes that were never sent are
+    /// removed.
+    pub fn stop(&mut self) {
+        self.withdraw();
+        self.singles.write(STOP, 0);
+    }
+
+    /// Queues a write; writes are executed in order, each exactly once.
     ///
     /// # Errors
-    /// [`WriteError::Full`] if the window is full. [`WriteError::NoPower`] for a START if the last
-    /// answer reported drivers without power and this host has not requested it; the gateware would
-    /// refuse the START, and all writes behind it, for ever.
+    /// [`WriteError::NoSession`] if no session was granted. [`WriteError::Full`] if the window is
+    /// full. [`WriteError::NoPower`] for a START if the last answer reported drivers without power
+    /// and this host has not requested it; the gateware would refuse the START, and all writes
+    /// behind it, for ever.
     pub fn write(&mut self, body: Body) -> Result<(), WriteError> {
-        if self.axes == 0 {
-            return Err(Full.into());
+        if self.number == 0 {
+            return Err(WriteError::NoSession);
         }
         if matches!(body, Body::Write { address: START, .. }) && !self.may_start() {
             return Err(WriteError::NoPower(ProgramError::NoPower));
         }
         self.window.push(body)?;
+        let queues = self.under_way.iter_mut().zip(&mut self.room);
+        for (_, (under_way, room)) in of_mask(body.axes(), queues) {
+            *under_way += 1;
+            *room = room.saturating_sub(1);
+        }
         match body {
-            Body::Segment { axis, .. } => {
-                let axis = usize::from(axis);
-                self.under_way.get_mut(axis).into_iter().for_each(|count| *count += 1);
-                self.room.get_mut(axis).into_iter().for_each(|room| *room = room.saturating_sub(1));
-            }
             Body::Write { address: START, .. } => self.starting = true,
+            Body::Write { address: SNAPSHOT, .. } => self.capturing = true,
+            Body::Write { address: SEEK, word } => {
+                (self.seek_ended, self.seeking) = (false, word & SEEK_AXES != 0);
+            }
             Body::Write { address: CONTROL, word } => self.powering = word & CONTROL_ENABLE != 0,
-            Body::Write { .. } | Body::Read { .. } => {}
+            _ => {}
         }
         Ok(())
     }
@@ -167,8 +254,8 @@ impl<const N: usize> Session<N> {
 
     /// Removes the writes that were never sent, so that the next one is sent at once.
     pub fn withdraw(&mut self) {
-        let (under_way, starting) = (&mut self.under_way, &mut self.starting);
-        self.window.withdraw(|body| settle(body, under_way, starting));
+        let Self { under_way, starting, capturing, .. } = self;
+        self.window.withdraw(|body| settle(body, under_way, starting, capturing));
     }
 
     /// Queues as much of a program as there is room for, and reads the state of axes without room.
@@ -178,7 +265,7 @@ impl<const N: usize> Session<N> {
     /// [`ProgramError`]. After [`ProgramError::NoPower`] the program can continue once CONTROL = 1
     /// was written.
     pub fn feed<S: SegmentSource>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
-        while self.window.room() > 0 {
+        while self.window.room() > 0 && !self.seek_ended {
             let free = !self.starting && !self.armed;
             let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {
                 if free && !self.may_start() && feeder.start_is_due(self.axes)? {
@@ -197,7 +284,7 @@ impl<const N: usize> Session<N> {
             let armed = axis == 0 && self.armed && feeder.wants_start();
             // An error only means that enough reads are in progress.
             if (silent && full && feeder.wants(axis)) || armed {
-                let _ = self.reads.ask(of_axis(POSITION, axis));
+                let _ = self.singles.read(of_axis(POSITION, axis));
             }
         }
         Ok(feeder.is_done(self.axes))
@@ -206,15 +293,20 @@ impl<const N: usize> Session<N> {
     /// The next request to be sent at the time `now`, ms.
     pub fn transmit(&mut self, now: u32) -> Option<Request> {
         let Timing { resend, pause } = self.timing;
-        self.reads.transmit(now, resend).or_else(|| self.window.transmit(now, resend, pause))
+        let single = self.singles.transmit(now, resend);
+        let (sequence, body) = single.or_else(|| self.window.transmit(now, resend, pause))?;
+        let opens = matches!(body, Body::Write { address: OPEN, .. });
+        let session = if opens { self.opening } else { self.number };
+        Some(Request { sequence, session, body })
     }
 
     /// Processes a byte received at the time `now`, ms. Returns the answer if the byte completes
     /// one.
     ///
     /// # Errors
-    /// [`SessionError`] if the answer shows that this host must not continue.
-    pub fn receive(&mut self, byte: u8, now: u32) -> Result<Option<Answer>, SessionError> {
+    /// [`SessionLost`] if the gateware has refused a request of this session; this host owns none
+    /// from now on.
+    pub fn receive(&mut self, byte: u8, now: u32) -> Result<Option<Answer>, SessionLost> {
         let answer = match self.decoder.push(byte) {
             Received::Nothing => return Ok(None),
             Received::Frame(frame) => Answer::from_bytes(frame).ok(),
@@ -224,39 +316,63 @@ impl<const N: usize> Session<N> {
             self.broken = self.broken.saturating_add(1);
             return Ok(None);
         };
-        if self.axes > 0 {
-            self.count(&answer, now)?;
-        }
         self.unpowered = !answer.ready && !answer.fault;
-        self.reads.answer(&answer);
+        self.armed = answer.armed;
+        let single = self.singles.answer(&answer);
+        if answer.is_write_of(OPEN) {
+            if single {
+                let opening = core::mem::take(&mut self.opening);
+                self.begin(if answer.refusal.is_none() { opening } else { 0 });
+            }
+        } else if answer.refusal == Some(Refusal::Session) {
+            if self.number != 0 {
+                self.leave();
+                return Err(SessionLost { answer });
+            }
+        } else {
+            self.count(&answer, now);
+        }
         Ok(Some(answer))
     }
 
-    fn count(&mut self, answer: &Answer, now: u32) -> Result<(), SessionError> {
-        self.window.own(answer)?;
-        let (under_way, starting) = (&mut self.under_way, &mut self.starting);
-        self.window.answer(answer, now, |body| settle(body, under_way, starting))?;
-        self.armed = answer.armed;
-        if let Some(axis) = answer.axis().map(usize::from)
-            && let (Some(room), Some(under_way)) =
-                (self.room.get_mut(axis), self.under_way.get(axis))
-        {
-            *room = answer.free.saturating_sub(*under_way);
+    fn count(&mut self, answer: &Answer, now: u32) {
+        let axes = match answer.axis() {
+            Some(axis) => 1 << axis,
+            None => self.window.answered(answer).map_or(0, Body::axes),
+        };
+        let ends_seek =
+            answer.refusal == Some(Refusal::SeekEnded) && self.window.answered(answer).is_some();
+        let Self { under_way, starting, capturing, .. } = self;
+        let mut settled = |body: &Body| settle(body, under_way, starting, capturing);
+        if !self.window.answer(answer, now, &mut settled) {
+            return;
         }
-        Ok(())
+        if ends_seek {
+            self.window.clear(settled);
+            self.seek_ended = true;
+        }
+        // An answer says at least how much room there was, and room only grows until this host
+        // sends a segment.
+        let queues = self.under_way.iter().zip(&mut self.room);
+        for (_, (under_way, room)) in of_mask(axes, queues) {
+            *room = answer.free.saturating_sub(*under_way).max(*room);
+        }
     }
 }
 
+/// The items of the axes of a mask.
+fn of_mask<T>(mask: u8, items: impl Iterator<Item = T>) -> impl Iterator<Item = (u8, T)> {
+    (0..MOST_AXES).zip(items).filter(move |(axis, _)| mask >> axis & 1 == 1)
+}
+
 /// Updates the counts when a write is acknowledged or withdrawn.
-fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool) {
+fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool, capturing: &mut bool) {
+    for (_, count) in of_mask(body.axes(), under_way.iter_mut()) {
+        *count = count.saturating_sub(1);
+    }
     match *body {
-        Body::Segment { axis, .. } => {
-            under_way
-                .get_mut(usize::from(axis))
-                .into_iter()
-                .for_each(|count| *count = count.saturating_sub(1));
-        }
         Body::Write { address: START, .. } => *starting = false,
-        Body::Write { .. } | Body::Read { .. } => {}
+        Body::Write { address: SNAPSHOT, .. } => *capturing = false,
+        _ => {}
     }
 }

@@ -1,36 +1,9 @@
 //! The window of unacknowledged writes. They are executed in order, each exactly once, and are sent
 //! again from the first that is missing.
 
-use crate::frame::{Answer, Body, Request};
+use crate::frame::{Answer, Body, Refusal};
 use crate::registers::WINDOW;
 use thiserror::Error;
-
-/// Error: the gateware's sequence number is not one that this host can have caused. The gateware
-/// was restarted, or another host writes to it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error(
-    "the gateware has lost count: it waits for write {next}, this host has {sent} on their way from {first} on; it was restarted, or another host writes to it"
-)]
-pub struct OutOfStep {
-    /// Sequence number that the gateware expects.
-    pub next: u8,
-    /// Sequence number of the first write that this host considers missing.
-    pub first: u8,
-    /// Number of writes sent from there on.
-    pub sent: u8,
-}
-
-/// Error: an answer to a write that this host has not sent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error(
-    "an answer came to write {sequence} at {address:#04x}, which this host has not sent: another host writes to this board at the same time; end one of the two, then stop and clear"
-)]
-pub struct Foreign {
-    /// Sequence number of the answer.
-    pub sequence: u8,
-    /// Address of the answer.
-    pub address: u8,
-}
 
 /// Error: there is no room until answers arrive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -61,18 +34,24 @@ pub struct Window<const N: usize> {
     busy: bool,
 }
 
+impl<const N: usize> Default for Window<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<const N: usize> Window<N> {
     const FITS: () = assert!(N > 0 && N <= WINDOW as usize, "1 to 127 writes may be on their way");
 
-    /// An empty window; the next write has the sequence number `first`.
-    pub fn new(first: u8) -> Self {
+    /// An empty window; the first write has the sequence number 0.
+    pub fn new() -> Self {
         let () = Self::FITS;
         let slots = [Body::Read { address: 0 }; N];
         Self {
             slots,
             at: 0,
             length: 0,
-            first,
+            first: 0,
             sent: 0,
             reached: 0,
             since: 0,
@@ -119,9 +98,17 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// The request to be sent at the time `now`, ms. A new round begins after `resend` ms without
-    /// progress. If the gateware was busy, it begins after `pause` ms.
-    pub fn transmit(&mut self, now: u32, resend: u32, pause: u32) -> Option<Request> {
+    /// Removes all writes; `removed` is called with each. The gateware must have refused the first
+    /// of them: then it has executed none, and the next write has the number of that one.
+    pub fn clear(&mut self, removed: impl FnMut(&Body)) {
+        self.reached = 0;
+        self.withdraw(removed);
+        self.go_back(None);
+    }
+
+    /// The number and the body of the request to be sent at the time `now`, ms. A new round begins
+    /// after `resend` ms without progress. If the gateware was busy, it begins after `pause` ms.
+    pub fn transmit(&mut self, now: u32, resend: u32, pause: u32) -> Option<(u8, Body)> {
         let waited = now.wrapping_sub(self.since);
         if self.sent > 0 && self.length > 0 && waited >= resend {
             self.go_back(None);
@@ -133,56 +120,31 @@ impl<const N: usize> Window<N> {
             self.since = now;
         }
         self.busy = false;
-        let request = Request {
-            sequence: self.first.wrapping_add(self.sent as u8),
-            body: *self.slots.get((self.at + self.sent) % N)?,
-        };
+        let body = *self.slots.get((self.at + self.sent) % N)?;
+        let sequence = self.first.wrapping_add(self.sent as u8);
         self.sent += 1;
         self.reached = self.reached.max(self.sent);
-        Some(request)
+        Some((sequence, body))
     }
 
-    /// Checks that this answers a write of this host, as far as that can be known. An answer to a
-    /// read passes. Of acknowledged writes only the number is left, so a late answer to one of them
-    /// passes here too; [`Self::answer`] may still refuse it.
-    ///
-    /// # Errors
-    /// [`Foreign`] if the number was never sent, or was sent with another address.
-    pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
-        let behind = answer.sequence.wrapping_sub(self.first);
-        if !answer.written || behind > WINDOW {
-            return Ok(());
-        }
-        let slot = self.slots.get((self.at + usize::from(behind)) % N);
-        let sent = usize::from(behind) < self.reached
-            && slot.is_some_and(|body| body.address() == answer.address);
-        if sent {
-            Ok(())
-        } else {
-            Err(Foreign { sequence: answer.sequence, address: answer.address })
-        }
+    /// The unacknowledged write that this answers; `None` if it answers another request.
+    pub fn answered(&self, answer: &Answer) -> Option<&Body> {
+        let behind = usize::from(answer.sequence.wrapping_sub(self.first));
+        let sent = answer.written && behind < self.reached;
+        let body = self.slots.get((self.at + behind) % N).filter(|_| sent)?;
+        (body.address() == answer.address).then_some(body)
     }
 
     /// Processes the acknowledgement in an answer: all writes before `next` were executed.
-    /// `executed` is called with each of them once, in order.
-    ///
-    /// # Errors
-    /// [`OutOfStep`] if the answer acknowledges writes that were never sent, or if its `next` is
-    /// older than the first unacknowledged write.
-    pub fn answer(
-        &mut self,
-        answer: &Answer,
-        now: u32,
-        mut executed: impl FnMut(&Body),
-    ) -> Result<(), OutOfStep> {
+    /// `executed` is called with each of them once, in order. An answer whose `next` this host
+    /// cannot have caused is from a time before this session, and is ignored. Returns whether it
+    /// was taken.
+    pub fn answer(&mut self, answer: &Answer, now: u32, mut executed: impl FnMut(&Body)) -> bool {
         let advance = usize::from(answer.next.wrapping_sub(self.first));
         if advance > self.reached {
-            return Err(OutOfStep {
-                next: answer.next,
-                first: self.first,
-                sent: self.reached as u8,
-            });
+            return false;
         }
+        let refusal = answer.refusal.filter(|_| self.answered(answer).is_some());
         for _ in 0..advance {
             self.slots.get(self.at).into_iter().for_each(&mut executed);
             self.at = (self.at + 1) % N;
@@ -196,22 +158,25 @@ impl<const N: usize> Window<N> {
             self.refused = None;
             self.busy = false;
         }
-        if answer.refused && self.length > 0 {
-            self.refusal(answer.sequence.wrapping_sub(answer.next), now);
+        let behind = answer.sequence.wrapping_sub(answer.next);
+        match refusal {
+            Some(Refusal::Sequence) => self.refusal(behind, false, now),
+            Some(Refusal::Busy) => self.refusal(behind, true, now),
+            Some(Refusal::Session | Refusal::SeekEnded | Refusal::Other(_)) | None => {}
         }
-        Ok(())
+        true
     }
 
     /// Processes a refusal. The gateware refuses every write behind a missing one, so one loss
     /// causes many refusals with rising numbers. The first of them begins a new round; the others
     /// are only recorded. A refusal whose number does not rise is not one of them: it answers a
     /// write of the new round, and begins another round.
-    fn refusal(&mut self, behind: u8, now: u32) {
+    fn refusal(&mut self, behind: u8, busy: bool, now: u32) {
         if self.refused.is_some_and(|before| behind > before) {
             self.refused = Some(behind);
         } else {
             self.go_back(Some(behind));
-            self.busy = behind == 0;
+            self.busy = busy;
             self.since = now;
         }
     }

@@ -5,7 +5,7 @@
 mod support;
 
 use carrystep_link::slip::{self, Decoder, Received};
-use carrystep_link::{Answer, Body, FrameError, Request, Segment};
+use carrystep_link::{Answer, Body, FrameError, Request, Segment, WideSegment};
 use proptest::prelude::*;
 use support::device::on_the_line;
 
@@ -16,12 +16,21 @@ fn request() -> impl Strategy<Value = Request> {
             segment: Segment { ticks, v, a, j, last },
         },
     );
+    let wide = (1..=u8::MAX, 1..=u32::MAX, any::<[[i64; 3]; 8]>(), any::<bool>()).prop_map(
+        |(mask, ticks, mut cubics, last)| {
+            let others = (0..8).zip(&mut cubics).filter(|(axis, _)| mask >> axis & 1 == 0);
+            others.for_each(|(_, cubic)| *cubic = [0; 3]);
+            Body::Segments(WideSegment { mask, ticks, cubics, last })
+        },
+    );
     let body = prop_oneof![
-        (0..0x80_u8).prop_map(|address| Body::Read { address }),
+        any::<u8>().prop_map(|address| Body::Read { address }),
         (0..0x40_u8, any::<u32>()).prop_map(|(address, word)| Body::Write { address, word }),
         segment,
+        wide,
     ];
-    (any::<u8>(), body).prop_map(|(sequence, body)| Request { sequence, body })
+    let numbers = (any::<u8>(), any::<u16>());
+    (numbers, body).prop_map(|((sequence, session), body)| Request { sequence, session, body })
 }
 
 /// Random bytes in which END, ESC and the escaped codes are frequent.
@@ -51,7 +60,7 @@ proptest! {
         let line: Vec<u8> = slip::encode(bytes.as_slice()).collect();
         prop_assert!(line.len() <= slip::line_bytes(bytes.as_slice().len()));
         prop_assert_eq!(&line, &on_the_line(content));
-        prop_assert_eq!(received::<38>(&line), [Some(bytes.as_slice().to_vec())]);
+        prop_assert_eq!(received::<212>(&line), [Some(bytes.as_slice().to_vec())]);
     }
 
     #[test]
@@ -61,7 +70,7 @@ proptest! {
     }
 
     #[test]
-    fn decoder_never_panics_and_a_flipped_bit_is_detected(request in request(), bit: u16, bytes in prop::collection::vec(byte(), 0..60)) {
+    fn decoder_never_panics_and_a_flipped_bit_is_detected(request in request(), bit: u16, bytes in prop::collection::vec(byte(), 0..220)) {
         let _ = Request::from_bytes(&bytes);
         let _ = Answer::from_bytes(&bytes);
         let mut changed = request.to_bytes().as_slice().to_vec();
@@ -78,11 +87,13 @@ fn frames_that_no_address_allows_are_refused() {
         Request::from_bytes(&received::<60>(&line)[0].clone().unwrap()).unwrap_err()
     };
     assert_eq!(with(&[0; 3]), FrameError::Length(7));
-    assert_eq!(with(&[0, 0x42, 0, 0, 0, 0]), FrameError::Length(10));
-    assert_eq!(with(&[0, 0xc0, 0, 0, 0, 0]), FrameError::Length(10));
-    let mut segment = [0; 34];
-    segment[1] = 0xc8;
-    assert_eq!(with(&segment), FrameError::Address(0xc8));
+    assert_eq!(with(&[0, 0x42, 0, 0, 0, 0, 0, 0]), FrameError::Length(12));
+    assert_eq!(with(&[0, 0xc0, 0, 0, 0, 0, 0, 0]), FrameError::Length(12));
+    // Two axes in the mask, and the words of one.
+    let mut wide = [0; 40];
+    (wide[1], wide[4]) = (0xc8, 0b11);
+    assert_eq!(with(&wide), FrameError::Length(44));
+    assert_eq!(with(&[0, 0xc9, 0, 0, 0, 0, 0, 0]), FrameError::Address(0xc9));
     assert_eq!(Request::from_bytes(&[]), Err(FrameError::Length(0)));
-    assert_eq!(Answer::from_bytes(&[0; 15]), Err(FrameError::Crc));
+    assert_eq!(Answer::from_bytes(&[0; 16]), Err(FrameError::Crc));
 }

@@ -9,12 +9,14 @@ use carrystep_link::{
     Timing, Wish,
 };
 use std::convert::Infallible;
+use std::num::NonZeroU16;
 use support::bench_line::{End, Peer};
 use support::device::Device;
 use support::random::{Random, program};
 use support::soak::TICKS;
 
 const BUILD: u64 = 0x0123_4567_89ab_cdef;
+const OWN: NonZeroU16 = NonZeroU16::new(0xc0db).unwrap();
 const QUICK: Patience = Patience {
     timing: Timing { resend: 12, pause: 2 },
     silence: 500,
@@ -71,6 +73,7 @@ fn silence_and_noise_are_different_errors() {
 fn gateware_that_stops_answering_is_reported_as_lost() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
     host.enable().unwrap();
     end.0.borrow_mut().peer = Peer::Nobody;
     let commands = program(&mut Random::new(11), 6, 100, 20 * TICKS);
@@ -114,12 +117,12 @@ fn refusals_are_separate_errors() {
     );
 }
 
-/// Runs a program, stops it, and measures the exchanges until the write of CONTROL with bit 1 is
-/// executed.
+/// Runs a program, stops it, and measures the exchanges until STOP is executed.
 #[test]
 fn stop_is_executed_within_three_exchanges() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
     host.enable().unwrap();
     let commands = program(&mut Random::new(5), 6, 400, 20 * TICKS);
     for wished in [1, 2, 3, 5, 8, 13, 21, 34, 55] {
@@ -148,6 +151,7 @@ fn stop_is_executed_within_three_exchanges() {
 fn start_without_power_is_refused_before_anything_is_sent() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
     let segment = Segment { ticks: 9, v: 0, a: 0, j: 0, last: true };
     let commands = [Command::Segment { axis: 0, segment }, Command::Start { mask: 1 }];
     let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
@@ -170,6 +174,7 @@ fn start_without_power_is_refused_before_anything_is_sent() {
 fn clear_while_the_estop_is_pressed_is_an_error() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
     host.enable().unwrap();
     end.0.borrow_mut().device.press(true);
     host.read_status().unwrap();
@@ -179,4 +184,103 @@ fn clear_while_the_estop_is_pressed_is_an_error() {
     assert!(took < 200, "{took} ms");
     end.0.borrow_mut().device.press(false);
     host.clear().unwrap();
+}
+
+/// What another host does with the gateware in miniature, byte by byte on a line of its own.
+fn other(end: &End, content: &[u8]) {
+    let mut world = end.0.borrow_mut();
+    support::device::on_the_line(content).into_iter().for_each(|byte| {
+        world.device.byte(byte);
+    });
+}
+
+const OPEN_OF_ANOTHER: [u8; 8] = [0, 0xa5, 7, 0, 0, 0, 0, 0];
+
+#[test]
+fn write_without_a_session_is_an_error_and_a_stop_is_not() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    assert_eq!(host.enable(), Err(HostError::NoSession));
+    assert_eq!(host.snapshot(), Err(HostError::NoSession));
+    assert_eq!(
+        host.stream(Program::new(&[], 6).unwrap(), |_| Wish::GoOn),
+        Err(HostError::NoSession)
+    );
+    assert!(end.0.borrow().device.log.is_empty(), "something was written");
+    assert_eq!(host.stop().unwrap().answer.cause_name(), Some("stop"));
+    assert_eq!(end.0.borrow().device.session, 0);
+    assert_eq!(host.clear(), Err(HostError::NoSession));
+    host.open(OWN).unwrap();
+    host.clear().unwrap();
+    assert!(!host.status().answer.fault);
+}
+
+/// The session is lost in the middle of a program. The host reports it, sends no more writes, and
+/// can stop the axes and take the gateware back.
+#[test]
+fn gateware_that_another_host_has_taken_is_reported() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
+    assert_eq!(host.session(), Some(OWN));
+    host.enable().unwrap();
+    let commands = program(&mut Random::new(3), 6, 400, 20 * TICKS);
+    let mut exchanges = 0;
+    let error = host.stream(Program::new(&commands, 6).unwrap(), |_| {
+        exchanges += 1;
+        if exchanges == 100 {
+            other(&end, &[0, 0xa6, 0, 0, 0, 0, 0, 0]);
+            other(&end, &OPEN_OF_ANOTHER);
+            other(&end, &[0, 0xa2, 7, 0, 0, 0, 0, 0]);
+        }
+        Wish::GoOn
+    });
+    let error = error.unwrap_err();
+    assert!(matches!(error, HostError::SessionLost(_)), "{error}");
+    assert!(error.to_string().starts_with("another host has taken the gateware"), "{error}");
+    let next = end.0.borrow().device.next;
+    assert_eq!((host.session(), next), (None, 1));
+    assert_eq!(host.disable(), Err(HostError::NoSession));
+    assert!(!host.keeps(OWN).unwrap());
+    assert!(host.keeps(NonZeroU16::new(7).unwrap()).unwrap());
+    host.stop().unwrap();
+    host.open(OWN).unwrap();
+    host.clear().unwrap();
+    assert_eq!(host.stream(Program::new(&[], 6).unwrap(), |_| Wish::GoOn), Ok(Ended::Done));
+}
+
+#[test]
+fn restart_is_told_apart_from_another_host() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.open(OWN).unwrap();
+    host.enable().unwrap();
+    end.0.borrow_mut().device = Device::new(6, 0);
+    assert_eq!(host.read_status(), Err(HostError::Restarted));
+}
+
+/// A host waits for the end of another one's motion, or for its caller's patience, and stops
+/// nothing.
+#[test]
+fn open_waits_while_axes_move() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    end.0.borrow_mut().device.load(2, 100 * TICKS);
+    let mut looks = 0;
+    let gave_up = host.open_while(OWN, |progress| {
+        assert!(!progress.status.answer.idle);
+        looks += 1;
+        if looks == 3 { Wish::Stop } else { Wish::GoOn }
+    });
+    assert_eq!((gave_up, host.session()), (Ok(Ended::Stopped), None));
+    host.open(OWN).unwrap();
+    assert_eq!(end.0.borrow().device.fault, None);
+    host.open(OWN).unwrap();
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    end.0.borrow_mut().device.load(2, u32::MAX);
+    let error = host.open(OWN).unwrap_err();
+    // The watchdog's time and that for a change.
+    assert!(matches!(error, HostError::Occupied { ms: 2101.. }), "{error}");
+    assert!(error.to_string().contains("`carrystep stop`"), "{error}");
 }

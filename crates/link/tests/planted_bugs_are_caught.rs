@@ -12,7 +12,7 @@ use support::soak::{Soak, TICKS, soak};
 use support::wire::Faults;
 
 /// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
-const IN_C: [(&str, &str, &str); 25] = [
+const IN_C: [(&str, &str, &str); 31] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
     ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
@@ -26,20 +26,30 @@ const IN_C: [(&str, &str, &str); 25] = [
     ),
     ("ticks are not less one", "segment->ticks - 1u", "segment->ticks"),
     (
-        "the count of others is believed",
-        "advance > session->reached",
-        "false && advance > session->reached",
+        "an old count is believed",
+        "if (advance > session->reached) {",
+        "if (false && advance > session->reached) {",
     ),
-    ("answers to other hosts are believed", "!own(session, answer) || ", ""),
+    ("refusals of writes that were never sent are believed", "behind < session->reached &&", ""),
     (
-        "answers to writes that were never sent are believed",
-        "behind < session->reached && session->slots",
-        "session->slots",
-    ),
-    (
-        "answers to another host's write of the same number are believed",
-        " && session->slots[slot(session, behind)].address == answer->address",
+        "refusals of another write of the same number are believed",
+        " &&\n           session->slots[slot(session, behind)].address == answer->address",
         "",
+    ),
+    ("a read is always free", "request->writes || session != 0", "request->writes"),
+    ("a write has no session", "request->writes || session != 0", "session != 0"),
+    ("a busy OPEN opens", "answer->reason == 0 ? session->opening : 0", "session->opening"),
+    ("any answer to an OPEN opens", "        if (single) {", "        if (true) {"),
+    ("a lost session is kept", "        leave(session);\n        return", "        return"),
+    (
+        "a stop waits for the writes",
+        "    carrystep_withdraw(session);\n    withdraw",
+        "    withdraw",
+    ),
+    (
+        "a stop waits for the reads",
+        "(session->singles[index].request.writes && !session->singles[found].request.writes)",
+        "false",
     ),
     ("a start is fed without power", "return UNPOWERED;", ""),
     (
@@ -49,8 +59,8 @@ const IN_C: [(&str, &str, &str); 25] = [
     ),
     (
         "what was never sent may be executed",
-        "advance > session->reached",
-        "advance > session->length",
+        "if (advance > session->reached) {",
+        "if (advance > session->length) {",
     ),
     (
         "every refusal begins a new round",
@@ -62,7 +72,7 @@ const IN_C: [(&str, &str, &str); 25] = [
         "!session->has_refused || behind <= session->refused",
         "!session->has_refused",
     ),
-    ("a busy start is sent again at once", "session->busy = behind == 0;", ""),
+    ("a busy start is sent again at once", "session->busy = busy;", ""),
     (
         "nothing is sent again by time",
         "waited >= session->resend)",
@@ -70,7 +80,7 @@ const IN_C: [(&str, &str, &str); 25] = [
     ),
     (
         "a question is answered by any answer",
-        " && session->reads[index].sequence == answer->sequence",
+        " &&\n            session->singles[index].sequence == answer->sequence",
         "",
     ),
     (

@@ -88,7 +88,16 @@ fn example_moves_exactly_2500_steps() {
 #[test]
 fn example_writes_nothing_to_another_build() {
     let (status, device) = example(|device| device.facts[2] ^= 1);
-    assert_eq!((status, device.log.len()), (Some(1), 0));
+    assert_eq!((status, device.log.len(), device.session), (Some(1), 0, 0));
+}
+
+#[test]
+fn example_leaves_another_hosts_motion_alone() {
+    let (status, device) = example(|device| {
+        device.session = 7;
+        device.load(3, 1 << 30);
+    });
+    assert_eq!((status, device.log.len(), device.session), (Some(1), 0, 7));
 }
 
 #[test]

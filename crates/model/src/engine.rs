@@ -60,7 +60,7 @@ impl Engine {
 
     /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &EngineInputs) {
-        let ending = self.readout.observe(&self.motion);
+        let ending = self.readout.observe(&self.motion, inputs);
         self.motion.clock(inputs);
         self.readout.clock(&self.motion, inputs, ending);
     }

@@ -23,7 +23,7 @@ mod spi;
 mod uart;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, Put, StateWord};
+use carrystep_core::engine::{EngineInputs, Put, SeekSource, StateWord};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, image};
 use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
@@ -54,7 +54,7 @@ impl Link {
     /// The outputs in this clock. All of them come from registers.
     pub fn outputs(&self) -> LinkOutputs {
         let processor = self.processor.outputs();
-        let (axis, word) = (self.room_of(), processor.x >> 2 & 7);
+        let (axis, word) = (self.room_of(), processor.number);
         let mask = processor.a & self.axes;
         let engine = EngineInputs {
             put: processor.puts.then_some(Put { axis, word, data: processor.word }),
@@ -63,7 +63,9 @@ impl Link {
             clear: processor.clear,
             stop: processor.stop,
             broken: processor.broken,
-            home: processor.homes.then_some(mask),
+            seek_source: processor.sources.then_some(SeekSource::of_byte(processor.a)),
+            seek: processor.seeks.then_some(mask),
+            latch_arm: processor.arms,
             snapshot: processor.snapshot,
             kick: processor.kicks,
             enable: processor.enable,

@@ -5,7 +5,7 @@
 mod support;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::StateWord;
+use carrystep_core::engine::{StateItem, StateWord};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_model::{Engine, HostedEngine};
 use support::host::{Cycle, run};
@@ -19,7 +19,11 @@ struct Met {
     clocks: u64,
     discarded: u64,
     /// Words of each page.
-    pages: [u64; 3],
+    pages: [u64; 4],
+    /// Words of switches.
+    switches: u64,
+    hits: u64,
+    edges_of_the_latch: u64,
     /// Leaps that ended in each beat of a time slot.
     ends: [u64; 13],
     faults: u64,
@@ -97,8 +101,12 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
             met.faults += u64::from(now.fault.is_none() && next.fault.is_some());
             met.clears += u64::from(now.fault.is_some() && next.fault.is_none());
             met.resets += u64::from(now.resetting && !next.resetting);
-            if let Some(word) = now.state {
-                met.pages[word.page as usize] += 1;
+            met.hits += u64::from(next.hits & !now.hits != 0);
+            met.edges_of_the_latch += u64::from(next.latch_edges > now.latch_edges);
+            match now.state {
+                Some(word) if word.item == StateItem::Switch => met.switches += 1,
+                Some(word) => met.pages[word.page as usize] += 1,
+                None => {}
             }
         }
         compare(&build, &history, &mut random, &mut met);
@@ -107,5 +115,9 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
     assert!(met.edges > 5000 && met.discarded > 100, "{met:?}");
     assert!(met.pages.iter().all(|&words| words > 1000), "{met:?}");
     assert!(met.ends.iter().all(|&ends| ends > 10), "{met:?}");
-    assert!([met.faults, met.clears, met.resets].iter().all(|&count| count > 20), "{met:?}");
+    assert!(met.switches > 100_000 && met.edges_of_the_latch > 20, "{met:?}");
+    assert!(
+        [met.faults, met.clears, met.resets, met.hits].iter().all(|&count| count > 20),
+        "{met:?}"
+    );
 }

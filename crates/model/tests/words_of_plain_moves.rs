@@ -50,7 +50,9 @@ fn plan(random: &mut Random, axes: usize) -> Vec<Vec<Segment>> {
 /// Executes a move, with snapshots in any clock. Returns its cycles from the beginning of a tick
 /// on, and the tick of the start among them.
 fn execute(engine: &mut Engine, random: &mut Random, plan: &[Vec<Segment>]) -> (Vec<Cycle>, usize) {
-    let per_tick = engine.motion().build().timebase.clocks_per_tick() as usize;
+    let build = engine.motion().build();
+    let per_tick = build.timebase.clocks_per_tick() as usize;
+    let rests_at = EngineInputs::default().levels(&build.guard);
     let mut words: VecDeque<Put> = (0_u8..)
         .zip(plan)
         .flat_map(|(axis, segments)| segments.iter().flat_map(move |s| words(axis, *s)))
@@ -69,7 +71,7 @@ fn execute(engine: &mut Engine, random: &mut Random, plan: &[Vec<Segment>]) -> (
             start: start_now.then_some(mask as u8),
             snapshot: random.once_in(100),
             enable: true,
-            ..EngineInputs::default()
+            ..rests_at
         };
         let outputs = engine.outputs(&inputs);
         if outputs.put_ready {
@@ -117,7 +119,6 @@ fn words_of_every_tick_are_those_of_the_closed_form() {
         let mut build = support::build(&mut random);
         build.guard.limits = LimitWiring::None;
         build.guard.watchdog = 0;
-        build.guard.estop_low = false;
         build.pins.fill(PinTiming::SHORTEST);
         let axes = build.axes();
         let per_tick = build.timebase.clocks_per_tick() as usize;

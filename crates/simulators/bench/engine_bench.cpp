@@ -3,7 +3,8 @@
 // and the checksum of all of them. Arguments: FILE [+mutant=N]; compiled for AXES axes.
 //
 // A template: `inputs` and `outputs` are the recorded ports of the engine, in the order of the
-// stimuli and of the printed bits; `status` is the item whose word has `status_bits` bits only.
+// stimuli and of the printed bits; of the items `status` and `switch`, only the bits of
+// `status_meant` and `switch_meant` have a meaning.
 #include "Vcarrystep_engine.h"
 #include "verilated.h"
 #include <cinttypes>
@@ -26,7 +27,8 @@ uint64_t checksum(const Vcarrystep_engine& core, uint64_t sum) {
     uint64_t word = 0;
     if (core.state_valid) {
         const unsigned address = core.state_page << 6 | core.state_item << 3 | core.state_axis;
-        const uint64_t meant = core.state_item == {{ status }} ? (1u << {{ status_bits }}) - 1 : ~0u;
+        const uint64_t meant = core.state_item == {{ status }} ? {{ status_meant }}u
+                             : core.state_item == {{ switch }} ? {{ switch_meant }}u : ~0u;
         word = uint64_t{address} << 32 | (core.state & meant);
     }
     return (sum << 7 | sum >> 57) ^ (uint64_t{core.refreshed} << 40 | word);

@@ -3,8 +3,8 @@
 // and the checksum of all of them. Arguments: +stimuli=FILE, -Pengine_bench.AXES=n.
 //
 // A template: `ports` is the table of the engine's ports; `inputs` and `outputs` are its recorded
-// ports, in the order of the stimuli and of the printed bits; `status` is the item whose word has
-// `status_bits` bits only.
+// ports, in the order of the stimuli and of the printed bits; of the items `status` and `switch`,
+// only the bits of `status_meant` and `switch_meant` have a meaning.
 `timescale 1ns / 1ps
 module engine_bench;
     parameter AXES = 6;
@@ -27,7 +27,9 @@ module engine_bench;
     reg [BITS-1:0] before;
     integer file, fields;
     reg [63:0] cycle, count, sum;
-    wire [31:0] meant = state_item == {{ status }} ? state & {{ "{" }}{{ 32 - status_bits }}'b0, {{ "{" }}{{ status_bits }}{1'b1{{ "}}}" }} : state;
+    wire [31:0] mask = state_item == {{ status }} ? 32'd{{ status_meant }}
+                     : state_item == {{ switch }} ? 32'd{{ switch_meant }} : 32'hffffffff;
+    wire [31:0] meant = state & mask;
     wire [39:0] said = state_valid ? {state_page, state_item, state_axis, meant} : 40'b0;
     reg [8*256-1:0] name;
 

@@ -1,7 +1,9 @@
 //! The benches of the engine's Verilog, alone and on a board, made from the tables of their ports.
 
 use crate::LevelError;
-use carrystep_core::engine::{ENGINE_PORTS, STATUS_BITS, StateItem, is_recorded, ports_of};
+use carrystep_core::engine::{
+    ENGINE_PORTS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE, StateItem, is_recorded, ports_of,
+};
 use carrystep_core::link::BYTE_PORTS;
 use carrystep_core::ports::{Direction, Peer, Port, Width};
 use minijinja::syntax::SyntaxConfig;
@@ -54,7 +56,9 @@ fn rendered(template: &str) -> Result<String, LevelError> {
             .collect::<Vec<_>>(),
         outputs => rows(Direction::Output),
         status => StateItem::Status as u8,
-        status_bits => STATUS_BITS,
+        status_meant => (1_u32 << STATUS_BITS) - 1,
+        switch => StateItem::Switch as u8,
+        switch_meant => SWITCH_STATE | SWITCH_LEVEL,
     };
     environment
         .render_str(template, values)

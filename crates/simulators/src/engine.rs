@@ -7,7 +7,7 @@ pub mod replay;
 pub mod run;
 
 use crate::Commands;
-use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
+use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put, SeekSource};
 use carrystep_core::{Command, Program, Segment};
 use std::fmt;
 
@@ -81,14 +81,24 @@ pub enum Event {
     LimitMin(u8),
     /// New state of the limits at the high ends, a bit for each axis.
     LimitMax(u8),
+    /// New state of the inputs of row 2, bit 0 the probe.
+    Inputs0(u8),
+    /// New state of the inputs of row 3, bit 0 the interlock.
+    Inputs1(u8),
+    /// The pin of the latch becomes active or inactive.
+    Latch(bool),
     /// The host requests a controlled stop, or withdraws the request.
     Stop(bool),
     /// The host requests power for the drivers, or removes it.
     Enable(bool),
     /// The host sends a valid request in this cycle, which restarts the watchdog.
     Kick,
-    /// Mask of the axes that wait for their limit from this cycle on.
-    Home(u8),
+    /// The source of seeks from the next cycle on.
+    SeekSource(SeekSource),
+    /// Mask of the axes that wait for the source from the next cycle on.
+    Seek(u8),
+    /// The host arms the latch in this cycle.
+    LatchArm,
     /// The host requests a snapshot in this cycle.
     Snapshot,
     /// The host violates the segment protocol in this cycle.
@@ -172,17 +182,29 @@ impl<'a> EngineHost<'a> {
 
     /// Applies the events of this cycle.
     fn happen(&mut self) {
-        let (kick, broken, home, snapshot) = (self.awake, false, None, false);
-        self.around = EngineInputs { kick, broken, home, snapshot, ..self.around };
+        self.around = EngineInputs {
+            kick: self.awake,
+            broken: false,
+            seek_source: None,
+            seek: None,
+            latch_arm: false,
+            snapshot: false,
+            ..self.around
+        };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
             match event {
                 Event::EStop(active) => self.around.estop = active,
                 Event::LimitMin(active) => self.around.limit_min = active,
                 Event::LimitMax(active) => self.around.limit_max = active,
+                Event::Inputs0(active) => self.around.inputs[0] = active,
+                Event::Inputs1(active) => self.around.inputs[1] = active,
+                Event::Latch(active) => self.around.latch = active,
                 Event::Stop(asked) => self.around.stop = asked,
                 Event::Enable(wanted) => self.around.enable = wanted,
                 Event::Kick => self.around.kick = true,
-                Event::Home(axes) => self.around.home = Some(axes),
+                Event::SeekSource(source) => self.around.seek_source = Some(source),
+                Event::Seek(axes) => self.around.seek = Some(axes),
+                Event::LatchArm => self.around.latch_arm = true,
                 Event::Snapshot => self.around.snapshot = true,
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
@@ -261,8 +283,11 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let EngineInputs { kick, broken, home, snapshot, .. } = self.around;
-        let lasting = kick == self.awake && !broken && home.is_none() && !snapshot;
+        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, .. } = self.around;
+        let lasting = kick == self.awake
+            && !(broken || latch_arm || snapshot)
+            && seek_source.is_none()
+            && seek.is_none();
         // The cycle before an event must be simulated by `advance`.
         let eventless = self
             .events

@@ -20,9 +20,9 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
         |what: &str| SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: what.to_owned() };
     let (head, body) = text.split_once(");").ok_or_else(|| unread("its ports"))?;
     let (body, _) = body.split_once("endmodule").ok_or_else(|| unread("its end"))?;
-    let inputs: Vec<&str> = head
+    let outputs: HashSet<&str> = head
         .split(',')
-        .filter_map(|port| port.trim().rsplit_once("input "))
+        .filter_map(|port| port.trim().rsplit_once("output "))
         .map(|(_, io)| io)
         .collect();
     let places = Places::of(placement)?;
@@ -49,21 +49,29 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     if let Some((wire, io)) = &pad {
         names.insert(wire.clone(), names[io].clone());
     }
+    // A pin that nothing reads, or whose level is another pin's, has no wire of its own there.
+    let wired: HashSet<&str> = pattern(r"(?m)^(?:wire|reg) (.*);")
+        .captures_iter(body)
+        .flat_map(|found| found.extract::<1>().1[0].split(", ").collect::<Vec<_>>())
+        .map(|wire| wire.split(' ').next().unwrap_or(wire))
+        .collect();
     let place = pattern(r"\b(?:n\d+|io_\d+_\d+_\d+|ram40_\d+_\d+)\b");
-    let body = place.replace_all(body, |found: &regex::Captures<'_>| {
+    let named = place.replace_all(body, |found: &regex::Captures<'_>| {
         names.get(&found[0]).cloned().unwrap_or_else(|| found[0].to_owned())
     });
 
+    // Writing to a string cannot fail.
     let (mut ports, mut wires) = (BTreeMap::new(), String::new());
     for (io, port) in &places.pins {
         let (name, bit) = port.split_once('[').unwrap_or((port, "0]"));
         let bit: usize = bit.trim_end_matches(']').parse().map_err(|_| unread("a port's bit"))?;
-        let is_input =
-            inputs.contains(&io.as_str()) || pad.as_ref().is_some_and(|(_, of_pll)| of_pll == io);
+        let is_input = !outputs.contains(io.as_str());
         let widest = ports.entry(name).or_insert((is_input, port.contains('['), 0));
         widest.2 = widest.2.max(bit);
         let wire = &names[io];
-        // Writing to a string cannot fail.
+        if !wired.contains(io.as_str()) && pad.as_ref().is_none_or(|(_, of_pll)| of_pll != io) {
+            let _ = writeln!(wires, "wire {wire};");
+        }
         let _ = if is_input {
             writeln!(wires, "assign {wire} = {port};")
         } else {
@@ -77,7 +85,7 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
             format!("    {} wire {range}{name}", if is_input { "input" } else { "output" })
         })
         .collect();
-    Ok(format!("module {top} (\n{}\n);\n{body}\n{wires}endmodule\n", ports.join(",\n")))
+    Ok(format!("module {top} (\n{}\n);\n{named}\n{wires}endmodule\n", ports.join(",\n")))
 }
 
 /// The cell at each place, according to nextpnr's placement.

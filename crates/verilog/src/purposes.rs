@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 36] = [
+const PURPOSES: [(&str, &str); 37] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -75,20 +75,24 @@ const PURPOSES: [(&str, &str); 36] = [
         "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
     ),
     (
-        "carrystep_switches",
-        "Memory of the debounced state of each limit switch, and its count of deviating samples.",
+        "carrystep_switch_memory",
+        "Memory of the debounced state of each switch, and its count of deviating samples.",
     ),
     (
-        "carrystep_limits",
-        "Samples and debounces the limit switches, each in the time slot of its axis.",
+        "carrystep_switches",
+        "Samples and debounces limits and other inputs, each in the time slot of its axis.",
     ),
     (
         "carrystep_resets",
         "The reset: freezes the engine, waits for rest, and restores the state at configuration.",
     ),
     (
-        "carrystep_homing_control",
-        "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
+        "carrystep_seek_control",
+        "Seek: the source of a seek, the axes that wait for it, and those that have hit it.",
+    ),
+    (
+        "carrystep_edge_latch",
+        "The latch: at an edge of its pin the state of all axes is output on a page of its own.",
     ),
     (
         "carrystep_readout",

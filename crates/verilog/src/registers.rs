@@ -4,7 +4,9 @@
 use crate::ExportError;
 use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_core::link::registers::{self, REGISTERS};
-use carrystep_core::link::{self, ANSWER, ANSWER_DATA, Field, LinkConstant, WRITE};
+use carrystep_core::link::{
+    self, ANSWER, ANSWER_DATA, Field, LinkConstant, REFUSALS, Refusal, WRITE,
+};
 use minijinja::{Environment, Value, context};
 
 /// The generated files: path in the workspace, and template.
@@ -31,6 +33,7 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
         }).collect::<Vec<_>>(),
         fields => ANSWER.iter().map(field).collect::<Vec<_>>(),
         causes => CAUSES.map(Cause::name),
+        reasons => REFUSALS.map(reason),
         data => ANSWER_DATA,
         write => format!("`{WRITE:#04x}`"),
     };
@@ -51,8 +54,12 @@ fn constant(row: &LinkConstant) -> Value {
     context! { name => row.name, kind => row.kind, what => row.what, rust, c }
 }
 
+fn reason(refusal: Refusal) -> Value {
+    context! { name => refusal.to_string(), number => refusal.number(), what => refusal.what() }
+}
+
 fn field(row: &Field) -> Value {
-    let Field { name, byte, bit, bits, top, what } = *row;
+    let Field { name, byte, bit, bits, what } = *row;
     let mask = (1_u32 << bits) - 1;
     let rust = match (bit, bits) {
         (_, 8) => format!("answer[{byte}]"),
@@ -62,20 +69,11 @@ fn field(row: &Field) -> Value {
         _ if bit + bits == 8 => format!("answer[{byte}] >> {bit}"),
         _ => format!("answer[{byte}] >> {bit} & {mask}"),
     };
-    let c = format!("(answer)[{byte}] >> {bit} & {mask}u");
-    let (rust, c) = match top {
-        None => (rust, c),
-        Some((byte, bit)) => (
-            format!("{rust} | (answer[{byte}] >> {bit} & 1) << {bits}"),
-            format!("({c}) | ((answer)[{byte}] >> {bit} & 1u) << {bits}"),
-        ),
-    };
-    let c = format!("((uint8_t)({c}))");
+    let c = format!("((uint8_t)((answer)[{byte}] >> {bit} & {mask}u))");
     let range = match bits {
         8 => String::new(),
         1 => bit.to_string(),
         _ => format!("{}..{bit}", bit + bits - 1),
     };
-    let top = top.map(|(byte, bit)| context! { byte, bit, number => bits });
-    context! { name, byte, bits, what, rust, c, range, top }
+    context! { name, byte, bits, what, rust, c, range }
 }

@@ -24,6 +24,12 @@
 #define CARRYSTEP_CAUSE_{{ cause | upper | replace("-", "") }} {{ loop.index0 }}u
 {%- endfor %}
 
+/* The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused. */
+{% for row in reasons %}
+/* {{ row.what }} */
+#define CARRYSTEP_REASON_{{ row.name | upper | replace(" ", "_") }} {{ row.number }}u
+{%- endfor %}
+
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 {% for row in fields %}
 /* {{ row.what }} */

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::board;
-use carrystep_core::engine::{ENGINE_PORTS, LimitWiring};
+use carrystep_core::engine::{ENGINE_PORTS, Latch, LimitWiring};
 use carrystep_core::link::{LineKind, Uart, line_ports};
 use carrystep_core::ports::{Direction, Peer, Port};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
@@ -28,6 +28,7 @@ fn engine_of(axes: usize) -> EngineBuild {
     engine.pins = vec![PinTiming::SHORTEST; axes];
     engine.guard.stop = vec![1 << 40; axes];
     engine.guard.limits = LimitWiring::Pair;
+    engine.guard.latch = Some(Latch { looks: 1, low: false });
     engine
 }
 

@@ -9,7 +9,7 @@ use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::line::spi::SpiLine;
-use carrystep_link::{Command, Program, Wish};
+use carrystep_link::{Command, Patience, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
@@ -160,5 +160,6 @@ fn refused<B: Kind>() {
         refused,
         Some(Refused { verdict: "build".to_owned(), build: uart().build_id(&build()).0 })
     );
-    assert_eq!(connect(&mut client, &end).last.next, 0, "something was written");
+    let host = end.connect_to(uart().build_id(&build()), Patience::default()).unwrap();
+    assert_eq!(host.status().answer.next, 0, "something was written");
 }

@@ -42,7 +42,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
             break;
         }
         let mut host: BoardHost<B> = end.connect(uart);
-        host.settle().unwrap();
+        host.clear().unwrap();
         host.enable().unwrap();
         // Long segments continue for long after the host's death; with short ones the queues run
         // empty.
@@ -83,7 +83,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         // Another host on another line, without a restart of the board.
         end.0.borrow_mut().revive(Faults::default(), seed);
         let mut host = end.connect(uart);
-        host.settle().unwrap();
+        host.clear().unwrap();
         for axis in 0..AXES as u8 {
             let travelled = end.0.borrow().travelled(axis);
             assert_eq!(host.status().positions[usize::from(axis)], travelled, "axis {axis}");

@@ -8,10 +8,10 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::END;
 use carrystep_core::link::registers::{REGISTERS, RegisterAccess};
 use carrystep_link::registers::{
-    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, HOME, MOST_AXES, POSITION, SEGMENT, SNAPSHOT,
-    START, WRITE,
+    AXES_AT, AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, MOST_AXES, OPEN, POSITION, SEEK, SEGMENT,
+    SNAPSHOT, START, STOP, WRITE,
 };
-use carrystep_link::{Patience, frame};
+use carrystep_link::{Patience, Refusal, frame};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::requests::Talk;
@@ -26,7 +26,7 @@ const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {
 fn filled<B: Kind>() -> Talk<B> {
     let mut talk = Talk::powered();
     for axis in 0..6 {
-        (0..axis).for_each(|_| assert!(!talk.segment(axis, cruise(99, true)).refused));
+        (0..axis).for_each(|_| assert!(talk.segment(axis, cruise(99, true)).refusal.is_none()));
     }
     talk
 }
@@ -52,8 +52,8 @@ fn reads<B: Kind>() {
         }
         assert_eq!(answer.axis(), (address >= AXES_AT).then_some(axis), "{address:02x}");
         assert_eq!(
-            (answer.next, answer.fault, answer.refused, answer.written),
-            (next, false, false, false),
+            (answer.next, answer.fault, answer.refusal, answer.written),
+            (next, false, None, false),
             "{address:02x}"
         );
         if !is_register(address) {
@@ -66,31 +66,31 @@ fn reads<B: Kind>() {
 /// is not answered.
 fn writes<B: Kind>() {
     let mut talk = filled::<B>();
-    let known = [CONTROL, START, CLEAR, HOME, SNAPSHOT];
+    let known = [CONTROL, START, CLEAR, SEEK, SNAPSHOT, OPEN, STOP];
     for address in (0..0x40_u8).filter(|address| !known.contains(address)) {
         let answer = talk.write(address, 0xffff_ffff);
         let state = (
             answer.free,
             answer.data,
             answer.fault,
-            answer.refused,
+            answer.refusal,
             answer.ready,
             answer.armed,
-            answer.homing,
+            answer.seeking,
         );
-        assert_eq!(state, (7, 0, false, false, true, false, 0), "{address:02x}");
+        assert_eq!(state, (7, 0, false, None, true, false, 0), "{address:02x}");
     }
     let next = talk.next;
-    talk.send(&[&[next, WRITE | AXIS_COUNT][..], &[0; 32]].concat());
+    talk.send(&talk.content(next, WRITE | AXIS_COUNT, &[0; 8]));
     assert_eq!(talk.answer(), None, "eight words for a register of one");
-    talk.send(&[&[next, WRITE | frame::of_axis(SEGMENT, 0)][..], &[0; 4]].concat());
+    talk.send(&talk.content(next, WRITE | frame::of_axis(SEGMENT, 0), &[0]));
     assert_eq!(talk.answer(), None, "one word for a segment");
     for axis in 0..6 {
         let answer = talk.read(frame::of_axis(POSITION, axis));
         assert_eq!((answer.next, answer.free), (next, 7 - axis));
     }
     // Words at an address that only reads have.
-    talk.send(&[&[next, POSITION][..], &[0; 4]].concat());
+    talk.send(&talk.content(next, POSITION, &[0]));
     assert_eq!(talk.answer(), None, "a word for a register that is only read");
     let answer = talk.segment(1, cruise(99, true));
     assert_eq!((answer.free, answer.fault, answer.written), (5, false, true));
@@ -113,10 +113,10 @@ fn starts<B: Kind>() {
     let mut talk = Talk::<B>::new();
     talk.segment(0, cruise(99, true));
     for _ in 0..3 {
-        let answer = talk.ask(&[&[talk.next, WRITE | START][..], &[1, 0, 0, 0]].concat());
+        let answer = talk.ask(&talk.content(talk.next, WRITE | START, &[1]));
         assert_eq!(
-            (answer.next, answer.refused, answer.ready, answer.armed),
-            (talk.next, true, false, false)
+            (answer.next, answer.refusal, answer.ready, answer.armed),
+            (talk.next, Some(Refusal::Busy), false, false)
         );
     }
     talk.write(CONTROL, 1);
@@ -137,8 +137,8 @@ fn ticks<B: Kind>() {
 const OVER: u64 = 110 * MS;
 const UNDER: u64 = 90 * MS;
 
-/// The watchdog runs while a segment waits at rest, but not while the machine is idle. Only valid
-/// frames restart it.
+/// The watchdog runs while a segment waits at rest, but not while the machine is idle. Only frames
+/// of the owner restart it.
 fn watchdog<B: Kind>() {
     let mut talk = Talk::<B>::powered();
     talk.rest(3 * OVER);
@@ -147,27 +147,28 @@ fn watchdog<B: Kind>() {
     talk.segment(0, cruise(99, true));
     for _ in 0..3 {
         talk.rest(UNDER);
-        assert!(!talk.read(BUILD_HIGH).fault, "any valid frame feeds it");
+        assert!(!talk.own_read(BUILD_HIGH).fault, "any read of the owner feeds it");
     }
     // Bytes without a frame, a frame with a wrong CRC, and one with a wrong length.
     let mut harmed = on_the_line(&[0, POSITION]);
     harmed[3] ^= 1;
     for noise in [vec![0x55; 20], harmed, on_the_line(&[0, POSITION, 1, 2, 3, 4]), vec![END; 20]] {
-        talk.rest(OVER / 5);
+        talk.rest(OVER / 6);
+        assert_eq!(talk.read(POSITION).refusal, None, "a read of anyone, which does not feed it");
         noise.iter().for_each(|&byte| talk.board.say(byte));
     }
-    talk.rest(OVER / 5);
+    talk.rest(OVER / 3);
     let answer = talk.read(POSITION);
     assert_eq!((answer.fault, answer.cause), (true, Cause::Watchdog as u8), "{answer:?}");
 }
 
-/// A write that is refused or answered again is a valid frame, too.
+/// A write of the owner that is refused or answered again restarts the watchdog, too.
 fn refusals_feed<B: Kind>() {
     let mut talk = Talk::<B>::powered();
     talk.segment(0, cruise(99, true));
     for number in [talk.next.wrapping_add(5), talk.next.wrapping_sub(1)] {
         talk.rest(UNDER);
-        let answer = talk.ask(&[&[number, WRITE | START][..], &[0; 4]].concat());
+        let answer = talk.ask(&talk.content(number, WRITE | START, &[0]));
         assert_eq!((answer.next, answer.fault), (talk.next, false));
     }
     talk.rest(UNDER);

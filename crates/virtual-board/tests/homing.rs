@@ -74,7 +74,7 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
     let Homed::At(edges) = homed else { panic!("{what}: stopped") };
     let answer = host.read_status().unwrap().answer;
-    assert!(answer.idle && !answer.fault && answer.homing == 0, "{what}: {answer:?}");
+    assert!(answer.idle && !answer.fault && answer.seeking == 0, "{what}: {answer:?}");
     let guard = &machine.guard;
     for (number, axis) in machine.axes.iter().enumerate() {
         let Some(home) = axis.home else { continue };
@@ -210,20 +210,30 @@ fn random_machines_home_with_one_input_for_all() {
     random_machines("one", 2);
 }
 
-/// The error of homing with the switches changed by `change`, and the final positions.
+/// The error of homing with the switches changed by `change`, and the final positions. All switches
+/// are open at the start.
 fn fails(
     limits: &str,
     change: impl FnOnce(&Bench<ModelBoard>),
 ) -> (HostError<axes::Never>, [i32; 2]) {
+    fails_from(limits, Start::Open, change)
+}
+
+/// The same with another start of the axis y.
+fn fails_from(
+    limits: &str,
+    start: Start,
+    change: impl FnOnce(&Bench<ModelBoard>),
+) -> (HostError<axes::Never>, [i32; 2]) {
     let machine = two(limits, "ramp", "high");
-    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, start], 3);
     change(&bench);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
     let homing = homing_of(&machine);
     let error = host.home(&homing.as_homing(), |_, _, _| Wish::GoOn).unwrap_err();
     let answer = host.read_status().unwrap().answer;
-    assert_eq!(answer.homing, 0, "no axis waits for a limit behind the error");
+    assert_eq!(answer.seeking, 0, "no axis waits for a limit behind the error");
     (error, [0, 1].map(|axis| host.status().positions[axis]))
 }
 
@@ -232,28 +242,32 @@ fn missing_switch_is_named_and_no_axis_exceeds_max_travel() {
     for limits in ["pair", "each", "one"] {
         let (error, [x, y]) = fails(limits, |bench| bench.remove(1));
         assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound }, "{limits}");
-        // 15 units off the switch, then 220 toward it, with 4 steps each.
-        assert_eq!(y, (220 - 15) * 4, "{limits}");
+        // 220 units of 4 steps each toward the switch. With one input for all, both axes have moved
+        // off before, y by 15 units.
         let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
-        assert_eq!(x, if limits == "one" { moved_off } else { 0 }, "{limits}");
+        let one = limits == "one";
+        let places = (if one { moved_off } else { 0 }, (220 - if one { 15 } else { 0 }) * 4);
+        assert_eq!((x, y), places, "{limits}");
     }
 }
 
 #[test]
-fn switch_that_stays_closed_is_detected_with_a_pair() {
-    let (error, [_, y]) = fails("pair", |bench| bench.stick(1));
-    assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::StillClosed });
-    assert!((-62..=-55).contains(&y), "it goes no further than to the first look: {y}");
-    // The other wirings cannot detect it, as docs/homing.md says: the search ends without a limit.
-    let (error, _) = fails("each", |bench| bench.stick(1));
-    assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound });
+fn switch_that_stays_closed_is_detected_before_the_search() {
+    for (limits, axes) in [("pair", 2), ("each", 2), ("one", 3)] {
+        let (error, [x, y]) = fails(limits, |bench| bench.stick(1));
+        assert_eq!(error, HostError::Homing { axes, why: HomingFault::StillClosed }, "{limits}");
+        // With one input for all, x moves off too.
+        let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
+        assert_eq!((x, y), (if limits == "one" { moved_off } else { 0 }, -15 * 4), "{limits}");
+    }
 }
 
 #[test]
 fn limit_that_closes_while_moving_away_is_an_error_except_at_the_far_end() {
-    // With one input for all, every moving axis has met the limit.
+    // The axis stands on its home switch and moves away from it. With one input for all, every
+    // moving axis has met the limit.
     for (limits, axes) in [("each", 2), ("one", 3)] {
-        let (error, _) = fails(limits, |bench| bench.far(1, -20));
+        let (error, _) = fails_from(limits, Start::Closed, |bench| bench.far(1, -40));
         assert_eq!(error, HostError::Homing { axes, why: HomingFault::Closed }, "{limits}");
     }
     let machine = two("pair", "freeze", "high");
@@ -283,7 +297,7 @@ fn estop_and_stop_request_end_homing() {
             );
         assert_eq!(stopped, Ok(Homed::Stopped), "{stage}");
         let answer = host.read_status().unwrap().answer;
-        assert_eq!((answer.cause_name(), answer.homing), (Some("stop"), 0), "{stage}");
+        assert_eq!((answer.cause_name(), answer.seeking), (Some("stop"), 0), "{stage}");
         host.clear().unwrap();
         let pressed = host.home(&homing.as_homing(), |_, now, _| {
             if now == stage {
@@ -296,7 +310,7 @@ fn estop_and_stop_request_end_homing() {
             Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }),
             "{stage}"
         );
-        assert_eq!(host.read_status().unwrap().answer.homing, 0, "{stage}");
+        assert_eq!(host.read_status().unwrap().answer.seeking, 0, "{stage}");
         bench.press_estop(false);
         host.clear().unwrap();
         homes(&bench, &machine, "after stops");

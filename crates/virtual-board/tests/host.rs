@@ -6,13 +6,16 @@ mod support;
 
 use carrystep_core::engine::Cause;
 use carrystep_core::link::{LineKind, Uart};
+use carrystep_link::registers::START;
 use carrystep_link::{
-    Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Timing, Wish,
+    Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Snapshot,
+    Timing, Wish,
 };
 use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
+use std::num::NonZeroU16;
 use support::random::Random;
 use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
+use support::{BoardHost, CLOCK_HZ, End, Kind, MS, SESSION, TICK, build, waves};
 
 const QUICK: Patience = Patience {
     timing: Timing { resend: 12, pause: 2 },
@@ -45,6 +48,8 @@ on_both! {
     stop_of_the_machine_is_reported_with_its_cause
     restarted_gateware_is_reported
     segments_of_a_dead_host_are_not_started
+    another_host_stops_the_axes_and_takes_the_gateware
+    snapshots_of_a_program_that_runs_are_exact
     jog_moves_one_axis
 }
 
@@ -56,6 +61,7 @@ fn uart() -> Uart {
 fn ready<B: Kind>(faults: Faults, seed: u64) -> (End<B>, BoardHost<B>) {
     let end = End::new(uart(), faults, seed);
     let mut host = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
+    host.open(SESSION).unwrap();
     host.enable().unwrap();
     (end, host)
 }
@@ -165,7 +171,7 @@ fn restarted_gateware_is_reported<B: Kind>() {
         Wish::GoOn
     };
     let error = host.stream(program(&moves(9)), restart).unwrap_err();
-    assert!(matches!(error, HostError::Restarted | HostError::OutOfStep(_)), "{error}");
+    assert_eq!(error, HostError::Restarted);
 }
 
 /// The first host died before the start; its segments are still in the queues.
@@ -181,14 +187,91 @@ fn segments_of_a_dead_host_are_not_started<B: Kind>() {
     assert!(end.0.borrow().board.loads().is_empty(), "it has died too late");
     drop(host);
     end.0.borrow_mut().revive(Faults::default(), 15);
-    let mut host = end.connect(uart());
+    let mut host = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
     assert!(!host.status().answer.idle && !host.status().answer.fault);
     let hop = hop(0);
-    assert_eq!(host.stream(program(&hop), go_on), Err(HostError::NotIdle));
-    host.settle().unwrap();
+    assert_eq!(host.stream(program(&hop), go_on), Err(HostError::NoSession));
+    // The watchdog stops the dead host; until then the gateware is busy.
+    let mut waited = 0;
+    let opened = host.open_while(SESSION, |_| {
+        waited += 1;
+        Wish::GoOn
+    });
+    assert_eq!((opened, host.status().answer.cause_name()), (Ok(Ended::Done), Some("watchdog")));
+    assert!(waited > 0, "it was not busy");
+    host.clear().unwrap();
     assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
     assert_eq!(host.status().positions[..6], [3, 0, 0, 0, 0, 0]);
     assert!(host.status().answer.ready, "the drivers kept their power");
+}
+
+/// A second program on the same line stops the axes without a session, and then opens one. The
+/// first one's program ends with the stop, and its next request with the lost session.
+fn another_host_stops_the_axes_and_takes_the_gateware<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::default(), 16);
+    let other = NonZeroU16::new(0x77).unwrap();
+    let mut second = None;
+    let error = host.stream(program(&moves(16)), |_| {
+        if second.is_none() && into_the_move(&end, 20) {
+            let mut new = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
+            assert_eq!(new.write(START, 1), Err(HostError::NoSession));
+            let wait = new.open_while(other, |_| Wish::Stop);
+            assert_eq!((wait, new.session()), (Ok(Ended::Stopped), None));
+            new.stop().unwrap();
+            second = Some(new);
+        }
+        Wish::GoOn
+    });
+    assert_eq!(error, Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 }));
+    let mut second = second.expect("a second host");
+    second.open(other).unwrap();
+    let error = host.clear().unwrap_err();
+    assert!(matches!(error, HostError::SessionLost(_)), "{error}");
+    assert!(second.status().answer.fault, "it was cleared");
+    second.clear().unwrap();
+    assert_eq!(second.stream(program(&hop(3)), go_on), Ok(Ended::Done));
+    positions_are_true(&end, &second);
+}
+
+/// The commanded position of an axis after so many ticks of a program, in 2^-64 step.
+fn commanded(commands: &[Command], axis: u8, mut ticks: i64) -> i128 {
+    let mut sum = 0;
+    for command in commands {
+        if let Command::Segment { axis: own, segment: Segment { ticks: all, v, a, .. } } = *command
+            && own == axis
+        {
+            let n = i128::from(ticks.clamp(0, all.into()));
+            sum += n * i128::from(v) + n * (n - 1) / 2 * i128::from(a);
+            ticks -= i64::from(all);
+        }
+    }
+    sum
+}
+
+/// Snapshots are taken all the time, on a bad line; they change no edge.
+fn snapshots_of_a_program_that_runs_are_exact<B: Kind>() {
+    let commands = moves(17);
+    let (end, mut host) = ready::<B>(Faults::BAD, 17);
+    let mut seen: Vec<Snapshot> = Vec::new();
+    let ended = host.stream(program(&commands), |progress| {
+        let new = progress.snapshot.filter(|&new| seen.last() != Some(new));
+        seen.extend(new);
+        Wish::Snapshot
+    });
+    assert_eq!(ended, Ok(Ended::Done));
+    let start = (end.0.borrow().board.loads()[0] / TICK) as i64;
+    let moving = seen.iter().filter(|snapshot| snapshot.axes[0].runs()).count();
+    assert!(moving > 1, "{moving} of {} in motion", seen.len());
+    for Snapshot { tick, axes } in seen {
+        for (axis, state) in (0..6).zip(axes) {
+            let found = (i128::from(state.commanded()) << 64) + i128::from(state.p) - (1 << 63);
+            assert_eq!(found, commanded(&commands, axis, tick - start), "axis {axis}, tick {tick}");
+        }
+    }
+    let edges = |end: &End<B>| end.0.borrow().edges_since(end.0.borrow().board.loads()[0]);
+    let (other, mut host) = ready::<B>(Faults::default(), 17);
+    assert_eq!(host.stream(program(&commands), go_on), Ok(Ended::Done));
+    assert!(edges(&end) == edges(&other), "a snapshot changes an edge");
 }
 
 fn jog_moves_one_axis<B: Kind>() {

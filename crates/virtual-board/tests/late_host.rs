@@ -7,7 +7,7 @@ mod support;
 use carrystep_core::link::Uart;
 use carrystep_link::Line as _;
 use carrystep_link::line::serial::SerialLine;
-use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
+use carrystep_link::registers::{CONTROL, END, OPEN, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
 use carrystep_virtual_board::{KEPT, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,6 +19,7 @@ use support::{CLOCK_HZ, MS, build};
 const SEGMENTS: u32 = 200;
 const WORDS: [u32; 6] = [599, 0, 0x4000_0000, 0, 0, 0];
 const STEPS: i32 = 150;
+const SESSION: [u8; 2] = [0x2b, 0x1a];
 
 /// A host that sends one request at a time, and waits for `delay` before each.
 struct LateHost {
@@ -47,13 +48,18 @@ impl LateHost {
     }
 
     fn write(&mut self, address: u8, words: &[u32]) -> Answer {
-        let head = [self.next, WRITE | address];
+        let head = [self.next, WRITE | address, SESSION[0], SESSION[1]];
         let content: Vec<u8> =
             head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         self.next = self.next.wrapping_add(1);
         let answer = self.ask(&content);
         assert_eq!((answer.next, answer.fault), (self.next, false), "{answer:?}");
         answer
+    }
+
+    /// Reads the state as the owner.
+    fn look(&mut self) -> Answer {
+        self.ask(&[0, POSITION, SESSION[0], SESSION[1]])
     }
 
     fn segment(&mut self, number: u32) {
@@ -63,14 +69,15 @@ impl LateHost {
 
     /// Sends one segment for each read of the queue, like a host that has other work to do.
     fn run(&mut self) -> Answer {
+        self.ask(&[&[0, WRITE | OPEN], &SESSION[..], &[0; 4]].concat());
         self.write(CONTROL, &[1]);
-        while !self.ask(&[0, POSITION]).ready {}
+        while !self.look().ready {}
         let mut sent = 7;
         (0..sent).for_each(|number| self.segment(number));
         self.write(START, &[1]);
         loop {
             std::thread::sleep(self.delay);
-            let answer = self.ask(&[0, POSITION]);
+            let answer = self.look();
             assert!(!answer.fault, "segment {sent}: {answer:?}");
             if answer.idle {
                 assert_eq!(sent, SEGMENTS);

@@ -5,11 +5,12 @@
 mod support;
 
 use carrystep_core::link::Uart;
-use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
+use carrystep_link::registers::{CONTROL, END, OPEN, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::link::{hex, unhex};
+use support::requests::write;
 use support::{CLOCK_HZ, Kind};
 
 /// Time limit for an answer, clocks.
@@ -21,25 +22,22 @@ struct Talk<B> {
 }
 
 impl<B: Kind> Talk<B> {
-    /// The state that the page's host finds: axis 1 at -250, no power, 42 writes executed.
+    /// The state that the page's host finds: axis 1 at -250, no power.
     fn new() -> Self {
         let mut talk = Self { board: B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()), next: 0 };
+        talk.send(&on_the_line(&write(0, WRITE | OPEN, 7, &[0])));
+        assert_eq!(talk.answer()[2], 0);
         talk.write(CONTROL, &[1]);
         while !talk.state().ready {}
         talk.write(frame::of_axis(SEGMENT, 1), &[999, 0, 0xc000_0000, 0, 0, 0, 0, 1]);
         talk.write(START, &[2]);
         while !talk.state().idle {}
-        while talk.next < 42 {
-            talk.write(CONTROL, &[0]);
-        }
+        talk.write(CONTROL, &[0]);
         talk
     }
 
     fn write(&mut self, address: u8, words: &[u32]) {
-        let head = [self.next, WRITE | address];
-        let content: Vec<u8> =
-            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
-        self.send(&on_the_line(&content));
+        self.send(&on_the_line(&write(self.next, WRITE | address, 7, words)));
         self.next = self.next.wrapping_add(1);
         assert_eq!(self.answer()[2], self.next);
     }

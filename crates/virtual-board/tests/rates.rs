@@ -10,6 +10,7 @@ mod support;
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, Program, Wish};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
+use std::num::NonZeroU16;
 use support::bus::Bus;
 use support::random::Random;
 use support::wire::Faults;
@@ -17,6 +18,9 @@ use support::{CLOCK_HZ, End, Kind, TICK_NS, asked, waves};
 
 /// The number of waiting segments where nothing shows it: at the pins of the Verilog.
 const UNSEEN: usize = usize::MAX;
+
+/// The session of the host.
+const SESSION: NonZeroU16 = NonZeroU16::new(0xdbc0).unwrap();
 
 /// The number of segments that always wait over SPI.
 const OVER_SPI: usize = 6;
@@ -28,6 +32,7 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32, waiting: usiz
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::<B>::new(uart, Faults::default(), 1);
     let mut host = end.connect(uart);
+    host.open(SESSION).unwrap();
     host.enable().unwrap();
     let ticks = (1_000_000_000 / TICK_NS) as u32 / per_second;
     let commands = waves(&mut Random::new(7), per_second * milliseconds / 1000, ticks);
@@ -53,11 +58,12 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32, waiting: usiz
 /// The same over SPI with the embedded-hal driver and at most six unacknowledged segments
 /// (docs/protocol.md).
 #[test]
-fn spi_carries_500_segments_per_second_for_six_axes() {
+fn spi_carries_1000_segments_per_second_for_six_axes() {
     let bus = Bus::<ModelBoard>::new(9_600_000);
     let mut host = bus.connect();
+    host.open(SESSION).unwrap();
     host.enable().unwrap();
-    let per_second = 500;
+    let per_second = 1000;
     let commands = waves(
         &mut Random::new(7),
         per_second * 3 / 2,
@@ -80,15 +86,15 @@ fn spi_carries_500_segments_per_second_for_six_axes() {
 }
 
 #[test]
-fn uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
-    carries::<ModelBoard>(3_000_000, 500, 1500, 5);
+fn uart_at_3_megabaud_carries_1000_segments_per_second_for_six_axes() {
+    carries::<ModelBoard>(3_000_000, 1000, 1500, 4);
 }
 
 /// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a
 /// fault. `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
 #[test]
-fn verilog_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
-    carries::<VerilatedBoard>(3_000_000, 500, asked("CARRYSTEP_VERILOG_MS", 100) as u32, UNSEEN);
+fn verilog_at_3_megabaud_carries_1000_segments_per_second_for_six_axes() {
+    carries::<VerilatedBoard>(3_000_000, 1000, asked("CARRYSTEP_VERILOG_MS", 100) as u32, UNSEEN);
 }
 
 #[test]

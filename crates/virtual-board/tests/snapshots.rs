@@ -29,8 +29,8 @@ fn moves() -> Vec<Vec<Cubic>> {
     let mut random = Random::new(1891);
     let mut some = |most: i64| (random.below(2 * most as u64) as i64) - most;
     let mut segment = || {
-        let ticks = (some(1500) + 2500) as u32;
-        (ticks, [some(1 << 60), some(1 << 48), some(1 << 36)])
+        let ticks = (some(3000) + 5000) as u32;
+        (ticks, [some(1 << 60), some(1 << 47), some(1 << 34)])
     };
     (0..AXES).map(|_| (0..3).map(|_| segment()).collect()).collect()
 }
@@ -77,7 +77,7 @@ fn start<B: Kind>(talk: &mut Talk<B>, moves: &[Vec<Cubic>]) -> u32 {
 fn compare<B: Kind>(talk: &mut Talk<B>, moves: &[Vec<Cubic>], started: u32) -> u32 {
     let before = (talk.board.cycle() / TICK) as u32;
     let answer = talk.write(SNAPSHOT, 0);
-    assert!(answer.written && !answer.fault && !answer.refused);
+    assert!(answer.written && !answer.fault && answer.refusal.is_none());
     let ticks = talk.read(SNAPSHOT_TICKS).data;
     assert!(ticks > before && ticks <= (talk.board.cycle() / TICK) as u32);
     for (axis, segments) in (0..).zip(moves) {

@@ -10,6 +10,8 @@ use std::collections::VecDeque;
 
 const CLOCK_HZ: u64 = 48_000_000;
 const MS: u64 = CLOCK_HZ / 1000;
+/// "A random number."
+const SESSION: [u8; 2] = [0x34, 0xdb];
 const STEP: u64 = CLOCK_HZ / 10_000;
 
 /// "The CRC-32 of Ethernet, zip and zlib."
@@ -63,20 +65,20 @@ impl Answer {
             });
         }
         let word = |at: usize| Some(u32::from_le_bytes(frame.get(at..at + 4)?.try_into().ok()?));
-        if frame.len() != 15 || word(11)? != crc(&frame[..11]) {
+        if frame.len() != 16 || word(12)? != crc(&frame[..12]) {
             return None;
         }
         Some(Self {
             address: frame[1],
             next: frame[2],
             fault: frame[3] & 1 != 0,
-            idle: frame[3] & 4 != 0,
-            ready: frame[3] & 8 != 0,
-            cause: frame[3] >> 5,
-            free: usize::from(frame[4] & 7),
-            written: frame[4] & 0x80 != 0,
-            refused: frame[4] & 8 != 0,
-            data: word(7)?,
+            idle: frame[3] & 0x40 != 0,
+            ready: frame[3] & 2 != 0,
+            cause: frame[7] & 15,
+            free: usize::from(frame[4]),
+            written: frame[3] & 8 != 0,
+            refused: frame[7] >> 4 != 0,
+            data: word(8)?,
         })
     }
 }
@@ -103,6 +105,7 @@ struct Stranger {
     answers: u64,
     /// Number of answers lost per hundred.
     lost: u64,
+    is_open: bool,
     random: u64,
     next: u8,
     under_way: VecDeque<Written>,
@@ -127,6 +130,7 @@ impl Stranger {
             came: Vec::new(),
             answers: 0,
             lost,
+            is_open: false,
             random: 0x1234_5678_9abc_def1,
             next: 0,
             under_way: VecDeque::new(),
@@ -155,12 +159,14 @@ impl Stranger {
     fn read(&mut self, address: u8) {
         if self.asked.is_none_or(|asked| self.board.cycle() - asked > 2 * MS) {
             self.asked = Some(self.board.cycle());
-            self.say(&on_the_line(&[0, address]));
+            // Before OPEN a read without a session, then those of the owner, which feed the watchdog.
+            let session = if self.is_open { &SESSION[..] } else { &[] };
+            self.say(&on_the_line(&[&[0, address], session].concat()));
         }
     }
 
     fn write(&mut self, address: u8, words: &[u32], axis: Option<usize>) {
-        let head = [self.next, address];
+        let head = [self.next, address, SESSION[0], SESSION[1]];
         let content: Vec<u8> =
             head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         let line = on_the_line(&content);
@@ -280,6 +286,13 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
         }
         assert_eq!(stranger.last.unwrap().data, wanted, "register {address:02x}");
     }
+    // "OPEN has any sequence number and is not counted."
+    stranger.last = None;
+    while stranger.last.is_none_or(|answer| answer.address != 0xa5) {
+        stranger.say(&on_the_line(&[0, 0xa5, SESSION[0], SESSION[1], 0, 0, 0, 0]));
+        (0..20).for_each(|_| stranger.pass());
+    }
+    stranger.is_open = true;
     stranger.write(0xa0, &[1], None);
     stranger.until(|answer| answer.ready);
     let mut sums = [0_i128; AXES];

@@ -75,6 +75,7 @@ fn in_rust(port: &str) {
     let id = uart().build_id(&build()).0;
     let mut host: Host<_, _> =
         Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
+    host.open(support::SESSION).unwrap();
     host.enable().unwrap();
     let commands = commands();
     assert_eq!(

@@ -3,11 +3,37 @@
 use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC};
 
-/// A complete request with its CRC.
-pub fn frame(sequence: u8, address: u8, words: &[u32]) -> Vec<u8> {
-    let head = [sequence, address];
+/// A read of anyone, with its CRC.
+pub fn read(sequence: u8, address: u8) -> Vec<u8> {
+    summed(vec![sequence, address])
+}
+
+/// A read of the owner of this session.
+pub fn owners_read(sequence: u8, address: u8, session: u16) -> Vec<u8> {
+    request(sequence, address, session, &[])
+}
+
+/// A write of words to a register.
+pub fn write(sequence: u8, register: u8, session: u16, words: &[u32]) -> Vec<u8> {
+    request(sequence, 0x80 | register, session, words)
+}
+
+/// The words of a SEGMENTS frame: the same ticks for all axes, and V, A, J of each axis of the
+/// mask, in ascending order.
+pub fn wide(mask: u8, ticks: u32, axes: &[[i64; 3]], last: bool) -> Vec<u32> {
+    let halves = |number: &i64| [*number as u32, (*number >> 32) as u32];
+    let numbers = axes.iter().flatten().flat_map(halves);
+    [mask.into(), ticks.wrapping_sub(1)].into_iter().chain(numbers).chain([last.into()]).collect()
+}
+
+fn request(sequence: u8, address: u8, session: u16, words: &[u32]) -> Vec<u8> {
+    let head = [sequence, address].into_iter().chain(session.to_le_bytes());
     let words = words.iter().flat_map(|word| word.to_le_bytes());
-    let frame: Vec<u8> = head.into_iter().chain(words).collect();
+    summed(head.chain(words).collect())
+}
+
+/// A frame with its CRC.
+pub fn summed(frame: Vec<u8>) -> Vec<u8> {
     let sum = crc(&frame).to_le_bytes();
     [frame, sum.to_vec()].concat()
 }
@@ -62,37 +88,40 @@ pub struct Said {
     pub ready: bool,
     pub armed: bool,
     pub free: u8,
-    pub refused: bool,
+    /// The reason of a refusal; 0 if the request was not refused.
+    pub reason: u8,
     pub written: bool,
     pub culprits: u8,
-    pub homing: u8,
+    pub seeking: u8,
     pub data: u32,
 }
 
 impl Said {
     /// Decodes a frame without its CRC.
     pub fn of(frame: &[u8]) -> Self {
-        let &[sequence, address, next, state, room, culprits, homing, a, b, c, d] = frame else {
+        let &[sequence, address, next, flags, free, culprits, seeking, why, a, b, c, d] = frame
+        else {
             panic!("{frame:02x?} is not as long as an answer")
         };
-        let bit = |bit: u8| state >> bit & 1 == 1;
-        let number = state >> 5 | (room & 0x10) >> 1;
+        let bit = |bit: u8| flags >> bit & 1 == 1;
+        let number = why & 15;
         let cause = CAUSES[usize::from(number)];
-        assert!(bit(0) || number == 0, "a cause without a fault");
+        assert!(bit(0) || (number, culprits) == (0, 0), "a cause without a fault");
+        assert_eq!(flags & 0x30, 0, "bits without a meaning");
         Self {
             sequence,
             address,
             next,
             fault: bit(0).then_some(cause),
-            halted: bit(1),
-            idle: bit(2),
-            ready: bit(3),
-            armed: bit(4),
-            free: room & 7,
-            refused: room & 8 != 0,
-            written: room & 0x80 != 0,
+            ready: bit(1),
+            armed: bit(2),
+            written: bit(3),
+            idle: bit(6),
+            halted: bit(7),
+            free,
+            reason: why >> 4,
             culprits,
-            homing,
+            seeking,
             data: u32::from_le_bytes([a, b, c, d]),
         }
     }

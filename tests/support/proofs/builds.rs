@@ -4,7 +4,7 @@
 use super::Case;
 use crate::{lockstep, moves};
 use carrystep_core::build::MAX_CLOCKS;
-use carrystep_core::engine::{CAUSES, Cause, EngineBuild, Guard, LimitWiring};
+use carrystep_core::engine::{CAUSES, Cause, EngineBuild, Guard, InputRow, Latch, LimitWiring};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
@@ -81,6 +81,16 @@ pub fn small_engine(
         ..minimal.guard.clone().active_low(low)
     };
     let build = EngineBuild { guard, ..minimal };
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
+/// The same with limits at both ends, with inputs in both rows, and with a latch of two looks.
+pub fn engine_with_inputs(axes: usize, clocks: u32, phases: u32) -> (EngineBuild, Arc<str>) {
+    let (mut build, _) = small_engine(axes, clocks, phases, LimitWiring::Pair);
+    build.guard.round = 4;
+    build.guard.inputs = [InputRow { exist: 3, low: 1 }, InputRow { exist: 1, low: 1 }];
+    build.guard.latch = Some(Latch { low: false, looks: 2 });
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     (build, text)
 }

@@ -32,7 +32,7 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_a_start_is_kept",
-        text: "if (go | stops_fault) begin",
+        text: "if (go | (decides & drops) | stops_fault) begin",
         becomes: "if (time_slot_beat[3]) begin",
     },
     Bug {
@@ -56,14 +56,14 @@ const BUGS: &[Bug] = &[
         becomes: ".starts(going)",
     },
     Bug {
-        breaks: "promise_12_a_limit_slows_its_own_axis",
-        text: "stops_ramp | homing_control_slows",
+        breaks: "promise_19_a_hit_ramps_its_own_axis",
+        text: "stops_ramp | seek_control_slows",
         becomes: "stops_ramp",
     },
     Bug {
-        breaks: "promise_12_a_limit_waited_for_stops_no_other",
-        text: "limits_hit & !homing_control_waits & !homing_control_slows",
-        becomes: "limits_hit & !homing_control_slows",
+        breaks: "promise_12_a_limit_of_a_seek_stops_no_other",
+        text: "switches_found & !seek_control_forgives",
+        becomes: "switches_found",
     },
     Bug {
         breaks: "promise_6_words_in_order",
@@ -83,8 +83,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
     Bug {
         breaks: "promise_15_a_tick_is_live_or_a_snapshot",
-        text: ".met(queue_met),\n        .word",
-        becomes: ".met(queue_running),\n        .word",
+        text: ".met(queue_met),\n        .sweeps",
+        becomes: ".met(queue_running),\n        .sweeps",
     },
     Bug {
         breaks: "promise_14_start_only_warm",

@@ -22,8 +22,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_10_silence_stops",
-        text: "by_host = (strobe & missed) | asked",
-        becomes: "by_host = asked",
+        text: "(strobe & (missed | interlock))",
+        becomes: "(strobe & interlock)",
     },
     Bug {
         breaks: "promise_10_first_cause_stays",
@@ -43,6 +43,12 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_10_halts_when_nothing_ran", text: "(slow & !ran)", becomes: "slow" },
     Bug { breaks: "promise_10_clear_is_asked_for", text: "!pins_busy &", becomes: "" },
+    Bug { breaks: "promise_10_clear_is_asked_for", text: "!interlock &", becomes: "" },
+    Bug {
+        breaks: "promise_10_first_cause",
+        text: "if (strobe & interlock) begin",
+        becomes: "if (strobe & asked) begin",
+    },
     Bug {
         breaks: "promise_10_clear_after_a_tick_at_rest",
         text: "clear & settled",

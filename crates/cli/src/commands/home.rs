@@ -6,7 +6,7 @@ use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::drive::{Culprit, How};
 use crate::failure::Failure;
-use crate::memory::{self, BoardMemory, MetLimit};
+use crate::memory::{self, BoardMemory};
 use crate::{found, homing, output};
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
@@ -98,8 +98,10 @@ pub fn run(arguments: &HomeArguments) -> Result<(), Failure> {
     homing.check().map_err(|(axis, why)| {
         Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name))
     })?;
-    let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
-    let mut memory = BoardMemory::recall(&connection);
+    let mut connection =
+        connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
+    let mut memory = BoardMemory::recall(&mut connection);
+    connection::open(&mut connection)?;
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
     let report = drive(connection, &machine, &homing, &mut memory)?;
     if arguments.json {
@@ -122,10 +124,6 @@ fn drive(
     let begun = Instant::now();
     let facts = *board.facts();
     let start = *board.status();
-    if start.answer.fault {
-        let fault = HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits };
-        return Err(connection::broken(&fault, &axes));
-    }
     let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
     let powered = board
         .enable_while(|progress| control.wish(progress.status))
@@ -133,7 +131,7 @@ fn drive(
     let mut last = (0, HomingStage::MoveOff);
     let outcome = match powered {
         Ended::Stopped => Ok(Homed::Stopped),
-        Ended::Done => board.home(homing, |moving, stage, progress| {
+        Ended::Done | Ended::SeekEnded => board.home(homing, |moving, stage, progress| {
             last = (moving, stage);
             line.set_message(format!("{} {stage}", found::names(&axes, moving)));
             line.tick();
@@ -173,11 +171,10 @@ fn drive(
             How::Fault
         }
         Err(HostError::Homing { axes: mask, why }) => {
-            let positions = board.status().positions;
             for number in (0..axes.len())
                 .filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1)
             {
-                memory.set_limit(number, closed(machine, number, last.1, positions[number]));
+                memory.set_limit(number, closed(machine, number, last.1));
             }
             // If the file cannot be written, the old one no longer matches the board and is
             // ignored.
@@ -225,13 +222,9 @@ fn drive(
     }
 }
 
-/// The limit to remember for an axis that met a limit while it moved away from its home switch.
-fn closed(machine: &Machine, number: usize, stage: HomingStage, at: i32) -> Option<MetLimit> {
+/// The direction in which an axis has met a limit while it moved away from its home switch.
+fn closed(machine: &Machine, number: usize, stage: HomingStage) -> Option<i8> {
     let home = machine.axes[number].home.as_ref()?;
     let away = if home.toward == End::Max { -1 } else { 1 };
-    (stage != HomingStage::PullOff).then_some(MetLimit {
-        direction: away,
-        at,
-        clear: home.move_off,
-    })
+    (stage != HomingStage::PullOff).then_some(away)
 }

@@ -8,7 +8,7 @@ use crate::found::{self, FoundBoard, Known};
 use crate::memory::{self, BoardMemory};
 use crate::output;
 use carrystep_link::frame;
-use carrystep_link::registers::DISCARDED;
+use carrystep_link::registers::{DISCARDED, TICKS};
 use std::time::{Duration, Instant};
 
 /// How long the driving command may take to answer. It polls its socket every few milliseconds, but
@@ -60,13 +60,14 @@ pub fn tell(found: &FoundBoard, json: bool) -> Result<(), Failure> {
 }
 
 /// Reads the whole state from the board and releases the port.
-pub fn read_status(connection: Connection) -> Result<FoundBoard, Failure> {
-    let memory = BoardMemory::recall(&connection);
+pub fn read_status(mut connection: Connection) -> Result<FoundBoard, Failure> {
+    let memory = BoardMemory::recall(&mut connection);
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
     let failed = |error| connection::broken(&error, &axes);
     let status = board.read_status().map_err(failed)?;
+    let ticks = board.register(TICKS).map_err(failed)?;
     let mut discarded = Vec::new();
     for axis in (0..).take(axes.len()) {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
@@ -76,6 +77,7 @@ pub fn read_status(connection: Connection) -> Result<FoundBoard, Failure> {
     let frozen = found::cause(&status.answer).is_some_and(memory::always_freezes);
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
     let mut found = FoundBoard::new(&status, &known, Some(&discarded));
+    found.ticks = Some(ticks);
     for (number, axis) in found.axes.iter_mut().enumerate() {
         axis.machine = memory.coordinate(number, axis.position).filter(|_| !frozen);
     }

@@ -1,4 +1,5 @@
-//! `carrystep stop`: stops all axes of a board, through the command that drives it if there is one.
+//! `carrystep stop`: stops all axes of a board, through the command that drives it if there is one,
+//! and otherwise by itself, whichever host has opened the session.
 
 use crate::arguments::Stop;
 use crate::commands::status::{read_status, tell};
@@ -7,7 +8,7 @@ use crate::control::{self, Caller, Holder, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::memory::BoardMemory;
-use carrystep_link::HostError;
+use carrystep_link::{HostError, random_session};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -23,11 +24,14 @@ const BUSY: Duration = Duration::from_secs(2);
 /// Stops all axes; then clears the stop and switches the drivers off, if the arguments say so.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let (mut connection, stopped) = reach(arguments)?;
-    let mut memory = BoardMemory::recall(&connection);
+    let mut memory = BoardMemory::recall(&mut connection);
     let Connection { board, axes, .. } = &mut connection;
     let failed = |error| connection::broken(&error, axes);
     if !board.status().answer.idle {
         board.stop().map_err(failed)?;
+    }
+    if arguments.clear || arguments.off {
+        board.open(random_session()).map_err(failed)?;
     }
     if arguments.clear {
         board.clear().map_err(|error| match error {

@@ -219,11 +219,13 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         assert!(ran.stdout.contains("STOPPED by the machine: limit"), "{}", ran.stdout);
         clear();
         for _ in 0..2 {
-            jog("-1").refuses("axis y has met its limit going back");
+            jog("-1").refuses(
+                "the limit switch of axis y is closed, and the axis would move further back",
+            );
         }
         // The axis moves away, but not as far as the switch needs to open.
         passed(&jog("1"));
-        jog("-0.1").refuses("jog it forward by 1");
+        jog("-0.1").refuses("jog it forward until the switch is open");
         // A move file is refused as well.
         folder.write(
             "move.toml",
@@ -231,7 +233,7 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         );
         folder
             .run(&format!("run move.toml --port {}", board.port))
-            .refuses("axis y has met its limit");
+            .refuses("the limit switch of axis y is closed");
         passed(&on(&folder, &board, "jog x 1"));
         passed(&jog("3"));
         passed(&jog("-1"));

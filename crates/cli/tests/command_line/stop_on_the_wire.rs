@@ -11,8 +11,7 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Forwards a host's bytes to a board, and reports when a write of CONTROL with the stop bit was
-/// among them.
+/// Forwards a host's bytes to a board, and reports when STOP was among them.
 struct Spy {
     port: String,
     stops: Receiver<Instant>,
@@ -45,9 +44,7 @@ impl Spy {
                     for &byte in &bytes[..count] {
                         if byte != 0xc0 {
                             frame.push(byte);
-                        } else if let [_, 0xa0, word, ..] = std::mem::take(&mut frame)[..]
-                            && word & 2 != 0
-                        {
+                        } else if let [_, 0xa6, _, ..] = std::mem::take(&mut frame)[..] {
                             tell.send(Instant::now()).unwrap();
                         }
                     }

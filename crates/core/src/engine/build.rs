@@ -3,7 +3,8 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, check_pins, check_schedule,
+    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins,
+    check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
@@ -48,8 +49,31 @@ pub struct Guard {
     pub estop_low: bool,
     /// Whether a limit counts as reached while its pin is low (otherwise: while it is high).
     pub limits_low: bool,
+    /// The inputs of the rows 2 and 3: probe, interlock and general inputs.
+    pub inputs: [InputRow; 2],
+    /// The latch; `None` if the build has none.
+    pub latch: Option<Latch>,
     /// Stop acceleration of each axis, 2^-64 step per tick^2, 1 to 2^62.
     pub stop: Vec<u64>,
+}
+
+/// The inputs of a row that a build has. Bit i is input i of the row; it is below the number of
+/// axes. Input 0 of the first row is the probe, input 0 of the second row is the interlock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct InputRow {
+    /// The inputs that exist.
+    pub exist: u8,
+    /// Those of them that are active while their pin is low.
+    pub low: u8,
+}
+
+/// The latch, which keeps the state of all axes at an edge of its pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Latch {
+    /// Whether its pin is active while it is low. The edge is the change to the active level.
+    pub low: bool,
+    /// Number of consecutive ticks that must find the pin active, 1 to [`MAX_LOOKS`].
+    pub looks: u8,
 }
 
 /// Wiring of the limit switches.
@@ -80,14 +104,28 @@ impl Guard {
             limit_freezes: false,
             estop_low: false,
             limits_low: false,
+            inputs: [InputRow::default(); 2],
+            latch: None,
             stop,
         }
     }
 
-    /// This guard with the active level of every switch: low, or else high.
+    /// This guard with the active level of every switch and of the latch: low, or else high.
     #[must_use]
     pub fn active_low(self, low: bool) -> Self {
-        Self { estop_low: low, limits_low: low, ..self }
+        let row = |InputRow { exist, .. }| InputRow { exist, low: if low { exist } else { 0 } };
+        Self {
+            estop_low: low,
+            limits_low: low,
+            inputs: self.inputs.map(row),
+            latch: self.latch.map(|latch| Latch { low, ..latch }),
+            ..self
+        }
+    }
+
+    /// True if the build has the interlock: input 0 of row 3.
+    pub const fn has_interlock(&self) -> bool {
+        self.inputs[1].exist & 1 == 1
     }
 }
 
@@ -126,6 +164,19 @@ impl EngineBuild {
         }
         if !(1..=MAX_DEBOUNCE_SAMPLES).contains(&guard.debounce) {
             return Err(EngineError::Debounce(guard.debounce));
+        }
+        for (index, InputRow { exist, low }) in guard.inputs.into_iter().enumerate() {
+            if u32::from(exist) >> axes != 0 || low & !exist != 0 {
+                return Err(EngineError::Inputs { row: index as u8 + 2, exist, low, axes });
+            }
+            if exist != 0 && guard.round < 4 {
+                return Err(EngineError::RoundOfInputs(guard.round));
+            }
+        }
+        if let Some(Latch { looks, .. }) = guard.latch
+            && !(1..=MAX_LOOKS).contains(&looks)
+        {
+            return Err(EngineError::Looks(looks));
         }
         if guard.stop.len() != axes {
             return Err(EngineError::StopCount { axes, found: guard.stop.len() });
@@ -170,6 +221,18 @@ mod tests {
         );
         assert!(refusal(|build| build.guard.enable = 5000).starts_with("enable of 5000 rounds"));
         assert!(refusal(|build| build.guard.debounce = 0).starts_with("a debounce of 0 samples"));
+        let row = |exist, low| InputRow { exist, low };
+        let said = refusal(|build| build.guard.inputs[1] = row(0x41, 0));
+        assert_eq!(said, "inputs 0x41 of row 3, 0x0 of them active low: 6 axes have room for 0x3f");
+        let said = refusal(|build| build.guard.inputs[0] = row(1, 3));
+        assert!(said.starts_with("inputs 0x1 of row 2, 0x3 of them active low"), "{said}");
+        let said = refusal(|build| {
+            build.guard.inputs[0] = row(1, 1);
+            build.guard.round = 2;
+        });
+        assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
+        let said = refusal(|build| build.guard.latch = Some(Latch { low: false, looks: 17 }));
+        assert!(said.starts_with("a latch of 17 looks"), "{said}");
         assert!(
             refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
         );

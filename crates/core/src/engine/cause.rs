@@ -147,10 +147,20 @@ causes! {
     Stop = 7, CauseFacts {
         name: "stop",
         stops_by: StopKind::Ramp,
-        rank: 5,
+        rank: 6,
         has_culprits: false,
         meaning: "a host asked for it",
         remedy: "`carrystep stop --clear`",
+    };
+    /// The interlock is open: a door of the machine, for example.
+    Interlock = 8, CauseFacts {
+        name: "interlock",
+        stops_by: StopKind::Ramp,
+        rank: 5,
+        has_culprits: false,
+        meaning: "the interlock was opened (a door, for example), and the axes ramped down; the \
+                  drivers keep their power",
+        remedy: "close it, then `carrystep stop --clear`",
     };
 }
 

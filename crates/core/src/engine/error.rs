@@ -2,7 +2,8 @@
 //! are possible.
 
 use super::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE,
+    TIME_SLOT_CLOCKS,
 };
 use crate::build::MAX_CLOCKS;
 use alloc::borrow::ToOwned;
@@ -80,6 +81,27 @@ pub enum EngineError {
         "a debounce of {0} samples: from 1 to {MAX_DEBOUNCE_SAMPLES} can be counted; a longer round would do"
     )]
     Debounce(u32),
+    /// Inputs of a row are not below the number of axes, or are active low without existing.
+    #[error(
+        "inputs {exist:#x} of row {row}, {low:#x} of them active low: {axes} axes have room for {:#x}",
+        (1_u32 << .axes) - 1
+    )]
+    Inputs {
+        /// The row, 2 or 3.
+        row: u8,
+        /// The inputs that exist, one bit each.
+        exist: u8,
+        /// Those that are active low.
+        low: u8,
+        /// Number of axes.
+        axes: usize,
+    },
+    /// A round has too few ticks for the inputs of the rows 2 and 3.
+    #[error("a round of {0} ticks: inputs need a round of 4 ticks or more")]
+    RoundOfInputs(u32),
+    /// The number of looks of the latch is out of range.
+    #[error("a latch of {0} looks: 1 to {MAX_LOOKS} can be counted")]
+    Looks(u8),
     /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
     /// one tick.
     #[error(

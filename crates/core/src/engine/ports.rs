@@ -22,20 +22,26 @@ pub const ENGINE_PORTS: &[Port] = &[
     input("reset", BIT, Peer::Nobody, "return to the state at configuration; tie to 0 if unused"),
     input("stop", BIT, Peer::Host, "the host requests a controlled stop"),
     input("broken", BIT, Peer::Host, "the host has broken the segment protocol"),
-    input("home_valid", BIT, Peer::Host, "the host replaces the mask of the axes that home"),
-    input("home_mask", Width::Axes, Peer::Host, "the axes that wait for their limit from now on"),
+    input("seek_source_valid", BIT, Peer::Host, "the host replaces the source of seeks"),
+    input("seek_source", Width::Bits(7), Peer::Host, "axis 3, row 2, own 1, level 1"),
+    input("seek_valid", BIT, Peer::Host, "the host replaces the mask of the axes that seek"),
+    input("seek_mask", Width::Axes, Peer::Host, "the axes that wait for the source from now on"),
+    input("latch_arm", BIT, Peer::Host, "the host arms the latch"),
     input("snapshot", BIT, Peer::Host, "the host requests a snapshot of the state of all axes"),
     input("kick", BIT, Peer::Host, "a valid request has arrived: the watchdog restarts"),
     input("enable", BIT, Peer::Host, "the host requests power for the drivers"),
     input("estop", BIT, Peer::Pins, "the e-stop pin, asynchronous"),
     input("limit_min", Width::Axes, Peer::Pins, "the limit pins at the low ends, asynchronous"),
     input("limit_max", Width::Axes, Peer::Pins, "the limit pins at the high ends, asynchronous"),
+    input("inputs_0", Width::Axes, Peer::Pins, "bit 0 the probe, general inputs, asynchronous"),
+    input("inputs_1", Width::Axes, Peer::Pins, "bit 0 the interlock, general inputs, asynchronous"),
+    input("latch", BIT, Peer::Pins, "the pin of the latch, asynchronous"),
     output("state_valid", BIT, Peer::Host, "the engine outputs a word of state in this clock"),
     output(
         "state_page",
         Width::Bits(2),
         Peer::Host,
-        "its page: 0 at the limit, 1 live, 2 snapshot",
+        "its page: 0 hit of a seek, 1 live, 2 snapshot, 3 latch",
     )
     .valid_with("state_valid"),
     output("state_axis", AXIS, Peer::Host, "its axis").valid_with("state_valid"),
@@ -43,7 +49,7 @@ pub const ENGINE_PORTS: &[Port] = &[
         "state_item",
         Width::Bits(STATE_ITEM_BITS),
         Peer::Host,
-        "0 discarded, 1 left, 3 ticks, 4 5 P, 6 position, 7 status",
+        "0 discarded, 1 left, 2 switch, 3 ticks, 4 5 P, 6 position, 7 status",
     )
     .valid_with("state_valid"),
     output("state", WORD, Peer::Host, "the word; of the status bits 15 to 0 only")
@@ -69,7 +75,10 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("culprits", Width::Axes, Peer::Host, "the axes that it came from").valid_with("fault"),
     output("armed", BIT, Peer::Host, "a start is armed"),
     output("ready", BIT, Peer::Host, "the drivers have had power for long enough"),
-    output("homing", Width::Axes, Peer::Host, "the axes that wait for their limit"),
+    output("seeking", Width::Axes, Peer::Host, "the axes that wait for the source of their seek"),
+    output("hits", Width::Axes, Peer::Host, "the axes that have hit it, until the seek is ended"),
+    output("latch_armed", BIT, Peer::Host, "the latch waits for its edge"),
+    output("latch_edges", Width::Bits(4), Peer::Host, "further edges since it was armed"),
     output("started", BIT, Peer::Nobody, "axes start at the end of this clock"),
 ];
 
@@ -88,7 +97,7 @@ pub fn is_recorded(port: &Port) -> bool {
 impl EngineInputs {
     /// Name and value of each input in the order of [`ports_of`]. `None` is a value that is
     /// not offered and has no effect; it is driven as 0.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 18] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 24] {
         let Self {
             put,
             room_of,
@@ -97,13 +106,17 @@ impl EngineInputs {
             reset,
             stop,
             broken,
-            home,
+            seek_source,
+            seek,
+            latch_arm,
             snapshot,
             kick,
             enable,
             estop,
             limit_min,
             limit_max,
+            inputs: [inputs_0, inputs_1],
+            latch,
         } = *self;
         [
             ("put_valid", Some(put.is_some().into())),
@@ -116,14 +129,20 @@ impl EngineInputs {
             ("reset", Some(reset.into())),
             ("stop", Some(stop.into())),
             ("broken", Some(broken.into())),
-            ("home_valid", Some(home.is_some().into())),
-            ("home_mask", home.map(u64::from)),
+            ("seek_source_valid", Some(seek_source.is_some().into())),
+            ("seek_source", seek_source.map(|source| source.byte().into())),
+            ("seek_valid", Some(seek.is_some().into())),
+            ("seek_mask", seek.map(u64::from)),
+            ("latch_arm", Some(latch_arm.into())),
             ("snapshot", Some(snapshot.into())),
             ("kick", Some(kick.into())),
             ("enable", Some(enable.into())),
             ("estop", Some(estop.into())),
             ("limit_min", Some(limit_min.into())),
             ("limit_max", Some(limit_max.into())),
+            ("inputs_0", Some(inputs_0.into())),
+            ("inputs_1", Some(inputs_1.into())),
+            ("latch", Some(latch.into())),
         ]
     }
 }
@@ -131,7 +150,7 @@ impl EngineInputs {
 impl EngineOutputs {
     /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
     /// not valid in this cycle.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 23] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 26] {
         let Self {
             put_ready,
             start_ready,
@@ -144,7 +163,10 @@ impl EngineOutputs {
             resetting,
             armed,
             ready,
-            homing,
+            seeking,
+            hits,
+            latch_armed,
+            latch_edges,
             state,
             refreshed,
             room,
@@ -172,7 +194,10 @@ impl EngineOutputs {
             ("culprits", fault.map(|(_, culprits)| culprits.into())),
             ("armed", Some(armed.into())),
             ("ready", Some(ready.into())),
-            ("homing", Some(homing.into())),
+            ("seeking", Some(seeking.into())),
+            ("hits", Some(hits.into())),
+            ("latch_armed", Some(latch_armed.into())),
+            ("latch_edges", Some(latch_edges.into())),
             ("started", Some(started.into())),
         ]
     }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! address   page 2 | item 3 | axis 3          the register from which a host reads the word
-//! page      0 at the limit     1 live     2 snapshot
-//! item      0 discarded   1 left   3 ticks   4 5 P (low, high)   6 position   7 status
+//! page      0 hit of a seek   1 live   2 snapshot   3 latch;  of item 2: the row of the switch
+//! item      0 discarded   1 left   2 switch   3 ticks   4 5 P (low, high)   6 position   7 status
 //! ```
 //!
 //! "What the host reads" in docs/clock-by-clock.md says in which clock each word is output.
@@ -17,15 +17,35 @@ pub const STATE_ITEM_BITS: u32 = 3;
 /// Number of the lowest bits of [`StateItem::Status`] that have a meaning.
 pub const STATUS_BITS: u32 = 16;
 
+/// Bit of [`StateItem::Switch`]: the debounced state of the switch, 1 active.
+pub const SWITCH_STATE: u32 = 1 << 7;
+
+/// Bit of [`StateItem::Switch`]: the level at its pin, 1 active.
+pub const SWITCH_LEVEL: u32 = 1 << 6;
+
 /// The copy of the state to which a word belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum StatePage {
-    /// The state of an axis in the tick after the one in which its limit was found in homing.
-    Limit = 0,
+    /// The state in the tick after the hit of a seek.
+    Seek = 0,
     /// The state in the latest tick.
     Live = 1,
     /// The state in the tick of the latest snapshot.
     Snapshot = 2,
+    /// The state in the tick after the edge that the latch accepted.
+    Latch = 3,
+}
+
+impl StatePage {
+    /// The page with this number; only the lowest two bits of the number count.
+    pub const fn of_number(number: u8) -> Self {
+        match number & 3 {
+            0 => Self::Seek,
+            1 => Self::Live,
+            2 => Self::Snapshot,
+            _ => Self::Latch,
+        }
+    }
 }
 
 /// One word of the state of an axis.
@@ -35,6 +55,9 @@ pub enum StateItem {
     Discarded = 0,
     /// Ticks of the running segment that follow the next tick; output while the axis runs.
     Left = 1,
+    /// Levels of a switch: [`SWITCH_STATE`] and [`SWITCH_LEVEL`]. The page is the row of the switch
+    /// and no copy of the state.
+    Switch = 2,
     /// Number of strobes since configuration, modulo 2^32.
     Ticks = 3,
     /// P in units of 2^-64 step, low half.

@@ -44,9 +44,9 @@ fn protocol() -> String {
         REGISTERS.iter().map(|MappedRegister { name, address, access, per_axis, .. }| {
             format!("{name} {address} {access:?} {per_axis}\n")
         });
-    let answer = ANSWER.iter().map(|Field { name, byte, bit, bits, top, .. }| {
-        format!("{name} {byte} {bit} {bits} {top:?}\n")
-    });
+    let answer = ANSWER
+        .iter()
+        .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));
     let version = format!("protocol {PROTOCOL_VERSION}\n");
     [version].into_iter().chain(registers).chain(answer).collect()
 }

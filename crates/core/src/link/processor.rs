@@ -2,19 +2,20 @@
 //! its program memory.
 //!
 //! At usual baud rates a byte arrives about every hundred clocks, which is time enough for a
-//! program. The program needs one block RAM; the same protocol in gates would need hundreds of
-//! cells. The machine has an accumulator A and an index X. Its only operations are exclusive or and
-//! X + 1.
+//! program. The program needs two block RAMs; the same protocol in gates would need hundreds of
+//! cells. The machine has an accumulator A and an index X. Its only operations are exclusive or,
+//! and, and X + 1. The data memory has two pages of 256 bytes: variables and the request, and the
+//! constants of the program.
 //!
 //! ```text
 //! clock     | fetch | address | execute |   three clocks per instruction; a wait and a CRC step
 //!                                           extend the third
 //!
-//! bit    15     14     13     12     11       10 9 8       7 .. 0
-//!        sets                        xor      source       operand      A <= value, or A xor value
-//!               stores                              X   operand      data[operand or X] <= A
-//!                      jumps         invert   condition    target       pc <= target
-//!                             acts   put      start go br  wait .. tax  the actions of these bits
+//! bit    15     14     13     12     11      10 9 8         7 .. 0
+//!        sets   and           acts   xor     source         operand      A <= value, or A and/xor it
+//!        0      stores        acts              X           operand      data[operand or X] <= A
+//!        0      0      jumps  invert condition 11..9 | target 8 .. 0     pc <= target
+//!        0      0      0      acts   put     start go br    wait .. tax  the actions of these bits
 //! ```
 //!
 //! The two `acts` bits that change X (TAX and INX) can be combined with a value or a store that
@@ -34,37 +35,54 @@ pub const ACTS: Code = 1 << 12;
 
 /// With [`SETS`]: A receives the exclusive or of A and the value.
 pub const XOR: Code = 1 << 11;
-/// With [`STORES`]: the address is X and not the operand.
+/// With [`SETS`]: A receives A and the value, bit by bit.
+pub const AND: Code = 1 << 14;
+/// With [`STORES`], and with [`ValueSource::Data`]: the address is X and not the operand.
 pub const INDEXED: Code = 1 << 8;
+/// With [`ValueSource::Data`]: the page of the constants and not that of the variables.
+pub const CONSTANTS: Code = 1 << 9;
 /// With [`JUMPS`]: jump if the condition does not hold.
-pub const UNLESS: Code = 1 << 11;
+pub const UNLESS: Code = 1 << 12;
+/// With [`JUMPS`]: the lowest bit of the condition.
+pub const CONDITION: u32 = 9;
+/// With [`JUMPS`]: the bits of the target.
+pub const TARGET: Code = (1 << CONDITION) - 1;
 
 /// Source of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ValueSource {
-    /// The data memory, at the operand's address.
+    /// The variables, at the operand's address.
     Data = 0,
-    /// The data memory, at address X.
+    /// The variables, at address X.
     DataAtX = 1,
+    /// The constants, at the operand's address.
+    Constant = 2,
+    /// The constants, at address X.
+    ConstantAtX = 3,
     /// The received byte; reading it releases the buffer for the next one.
-    Received = 2,
+    Received = 4,
     /// X.
-    X = 3,
+    X = 5,
     /// The low byte of the CRC.
-    Crc = 4,
+    Crc = 6,
     /// The item of the engine that the operand selects ([`STATE`] and the following).
-    Engine = 5,
+    Engine = 7,
 }
 
-/// Item of [`ValueSource::Engine`]: byte 3 of an answer, with the lower three bits of the cause.
+/// Item of [`ValueSource::Engine`]: byte 3 of an answer, but for `written`.
 pub const STATE: u8 = 0;
-/// Item: the free queue space that the axis of A reported in its last time slot, and in bit 4 the
-/// highest bit of the cause.
+/// Item: in bits 6..4 the free queue space that the axis of A reported in its last time slot, and
+/// in bits 3..0 the cause of the stop, 0 without a fault.
 pub const ROOM: u8 = 1;
-/// Item: the mask of the axes that caused a stop; 0 without a fault.
+/// Item: the mask of the axes that caused a stop; it has no meaning without a fault.
 pub const CULPRITS: u8 = 2;
-/// Item: the mask of the axes that wait for their limit.
-pub const HOMING: u8 = 3;
+/// Item: the mask of the axes that wait for the source of their seek.
+pub const SEEKING: u8 = 3;
+/// Item: the mask of the axes that have hit it, until the host ends the seek.
+pub const HITS: u8 = 4;
+/// Item: in bits 3..0 the edges since the latch was armed that it did not latch, in bit 4 whether
+/// it is armed.
+pub const LATCH: u8 = 5;
 
 /// Condition of a jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,14 +93,14 @@ pub enum Condition {
     Zero = 1,
     /// Bit 7 of X is 1.
     X7 = 2,
-    /// Bit 6 of X is 1.
-    X6 = 3,
+    /// X is 0xf0 or more.
+    Full = 3,
     /// No received byte is waiting.
     Nothing = 4,
     /// The engine has a fault.
     Fault = 5,
-    /// The engine accepts a start.
-    Startable = 6,
+    /// The next word to put is a commit: seven words of a segment have been put.
+    Commit = 6,
     /// A is 0xc0 or more, as END and ESC are.
     Special = 7,
 }
@@ -105,26 +123,28 @@ pub const WAIT: Code = 1 << 5;
 /// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
 /// or with `refreshed`.
 pub const FOR_ROOM: Code = 1 << 3;
-/// A is written to the control register. With [`KICK`] it is written to the mask of the axes that
-/// wait for their limit instead; with [`BROKEN`] it is written nowhere.
+/// Bit 0 of A is written to the control register. With [`KICK`], A is written to the mask of the
+/// axes that seek instead, and with [`KICK`] and [`BROKEN`] to the source of seeks; with [`BROKEN`]
+/// it is written nowhere.
 pub const CONTROL: Code = 1 << 6;
-/// The host has sent a valid request; this restarts the watchdog.
+/// The owner of the session has sent a valid request; this restarts the watchdog. With
+/// [`CLEARING`]: arms the latch too.
 pub const KICK: Code = 1 << 7;
-/// The host has violated the segment protocol. With [`CONTROL`]: requests a snapshot instead.
+/// The host has violated the segment protocol. With [`CONTROL`]: requests a snapshot instead. With
+/// [`KICK`]: requests a stop of all axes instead.
 pub const BROKEN: Code = 1 << 8;
 /// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
+/// With [`KICK`] and without [`CONTROL`]: arms the latch.
 pub const CLEARING: Code = 1 << 9;
 /// With [`WAIT`]: sends A to the host.
 pub const GOES: Code = 1 << 9;
 /// Offers a start of the axes in A.
 pub const STARTS: Code = 1 << 10;
-/// Offers the CRC register as a word of a segment. Bits 2..0 of A are the axis, bits 4..2 of X the
-/// number of the word.
+/// Offers the CRC register as the next word of a segment. Bits 2..0 of A are the axis. The machine
+/// counts the words modulo 8; the eighth is the commit.
 pub const PUTS: Code = 1 << 11;
 
-/// Address of a request in the data memory: its sequence number, followed by its address byte.
-pub const REQUEST: u8 = 0x1e;
-/// Address of the request's words. The words of a segment end where bit 6 of X becomes 1.
-pub const WORDS: u8 = 0x20;
-/// The first address behind the area that a request can fill.
-pub const REQUEST_END: u8 = 0x80;
+/// Address of a request among the variables: its sequence number, followed by its address byte.
+pub const REQUEST: u8 = 0x1b;
+/// The first address behind the area that a request can fill; [`Condition::Full`] holds from it on.
+pub const REQUEST_END: u8 = 0xf0;

@@ -2,17 +2,19 @@
 //! docs/registers.md are generated from this table: run `cargo xtask generate` after a change.
 //!
 //! ```text
-//! reads     0x00 .. 0x17   facts of the build; the identity comes first in every version
-//!           0x18 .. 0xff   the state of the axes: page 2 | item 3 | axis 3 (engine/state.rs)
+//! reads     0x00 .. 0x0f   facts of the build, and what the link program puts together; the
+//!                          identity comes first in every version
+//!           0x10 .. 0xff   the state of the axes: page 2 | item 3 | axis 3 (engine/state.rs)
 //! writes    0xa0 .. 0xbf   commands of the host, one word each
 //!           0xc0 .. 0xc7   segments: 0xc0 + axis, eight words
+//!           0xc8           segments of several axes
 //! ```
 //!
 //! A request without words reads, a request with words writes, so that the same address can be a
 //! register of either kind.
 
-use crate::engine::StateItem::{Discarded, Left, PHigh, PLow, Position, Status, Ticks};
-use crate::engine::StatePage::{Limit, Live, Snapshot};
+use crate::engine::StateItem::{self, Discarded, Left, PHigh, PLow, Position, Status, Ticks};
+use crate::engine::StatePage::{self as Page, Live, Seek, Snapshot};
 use crate::engine::{MAX_AXES, QUEUE, state_address};
 use strum::Display;
 
@@ -27,6 +29,9 @@ pub enum RegisterAccess {
     /// Written with the eight words of a segment in one frame.
     #[strum(to_string = "write, 8 words")]
     WriteSegment,
+    /// Written with the segments of several axes in one frame.
+    #[strum(to_string = "write, 3 words and 6 for each axis")]
+    WriteSegments,
 }
 
 /// One row of the register map.
@@ -72,14 +77,29 @@ registers! {
     TICK_NS      = 0x06, Read false "Length of a tick in ns";
     PHASES       = 0x07, Read false "Number of phases in a tick";
     WATCHDOG_TICKS = 0x08, Read false
-        "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
-    LIMIT_TICKS  = state_address(Limit, Ticks), Read true
-        "TICKS of the other words at the limit";
-    LIMIT_P_LOW  = state_address(Limit, PLow), Read true
-        "P in the tick after the one in which homing found the limit, low half";
-    LIMIT_P_HIGH = state_address(Limit, PHigh), Read true "P at the limit, high half";
-    LIMIT_POSITION = state_address(Limit, Position), Read true "Position at the limit in steps";
-    LIMIT_STATUS = state_address(Limit, Status), Read true "STATUS at the limit";
+        "Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog";
+    CAPTURES     = 0x09, Read false
+        "Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is \
+         ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed";
+    INPUTS       = 0x0a, Read false
+        "Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at \
+         high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock)";
+    INPUT_LEVELS = 0x0b, Read false
+        "Levels of the same pins, 1 active, when they were sampled last";
+    LIMIT_MIN_SWITCH = switch_address(0), Read true
+        "Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; \
+         the other bits have no meaning";
+    LIMIT_MAX_SWITCH = switch_address(1), Read true "Limit at the high end, likewise";
+    INPUT_0_SWITCH = switch_address(2), Read true
+        "Input of row 2 in the time slot of this axis, likewise; of axis 0 it is the probe";
+    INPUT_1_SWITCH = switch_address(3), Read true
+        "Input of row 3 in the time slot of this axis, likewise; of axis 0 it is the interlock";
+    SEEK_TICKS   = state_address(Seek, Ticks), Read true "TICKS at the hit of a seek";
+    SEEK_P_LOW   = state_address(Seek, PLow), Read true
+        "P in the tick after the hit of a seek, low half";
+    SEEK_P_HIGH  = state_address(Seek, PHigh), Read true "P at the hit, high half";
+    SEEK_POSITION = state_address(Seek, Position), Read true "POSITION at the hit";
+    SEEK_STATUS  = state_address(Seek, Status), Read true "STATUS at the hit";
     DISCARDED    = state_address(Live, Discarded), Read true
         "Number of steps that freezes have discarded since configuration";
     LEFT         = state_address(Live, Left), Read true
@@ -104,27 +124,48 @@ registers! {
     SNAPSHOT_P_HIGH = state_address(Snapshot, PHigh), Read true "P in that tick, high half";
     SNAPSHOT_POSITION = state_address(Snapshot, Position), Read true "POSITION in that tick";
     SNAPSHOT_STATUS = state_address(Snapshot, Status), Read true "STATUS in that tick";
+    LATCH_DISCARDED = state_address(Page::Latch, Discarded), Read true
+        "DISCARDED in the tick of the latch; no meaning if the axis ran";
+    LATCH_LEFT   = state_address(Page::Latch, Left), Read true
+        "LEFT in the tick of the latch; no meaning if the axis did not run";
+    LATCH_TICKS  = state_address(Page::Latch, Ticks), Read true
+        "TICKS of the latch; the same for all axes";
+    LATCH_P_LOW  = state_address(Page::Latch, PLow), Read true "P in that tick, low half";
+    LATCH_P_HIGH = state_address(Page::Latch, PHigh), Read true "P in that tick, high half";
+    LATCH_POSITION = state_address(Page::Latch, Position), Read true "POSITION in that tick";
+    LATCH_STATUS = state_address(Page::Latch, Status), Read true "STATUS in that tick";
     CONTROL      = 0x20, Write false
-        "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
+        "Bit 0: power the drivers";
     START        = 0x21, Write false
         "Axes, one bit each, to start together once all rest; an empty queue: fault (protocol)";
     CLEAR        = 0x22, Write false
         "Any value ends a complete stop: queues empty, P at its start value, position kept";
-    HOME         = 0x23, Write false
-        "Axes, one bit each: the next limit latches the state and ramps down this axis only";
+    SEEK         = 0x23, Write false
+        "Byte 0: the axes that wait for a source, one bit each, 0 ends the seek; byte 1: the \
+         source, axis of the switch in bits 2..0, row in 4..3, own switch of each axis in 5, state \
+         that is the hit in 6";
     SNAPSHOT     = 0x24, Write false
         "Any value: the SNAPSHOT_ registers take the state of all axes in one and the same tick";
+    OPEN         = 0x25, Write false
+        "Makes the session number of this frame the owner; bit 0: stop all axes if it is busy";
+    STOP         = 0x26, Write false
+        "Any value stops all axes, each with its ramp; executed for every host";
+    LATCH        = 0x27, Write false
+        "Any value arms the latch: its next edge latches the state of all axes";
     SEGMENT      = 0x40, WriteSegment true
         "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \
          its move, else 0";
+    SEGMENTS     = 0x48, WriteSegments false
+        "Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half \
+         first; 1 if last of their move, else 0";
 }
 
 super::constants! {
     IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "Value of the register IDENTITY.";
     PROTOCOL_VERSION: u32 = 2, "Version of the protocol to which this register map belongs.";
     CONTROL_ENABLE: u32 = 1 << 0, "Bit of CONTROL: power the drivers.";
-    CONTROL_STOP: u32 = 1 << 1, "Bit of CONTROL: stop all axes.";
-    AXES_AT: u8 = LIMIT_TICKS, "Lowest address at which a register of an axis is read.";
+    OPEN_FORCE: u32 = 1 << 0, "Bit of OPEN: stop all axes if the gateware is busy.";
+    AXES_AT: u8 = LIMIT_MIN_SWITCH, "Lowest address at which a register of an axis is read.";
     STATUS_SLOT: u32 = 0x1f, "Bits of STATUS: the slot of the running segment.";
     STATUS_RUNS: u32 = 1 << 5, "Bit of STATUS: the axis runs a segment.";
     STATUS_WAITING: u32 = 0x1f << 6, "Bits of STATUS: the number of segments that wait.";
@@ -133,6 +174,11 @@ super::constants! {
     MOST_AXES: u8 = MAX_AXES as u8, "Greatest number of axes of a build.";
     QUEUE_SEGMENTS: u8 = QUEUE as u8,
         "Number of segments that can wait for an axis, in addition to the one that runs.";
+}
+
+/// Address of the word of the switch of axis 0 in this row.
+pub(super) const fn switch_address(row: u8) -> u8 {
+    state_address(Page::of_number(row), StateItem::Switch)
 }
 
 /// The address of a register of an axis.

@@ -8,7 +8,9 @@ use crate::error::{InputError, SourceText};
 use crate::number::not_negative;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS};
+use carrystep_core::engine::{
+    Guard, InputRow, Latch, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, SWITCH_ROWS,
+};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -32,7 +34,7 @@ pub(super) struct RawGuard {
 /// The level of a pin at which it is active.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Active {
+pub(super) enum Active {
     #[default]
     High,
     Low,
@@ -76,11 +78,13 @@ const DEBOUNCE: Key = Key {
 };
 
 impl RawGuard {
-    /// Checks the table. `stop` holds the stop acceleration of each axis.
+    /// Checks the table. `inputs` and the latch are those of `[machine.inputs]`; `stop` holds the
+    /// stop acceleration of each axis.
     pub(super) fn check(
         self,
         source: &SourceText,
         timebase: &Timebase,
+        (inputs, latch): ([InputRow; 2], Option<Latch>),
         stop: Vec<u64>,
     ) -> Result<Guard, InputError> {
         let time = |key: Key, given: &Option<Spanned<f64>>| {
@@ -89,12 +93,16 @@ impl RawGuard {
         let watchdog = time(WATCHDOG, &self.watchdog_ms)?;
         let enable = time(ENABLE, &self.enable_ms)?;
         let debounce = time(DEBOUNCE, &self.debounce_us)?;
+        // Each row of switches is sampled in a tick of its own.
+        let has_inputs = inputs.iter().any(|row| row.exist != 0);
+        let least = if has_inputs { SWITCH_ROWS.into() } else { 2 };
         // The longest round fits every time, because `Time::new` has checked that.
         let fits =
             |round: &u32| [&watchdog, &enable, &debounce].iter().all(|time| time.fits(*round));
         let round = (1..)
             .map(|power| 1 << power)
             .take_while(|&round| round < MAX_ROUND)
+            .filter(|&round| round >= least)
             .find(fits)
             .unwrap_or(MAX_ROUND);
         Ok(Guard {
@@ -106,6 +114,8 @@ impl RawGuard {
             limit_freezes: self.limit_stop == LimitStop::Freeze,
             estop_low: self.estop == Active::Low,
             limits_low: self.limit_level == Active::Low,
+            inputs,
+            latch,
             stop,
         })
     }

@@ -7,7 +7,7 @@
 //! LOAD             A    J    V    P    n    pos  J'   A'   V'   P'             tick
 //! SUM                        A    V    P    n    pos  put  A'   V'   P'   bisection    phase, tick
 //! WRITE                           A    V    P    n    pos  put  A'   V'   P'
-//! STATE                           P    n    pos                 P'   tick stat
+//! STATE                           P    n    pos  sw             P'   tick stat
 //!             ': high halves      n: remaining ticks, or at rest the discarded steps
 //! ```
 //!
@@ -141,6 +141,8 @@ indices! {
     BEAT_STATE_LEFT = BEAT_READ_TICKS + 1;
     /// The position is output.
     BEAT_STATE_POSITION = BEAT_READ_POSITION + 1;
+    /// The levels of the switch are output, in a tick that samples it.
+    BEAT_STATE_SWITCH = 7;
     /// P is output, high half.
     BEAT_STATE_P_HIGH = BEAT_READ_P_HIGH + 1;
     /// The number of the tick is output.
@@ -175,17 +177,33 @@ indices! {
     CONTROL_KNOWN = 15;
     /// The number of the word that the host must put next, 3 bits.
     CONTROL_DUE = 16;
-    /// The limit of the axis, which waited for it, was found in the tick before.
+    /// The words of this tick are those of the axis' own hit.
     CONTROL_MET = 19;
     /// Carries less counted steps, modulo 16, 4 bits.
     CONTROL_ON_WAY = 20;
     /// Sign of the difference between the pulser's count and the control word's.
     MISSING_SIGN = 2;
 
-    /// Word of a limit switch: number of consecutive samples that differ, 7 bits.
+    /// Word of a switch: number of consecutive samples that differ, 7 bits.
     SWITCH_COUNT = 0;
-    /// Word of a limit switch: debounced state.
+    /// Word of a switch: debounced state.
     SWITCH_STATE = 7;
+    /// Row of a switch: it is 1 or 3.
+    ROW_IS_ODD = 0;
+    /// Row of a switch: it is 2 or 3.
+    ROW_OF_INPUTS = 1;
+    /// Number of the tick in its round: the row of the switches that are sampled, 2 bits.
+    ROUND_ROW = 0;
+    /// Number of the tick in its round: 0 in the first four ticks, 8 bits.
+    ROUND_FOURS = 2;
+    /// Source of seeks: axis of the switch, 3 bits.
+    SOURCE_AXIS = 0;
+    /// Source of seeks: row of the switch, 2 bits.
+    SOURCE_ROW = 3;
+    /// Source of seeks: each axis waits for its own switch in this row.
+    SOURCE_OWN = 5;
+    /// Source of seeks: the debounced state that is the hit.
+    SOURCE_LEVEL = 6;
 
     /// Address of an event word: the tick modulo 4, 2 bits.
     EVENT_TICK = 5;
@@ -203,6 +221,8 @@ indices! {
     COMMIT_LAST = 0;
     /// The ring of the start's mask: the axis of this time slot.
     MASK_OF_SLOT = 0;
+    /// One bit per axis: the first axis.
+    SLOT_OF_FIRST = 0;
 }
 
 /// Word of a segment: ticks - 1.

@@ -20,25 +20,31 @@ module promises (
     input wire reset,
     input wire stop,
     input wire broken,
-    input wire home_valid,
-    input wire [`AXES-1:0] home_mask,
+    input wire seek_source_valid,
+    input wire [6:0] seek_source,
+    input wire seek_valid,
+    input wire [`AXES-1:0] seek_mask,
+    input wire latch_arm,
     input wire kick,
     input wire enable,
     input wire estop,
     input wire [`AXES-1:0] limit_min,
     input wire [`AXES-1:0] limit_max,
+    input wire [`AXES-1:0] inputs_0,
+    input wire [`AXES-1:0] inputs_1,
+    input wire latch,
     input wire snapshot
 );
     localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * `AXES;
     localparam [3:0] `CAUSES;
     (* anyconst *) reg [2:0] who;
 
-    wire put_ready, start_ready, state_valid, refreshed, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
+    wire put_ready, start_ready, state_valid, refreshed, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started, latch_armed;
     wire [31:0] state;
     wire [1:0] state_page;
-    wire [`AXES-1:0] step, dir, culprits, homing;
+    wire [`AXES-1:0] step, dir, culprits, seeking, hits;
     wire [2:0] state_axis, state_item, room;
-    wire [3:0] cause;
+    wire [3:0] cause, latch_edges;
     `DUT dut (.*);
 
     always_comb begin
@@ -67,11 +73,11 @@ module promises (
     (* inside = "dut.stops_frozen" *) wire frozen;
     (* inside = "dut.queue.ramp" *) wire ramp;
     (* inside = "dut.stops_ramp" *) wire all_ramp;
-    (* inside = "dut.homing_control_slows" *) wire slows;
+    (* inside = "dut.seek_control_slows" *) wire slows;
     (* inside = "dut.queue.empties" *) wire empties;
     (* inside = "dut.queue_goes_on" *) wire queue_goes_on;
-    (* inside = "dut.homing_control_waits" *) wire waits;
-    (* inside = "dut.limits_hit" *) wire hit;
+    (* inside = "dut.seek_control_forgives" *) wire forgives;
+    (* inside = "dut.switches_found" *) wire limit_found;
     (* inside = "dut.stops.limit" *) wire limit;
     (* inside = "dut.stops_clearing" *) wire clearing;
     (* inside = "dut.stops.breaks" *) wire breaks;
@@ -82,8 +88,10 @@ module promises (
     (* inside = "dut.resets_completes" *) wire completes;
     (* inside = "dut.resets_restarts_round" *) wire restarts_round;
     (* inside = "dut.supervisor_warm" *) wire warm;
-    (* inside = "dut.supervisor_tick_0" *) wire tick_0;
-    (* inside = "dut.supervisor_tick_1" *) wire tick_1;
+    (* inside = "dut.supervisor_row" *) wire [1:0] row;
+    (* inside = "dut.supervisor_begins_round" *) wire begins_round;
+    (* inside = "dut.edge_latch_comes" *) wire comes;
+    (* inside = "dut.edge_latch_latches" *) wire latches;
     (* inside = "dut.mask" *) wire [`AXES-1:0] mask;
     (* inside = "dut.take" *) wire take;
     (* inside = "dut.queue.starts" *) wire starts;
@@ -93,11 +101,14 @@ module promises (
 
     // ---- Values of the clock before.
 
-    reg found_before = 0;            // in the tick before an axis found the limit for which it waited
+    reg found_before = 0;            // in the tick before an axis was to be output for its own hit
+    reg latched = 0;                 // at the strobe before, the latch took its edge
     reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
-    reg was_wrong = 0, was_right = 0, was_ending = 0, was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
+    reg was_wrong = 0, was_right = 0, was_ending = 0, was_clearing = 0, was_begins_round = 0;
+    reg was_dropped = 0, was_resetting = 0, before_resetting = 0;
+    reg [1:0] was_row = 0;
     reg [`AXES-1:0] was_step = 0;
     reg [12:0] was_beat = 0;
     wire start = start_valid & start_ready;
@@ -106,7 +117,10 @@ module promises (
         {was_frozen, was_fault, was_enabled, was_step, was_beat} <= {frozen, fault, enabled, step, beat[12:0]};
         {was_strobe, was_start, was_armed, was_started} <= {strobe, start, armed, started};
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
-        {was_tick_0, was_tick_1} <= {tick_0, tick_1};
+        {was_begins_round, was_row, was_resetting} <= {begins_round, row, resetting};
+        was_dropped <= strobe & drops;
+        before_resetting <= was_resetting;
+        latched <= strobe ? comes : latched;
         found_before <= strobe ? found_now : found_before;
         if (start) asked <= (start_mask >> who) & 1;
         was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
@@ -128,7 +142,8 @@ module promises (
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
         promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || put_valid && put_axis >= `AXES);
-        promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault);
+        promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault || was_dropped);
+        promise_6_no_start_of_an_axis_at_its_hit: assert (!started || !drops);
         promise_6_something_to_start: assert (!(mine && starts) || !word[6] && word[5:3] != word[2:0]);
 
         promise_8_idle: assert (!idle || !armed && held_back == 0 && step == 0);
@@ -137,8 +152,8 @@ module promises (
         promise_12_own_requests: assert (requests == (phase_start ? events : 0) && requests_back == backward);
         promise_12_own_direction: assert (signs == (strobe ? events : 0) && signs_back == backward);
         promise_12_starts_who_is_asked_to: assert (!mine || starts == (going & asked));
-        promise_12_a_limit_slows_its_own_axis: assert (ramp == (all_ramp | slows) && empties == (slows & !queue_goes_on));
-        promise_12_a_limit_waited_for_stops_no_other: assert (limit == (hit & !waits & !slows));
+        promise_19_a_hit_ramps_its_own_axis: assert (ramp == (all_ramp | slows) && empties == (slows & !queue_goes_on));
+        promise_12_a_limit_of_a_seek_stops_no_other: assert (limit == (limit_found & !forgives));
         promise_12_on_one_tick: assert (!started || strobe && armed);
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
@@ -153,7 +168,7 @@ module promises (
     always_comb begin
         promise_15_words_of_the_axis_of_the_time_slot: assert (!state_valid || state_axis == axis && beat[12:0] != 0);
         promise_15_a_snapshot_is_of_all_axes: assert (!(mine && takes && word_read[19]));
-        promise_15_a_tick_is_live_or_a_snapshot: assert (!state_valid || state_page != 0 || word_read[19]);
+        promise_15_a_tick_is_live_or_a_snapshot: assert (!state_valid || beat[7] || state_page != 0 || word_read[19] || swept);
     end
 
     // ---- What the proofs of the modules assume about the engine.
@@ -166,10 +181,12 @@ module promises (
         assumed_by_queue_starts: assert (!(mine && starts) || !halted);
         assumed_by_stops_completes: assert (!completes || strobe && ending && stage_2);
         assumed_by_supervisor: assert ((ending || !resetting && !restarts_round) && (strobe || !restarts_round));
-        assumed_by_limits: assert ((!tick_0 || !tick_1)
-            && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
+        assumed_by_switches: assert (!beat[12]
+            || {begins_round, row, resetting} == {was_begins_round, was_row, was_resetting});
+        assumed_by_seek_control: assert (!strobe || axis == 0);
         assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);
         assumed_by_readout: assert (!(mine && word_read[19]) || found_before);
+        assumed_by_readout_latch: assert ((!latches || latched) && (!comes || strobe));
     end
 
     // ---- The invariants that make the promises inductive. They are about the beats, about the
@@ -196,6 +213,7 @@ module promises (
     (* inside = "dut.going" *) wire going;
     (* inside = "dut.unfed" *) wire unfed;
     (* inside = "dut.held" *) wire held;
+    (* inside = "dut.drops" *) wire drops;
     (* inside = "dut.active" *) wire active;
     (* inside = "dut.rest_1" *) wire rest_1;
     (* inside = "dut.rest_2" *) wire rest_2;
@@ -204,10 +222,11 @@ module promises (
     (* inside = "dut.stops.ran" *) wire ran;
     (* inside = "dut.stops.found" *) wire found;
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
-    (* inside = "dut.homing_control.slowing" *) wire [`AXES-1:0] slowing;
+    (* inside = "dut.seek_control.slowing" *) wire [`AXES-1:0] slowing;
     (* inside = "dut.supervisor.round" *) wire [9:0] round;
     (* inside = "dut.readout.takes" *) wire takes;
     (* inside = "dut.readout.found" *) wire found_now;
+    (* inside = "dut.readout.swept" *) wire swept;
     wire quiet = !word[6] & word[5:3] == word[2:0];
     // The engine rotates the mask with the time slots: bit `round_by` of it belongs to `who` now.
     wire [3:0] round_by = who >= axis ? who - axis : who + `AXES - axis;
@@ -228,25 +247,28 @@ module promises (
         invariant_8: assert (!taken || !rest_1 && !rest_2);
         invariant_9: assert (!rest_2 || rest_1 && quiet);
         invariant_10: assert (!(had_time_slot && !active && !taken) || quiet);
-        invariant_11: assert (!(armed && had_time_slot && asked && !unfed && !held) || !word[6] && word[5:3] != word[2:0]);
+        invariant_11: assert (!(armed && had_time_slot && asked && !unfed && !held && !drops) || !word[6] && word[5:3] != word[2:0]);
         invariant_12: assert (!(going && asked && !had_time_slot) || !word[6] && word[5:3] != word[2:0]);
         invariant_20: assert (masked == asked || !armed && !going);
         invariant_13: assert (!going || !halted && !armed);
         invariant_14: assert ((!(halted || all_ramp || frozen) || fault) && (!found_freezing || found));
         invariant_15: assert (!clearing || settled && halted);
-        invariant_16: assert ((!settled || halted) && (!halted || all_ramp || frozen));
+        invariant_16: assert ((!settled || halted) && (!halted || all_ramp));
         invariant_17: assert (!halted || !ran);
         invariant_19: assert (!(mine && committed && at % TIME_SLOT_CLOCKS >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
-        invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]));
+        invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]) || was_resetting && !before_resetting);
         invariant_22: assert (!was_beat[12] || at % TIME_SLOT_CLOCKS == 0 && at != 0 && at <= ALL_TIME_SLOTS);
         invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && frozen && !wiping && !armed
             && !(stage_1 && stage_2));
         invariant_24: assert (!(stage_2 && had_time_slot) || quiet);
         invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
         invariant_28: assert (!mine || beat[0] || full == (word[5:3] + 3'd1 == word[2:0] + {2'd0, starts}));
+        invariant_29: assert ((!was_resetting || before_resetting || at == 1 && resetting)
+            && (!resetting || was_resetting || at == 0));
+        invariant_30: assert (!was_resetting || slowing == 0 && seeking == 0);
         invariant_26: assert (!(takes && found_before));
         invariant_27: assert (!word[19] || (had_time_slot ? found_now : found_before));
-        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, word[19]} && quiet);
+        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, drops, word[19]} && quiet);
     end
 `endif
 

@@ -23,8 +23,9 @@
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
 //! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
 //! the host must put next: the words of a segment come in order, and word 7 commits it. `met` means
-//! that the axis found its limit in the tick before, while it waited for it. `on_way` is the number
-//! of carries since the last clear less the steps that the position has counted since then.
+//! that the axis has hit its own source, and that this tick outputs its state for that. `on_way` is
+//! the number of carries since the last clear less the steps that the position has counted since
+//! then.
 //!
 //! Cost: a memory of 8 words of 24 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
@@ -79,8 +80,8 @@ pub struct Queue {
     pub back: Input<Bit>,
     /// In beat 12: P + V crosses a step, if the axis moves.
     pub crosses: Input<Bit>,
-    /// In beat 12: the axis, which waits for its limit, has found it.
-    pub caught: Input<Bit>,
+    /// In beat 12: the next tick's words of the axis are those of its own hit.
+    pub meets: Input<Bit>,
     /// The low bits of the position, from the pulser.
     pub pulses: Input<Word<3>>,
     /// The low bits of the discarded steps, from the pulser.
@@ -121,7 +122,7 @@ pub struct Queue {
     pub down: Signal<Out, Bit>,
     /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     pub lost: Signal<Out, Bit>,
-    /// The axis found its limit in the tick before, while it waited for it.
+    /// The words of this tick are those of the axis' own hit.
     pub met: Signal<Out, Bit>,
     /// Carries since the last clear less counted steps, modulo 16.
     pub on_way: Signal<Out, Word<4>>,
@@ -318,7 +319,7 @@ impl Logic for Queue {
             self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
         }
         self.next_met.next = self.no.val();
-        if self.caught.val() {
+        if self.meets.val() {
             self.next_met.next = self.met_bit.val();
         }
         self.ahead.next = self.moves.val() & self.crosses.val() & !self.back.val();

@@ -4,8 +4,8 @@
 //! ```text
 //! reset    _/^\________________________________________
 //! ending   ___/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   a freeze; no new pulse
-//! stage_1  _______________________/^^^^^^\____________   one tick: the limits at the low ends
-//! stage_2  ______________________________/^^^^^^\_____   one tick: the limits at the high ends,
+//! stage_1  _______________________/^^^^^^\____________   one tick: switches of the rows 0 and 2
+//! stage_2  ______________________________/^^^^^^\_____   one tick: switches of the rows 1 and 3,
 //! completes ___________________________________/^\_____   queues, P and counters; then the rest
 //! ```
 //!

@@ -6,8 +6,8 @@ use crate::primitives::word::Word;
 use crate::sim::{mask, rising_edge, settle};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    CAUSES, EngineError, EngineInputs, EngineOutputs, Put, STATUS_BITS, StateItem, StatePage,
-    StateWord,
+    CAUSES, EngineError, EngineInputs, EngineOutputs, Put, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
+    SeekSource, StateItem, StatePage, StateWord,
 };
 use rust_hdl::prelude::{Block, check_all};
 
@@ -55,14 +55,21 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.reset.next = inputs.reset;
         self.stop.next = inputs.stop;
         self.broken.next = inputs.broken;
-        self.home_valid.next = inputs.home.is_some();
-        self.home_mask.next = Word::from(u64::from(inputs.home.unwrap_or(0)));
+        self.seek_source_valid.next = inputs.seek_source.is_some();
+        self.seek_source.next =
+            Word::from(u64::from(inputs.seek_source.map_or(0, SeekSource::byte)));
+        self.seek_valid.next = inputs.seek.is_some();
+        self.seek_mask.next = Word::from(u64::from(inputs.seek.unwrap_or(0)));
+        self.latch_arm.next = inputs.latch_arm;
         self.snapshot.next = inputs.snapshot;
         self.kick.next = inputs.kick;
         self.enable.next = inputs.enable;
         self.estop.next = inputs.estop;
         self.limit_min.next = Word::from(u64::from(inputs.limit_min));
         self.limit_max.next = Word::from(u64::from(inputs.limit_max));
+        self.inputs_0.next = Word::from(u64::from(inputs.inputs[0]));
+        self.inputs_1.next = Word::from(u64::from(inputs.inputs[1]));
+        self.latch.next = inputs.latch;
         settle(self);
         let cause = CAUSES[self.cause.val().value() as usize];
         EngineOutputs {
@@ -77,7 +84,10 @@ impl<const N: usize> AnyEngine for Engine<N> {
             resetting: self.resetting.val(),
             armed: self.armed.val(),
             ready: self.ready.val(),
-            homing: self.homing.val().value() as u8,
+            seeking: self.seeking.val().value() as u8,
+            hits: self.hits.val().value() as u8,
+            latch_armed: self.latch_armed.val(),
+            latch_edges: self.latch_edges.val().value() as u8,
             state: self.state_valid.val().then(|| self.word_of_state()),
             refreshed: self.refreshed.val(),
             room: self.room_valid.val().then(|| self.room.val().value() as u8),
@@ -98,14 +108,11 @@ impl<const N: usize> AnyEngine for Engine<N> {
 impl<const N: usize> Engine<N> {
     /// The word of state that is output in this clock. Bits without a meaning are 0.
     fn word_of_state(&self) -> StateWord {
-        let page = match self.state_page.val().value() {
-            0 => StatePage::Limit,
-            1 => StatePage::Live,
-            _ => StatePage::Snapshot,
-        };
+        let page = StatePage::of_number(self.state_page.val().value() as u8);
         let item = match self.state_item.val().value() {
             0 => StateItem::Discarded,
             1 => StateItem::Left,
+            2 => StateItem::Switch,
             3 => StateItem::Ticks,
             4 => StateItem::PLow,
             5 => StateItem::PHigh,
@@ -113,7 +120,11 @@ impl<const N: usize> Engine<N> {
             _ => StateItem::Status,
         };
         let word = self.state.val().value() as u32;
-        let bits = if item == StateItem::Status { (1 << STATUS_BITS) - 1 } else { u32::MAX };
+        let bits = match item {
+            StateItem::Status => (1 << STATUS_BITS) - 1,
+            StateItem::Switch => SWITCH_STATE | SWITCH_LEVEL,
+            _ => u32::MAX,
+        };
         StateWord { page, axis: self.state_axis.val().value() as u8, item, word: word & bits }
     }
 }

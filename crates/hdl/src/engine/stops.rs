@@ -54,6 +54,8 @@ pub struct Stops<const N: usize> {
     pub breaks: Input<Bit>,
     /// The watchdog has timed out.
     pub missed: Input<Bit>,
+    /// The interlock is open.
+    pub interlock: Input<Bit>,
     /// The host requests a controlled stop.
     pub asked: Input<Bit>,
     /// The host requests that the stop is cleared.
@@ -110,6 +112,7 @@ pub struct Stops<const N: usize> {
     limited: Literal<CAUSE_BITS, { Cause::Limit as u64 }>,
     underrun: Literal<CAUSE_BITS, { Cause::Underrun as u64 }>,
     host: Literal<CAUSE_BITS, { Cause::Stop as u64 }>,
+    opened: Literal<CAUSE_BITS, { Cause::Interlock as u64 }>,
     limit_freezes_out_of_range: ParameterRefusal,
 }
 
@@ -160,8 +163,9 @@ impl<const N: usize> Logic for Stops<N> {
         self.urgent.next =
             self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
         self.ripe.next = self.strobe.val() & self.found.q.val();
-        self.by_host.next =
-            (self.strobe.val() & self.missed.val()) | self.asked.val() | self.ending.val();
+        self.by_host.next = (self.strobe.val() & (self.missed.val() | self.interlock.val()))
+            | self.asked.val()
+            | self.ending.val();
         self.calls.next = self.urgent.val() | self.ripe.val() | self.by_host.val();
         if !self.called.q.val() {
             if self.urgent.val() | (self.by_host.val() & !self.ripe.val()) {
@@ -174,6 +178,9 @@ impl<const N: usize> Logic for Stops<N> {
         }
         if self.calls.val() & !self.called.q.val() {
             self.first.d.next = self.host.val();
+            if self.strobe.val() & self.interlock.val() {
+                self.first.d.next = self.opened.val();
+            }
             if self.strobe.val() & self.missed.val() {
                 self.first.d.next = self.watchdog.val();
             }
@@ -213,6 +220,7 @@ impl<const N: usize> Logic for Stops<N> {
                 & !self.wiping.q.val()
                 & !self.pins_busy.val()
                 & !self.pressed.val()
+                & !self.interlock.val()
                 & !self.ending.val();
             if self.wiping.q.val() | self.completes.val() {
                 self.called.d.next = false;

@@ -15,6 +15,7 @@
 //! Cost: a counter of the ticks in a round, up to 10 bits, and two counters of rounds, up to 12
 //! bits each.
 
+use super::layout::{ROUND_FOURS, ROUND_ROW};
 use crate::parameters::{ENABLE_ROUNDS, ESTOP_LOW, ROUND_TICKS, WATCHDOG_ROUNDS};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
@@ -52,10 +53,10 @@ pub struct Supervisor {
     pub enabled: Signal<Out, Bit>,
     /// The drivers have been powered for the specified number of rounds.
     pub warm: Signal<Out, Bit>,
-    /// The first tick of a round.
-    pub tick_0: Signal<Out, Bit>,
-    /// The second tick of a round.
-    pub tick_1: Signal<Out, Bit>,
+    /// The number of the tick in its round, modulo 4: the row of the switches that are sampled.
+    pub row: Signal<Out, Word<2>>,
+    /// The tick is one of the first four of a round.
+    pub begins_round: Signal<Out, Bit>,
     sync: Register<Bit>,
     now: Register<Bit>,
     held: Register<Bit>,
@@ -74,6 +75,7 @@ pub struct Supervisor {
     warm_bits: Parameter<12>,
     first_tick: Literal<10, 0>,
     one_tick: Literal<10, 1>,
+    no_fours: Literal<8, 0>,
     no_round: Literal<12, 0>,
     one_round: Literal<12, 1>,
     round_ticks_out_of_range: ParameterRefusal,
@@ -132,8 +134,9 @@ impl Logic for Supervisor {
         if self.restarts_round.val() {
             self.round.d.next = self.first_tick.val();
         }
-        self.tick_0.next = self.round.q.val() == self.first_tick.val();
-        self.tick_1.next = self.round.q.val() == self.one_tick.val();
+        self.row.next = self.round.q.val().get_bits::<2>(ROUND_ROW);
+        self.begins_round.next =
+            self.round.q.val().get_bits::<8>(ROUND_FOURS) == self.no_fours.val();
 
         // The watchdog.
         self.silent.next = self.silence.q.val() == self.watchdog.val();

@@ -8,9 +8,9 @@
 //! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
 //!
-//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on, and none was
-//! in the ramp after its limit when the tick began (`homing_control.slows`). An axis of the mask
-//! without a waiting segment is a breach of the protocol.
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of the
+//! mask without a waiting segment is a breach of the protocol. An axis of the mask that has hit the
+//! source of its seek drops the start, because its queue has been emptied.
 
 use super::Engine;
 use super::layout::{
@@ -24,7 +24,8 @@ impl<const N: usize> Logic for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
-            self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2
+            self, clock, waits, mask, going, taken, taken_word, unfed, held, drops, active, rest_1,
+            rest_2
         );
         clock!(
             self,
@@ -34,8 +35,9 @@ impl<const N: usize> Logic for Engine<N> {
             queue,
             store,
             event_wheel,
-            limits,
-            homing_control,
+            switches,
+            seek_control,
+            edge_latch,
             stops,
             readout,
             resets,
@@ -63,8 +65,8 @@ impl<const N: usize> Logic for Engine<N> {
         }
 
         // A start is armed at a strobe. It takes effect at the first later strobe at which every
-        // axis of its mask is at rest or comes to rest. Until then an axis of the mask without a
-        // waiting segment triggers the stop `protocol`.
+        // axis of its mask is at rest or comes to rest. Until then an axis of the mask that has hit
+        // its source drops it, or else one without a waiting segment triggers the stop `protocol`.
         self.may_start.next = self.enable.val() & self.supervisor.warm.val();
         self.start_ready.next = self.strobe.val()
             & !self.waits.q.val()
@@ -72,7 +74,8 @@ impl<const N: usize> Logic for Engine<N> {
             & self.may_start.val();
         self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
         self.decides.next = self.strobe.val() & self.waits.q.val() & self.free.val();
-        self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
+        self.go.next =
+            self.decides.val() & !self.unfed.q.val() & !self.held.q.val() & !self.drops.q.val();
         if self.strobe.val() {
             self.going.d.next = self.go.val();
         }
@@ -84,22 +87,23 @@ impl<const N: usize> Logic for Engine<N> {
             self.waits.d.next = true;
             self.mask.d.next = self.start_mask.val();
         }
-        if self.go.val() | self.stops.fault.val() {
+        if self.go.val() | (self.decides.val() & self.drops.q.val()) | self.stops.fault.val() {
             self.waits.d.next = false;
         }
 
         // Collects the results of the time slots.
         if self.time_slot.beat.val().get_bit(BEAT_LAST) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next = self.held.q.val()
-                | (self.masked.val()
-                    & (self.queue.goes_on.val() | self.homing_control.slows.val()));
+            self.held.d.next = self.held.q.val() | (self.masked.val() & self.queue.goes_on.val());
+            self.drops.d.next =
+                self.drops.q.val() | (self.masked.val() & self.seek_control.slows.val());
             self.active.d.next =
                 self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
         }
         if self.strobe.val() {
             self.unfed.d.next = false;
             self.held.d.next = false;
+            self.drops.d.next = false;
             self.active.d.next = false;
             self.rest_1.d.next = !self.active.q.val();
             self.rest_2.d.next = !self.active.q.val() & self.rest_1.q.val();
@@ -150,8 +154,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.axis_next.next = self.time_slot.axis_next.val();
         self.queue.starts.next = self.going.q.val() & self.masked.val();
         self.queue.halted.next = self.stops.halted.val();
-        self.queue.ramp.next = self.stops.ramp.val() | self.homing_control.slows.val();
-        self.queue.empties.next = self.homing_control.slows.val() & !self.queue.goes_on.val();
+        self.queue.ramp.next = self.stops.ramp.val() | self.seek_control.slows.val();
+        self.queue.empties.next = self.seek_control.slows.val() & !self.queue.goes_on.val();
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.put_word.next = self.put_word.val();
@@ -162,7 +166,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
         self.queue.crosses.next = self.adder.crosses.val();
-        self.queue.caught.next = self.homing_control.caught.val();
+        self.queue.meets.next = self.readout.meets.val();
         self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
         self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
 
@@ -203,8 +207,16 @@ impl<const N: usize> Logic for Engine<N> {
         self.readout.beat.next = self.time_slot.beat.val();
         self.readout.is_last.next = self.time_slot.is_last.val();
         self.readout.snapshot.next = self.snapshot.val();
-        self.readout.caught.next = self.homing_control.caught.val();
+        self.readout.caught.next = self.seek_control.caught.val();
         self.readout.met.next = self.queue.met.val();
+        self.readout.sweeps.next = self.seek_control.sweeps.val();
+        self.readout.comes.next = self.edge_latch.comes.val();
+        self.readout.latches.next = self.edge_latch.latches.val();
+        self.readout.samples.next = self.switches.samples.val();
+        self.readout.row.next = self.supervisor.row.val();
+        self.readout.earlier.next = self.switches.earlier.val();
+        self.readout.level.next = self.switches.level.val();
+        self.readout.resetting.next = self.resets.resetting.val();
         self.readout.word.next = self.store.word.val();
         self.readout.live.next = self.queue.live.val();
         self.readout.running.next = self.queue.running.val();
@@ -217,34 +229,45 @@ impl<const N: usize> Logic for Engine<N> {
         self.state.next = self.readout.state.val();
         self.refreshed.next = self.readout.refreshed.val();
 
-        self.limits.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
-        self.limits.axis.next = self.time_slot.axis.val();
-        self.limits.axis_next.next = self.time_slot.axis_next.val();
-        self.limits.axis_one_hot.next = self.time_slot.axis_one_hot.val();
-        self.limits.tick_0.next = self.supervisor.tick_0.val();
-        self.limits.tick_1.next = self.supervisor.tick_1.val();
-        self.limits.limit_min.next = self.limit_min.val();
-        self.limits.limit_max.next = self.limit_max.val();
-        self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
-        self.limits.back.next = self.adder.back.val();
-        self.limits.resetting.next = self.resets.resetting.val();
+        self.switches.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.switches.axis.next = self.time_slot.axis.val();
+        self.switches.axis_next.next = self.time_slot.axis_next.val();
+        self.switches.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.switches.row.next = self.supervisor.row.val();
+        self.switches.begins_round.next = self.supervisor.begins_round.val();
+        self.switches.limit_min.next = self.limit_min.val();
+        self.switches.limit_max.next = self.limit_max.val();
+        self.switches.inputs_0.next = self.inputs_0.val();
+        self.switches.inputs_1.next = self.inputs_1.val();
+        self.switches.goes.next = self.queue.moves.val() & !self.adder.still.val();
+        self.switches.back.next = self.adder.back.val();
+        self.switches.resetting.next = self.resets.resetting.val();
 
-        self.homing_control.set.next = self.home_valid.val();
-        self.homing_control.mask.next = self.home_mask.val();
-        self.homing_control.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
-        self.homing_control.axis_one_hot.next = self.time_slot.axis_one_hot.val();
-        self.homing_control.hit.next = self.limits.hit.val();
-        self.homing_control.goes_on.next = self.queue.goes_on.val();
-        self.homing_control.resetting.next = self.resets.resetting.val();
+        self.seek_control.strobe.next = self.strobe.val();
+        self.seek_control.set_source.next = self.seek_source_valid.val();
+        self.seek_control.source.next = self.seek_source.val();
+        self.seek_control.set.next = self.seek_valid.val();
+        self.seek_control.mask.next = self.seek_mask.val();
+        self.seek_control.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
+        self.seek_control.axis.next = self.time_slot.axis.val();
+        self.seek_control.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.seek_control.row.next = self.supervisor.row.val();
+        self.seek_control.samples.next = self.switches.samples.val();
+        self.seek_control.state.next = self.switches.state.val();
+        self.seek_control.goes_on.next = self.queue.goes_on.val();
+        self.seek_control.resetting.next = self.resets.resetting.val();
+
+        self.edge_latch.strobe.next = self.strobe.val();
+        self.edge_latch.pin.next = self.latch.val();
+        self.edge_latch.arm.next = self.latch_arm.val();
+        self.edge_latch.resetting.next = self.resets.resetting.val();
 
         self.stops.strobe.next = self.strobe.val();
         self.stops.time_slot_ends.next = self.time_slot.beat.val().get_bit(BEAT_LAST);
         self.stops.axis_one_hot.next = self.time_slot.axis_one_hot.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val()
-            & !self.homing_control.waits.val()
-            & !self.homing_control.slows.val();
+        self.stops.limit.next = self.switches.found.val() & !self.seek_control.forgives.val();
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
         self.stops.pressed.next = self.supervisor.pressed.val();
@@ -252,8 +275,9 @@ impl<const N: usize> Logic for Engine<N> {
             | self.broken.val()
             | self.queue.misplaced.val())
             & !self.stops.fault.val())
-            | (self.decides.val() & self.unfed.q.val());
+            | (self.decides.val() & self.unfed.q.val() & !self.drops.q.val());
         self.stops.missed.next = self.supervisor.missed.val() & !self.rest_2.q.val();
+        self.stops.interlock.next = self.switches.interlock.val();
         self.stops.asked.next = self.stop.val();
         self.stops.clear.next = self.clear.val();
         self.stops.pins_busy.next = self.pins_busy.val();
@@ -284,7 +308,10 @@ impl<const N: usize> Logic for Engine<N> {
         self.culprits.next = self.stops.culprits.val();
         self.armed.next = self.waits.q.val();
         self.ready.next = self.may_start.val();
-        self.homing.next = self.homing_control.axes.val();
+        self.seeking.next = self.seek_control.seeking.val();
+        self.hits.next = self.seek_control.hits.val();
+        self.latch_armed.next = self.edge_latch.armed.val();
+        self.latch_edges.next = self.edge_latch.edges.val();
         self.started.next = self.go.val();
     }
 }

@@ -11,9 +11,9 @@
 //!             '-- reads the program memory
 //! ```
 //!
-//! Received bytes enter a ring buffer (`ring`) of 256 bytes, from which the program reads them.
+//! Received bytes enter a ring buffer (`ring`) of 512 bytes, from which the program reads them.
 //!
-//! Cost: three memories of 256 words: the program with 16 bits per word, the data and the ring
+//! Cost: three memories of 512 words: the program with 16 bits per word, the data and the ring
 //! buffer with 8.
 
 use super::crc::CrcUnit;
@@ -38,7 +38,7 @@ pub struct LinkProcessor<const N: usize> {
     pub answer_valid: Signal<Out, Bit>,
     /// The line accepts the offered byte in this clock.
     pub answer_take: Input<Bit>,
-    /// X: the address of the facts that are read, and the number of the word that is offered.
+    /// X: the address of the facts that are read.
     pub x: Signal<Out, Word<8>>,
     /// A: the byte of the answer, the axis of an offered word, the axes of a start, or the axes
     /// that wait for their limit.
@@ -47,6 +47,8 @@ pub struct LinkProcessor<const N: usize> {
     pub facts: Input<Word<32>>,
     /// The machine offers a word of a segment to the engine.
     pub put_valid: Signal<Out, Bit>,
+    /// The number of the offered word in its segment.
+    pub put_word: Signal<Out, Word<3>>,
     /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
     /// The engine accepts the offered word in this clock.
@@ -59,11 +61,15 @@ pub struct LinkProcessor<const N: usize> {
     pub clear: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// A replaces the mask of the axes that wait for their limit.
-    pub home_valid: Signal<Out, Bit>,
+    /// A replaces the source of seeks.
+    pub seek_source_valid: Signal<Out, Bit>,
+    /// A replaces the mask of the axes that wait for the source of their seek.
+    pub seek_valid: Signal<Out, Bit>,
+    /// The latch is armed.
+    pub latch_arm: Signal<Out, Bit>,
     /// The host requests a snapshot.
     pub snapshot: Signal<Out, Bit>,
-    /// The host has sent a valid request.
+    /// The owner of the session has sent a valid request.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers.
     pub enable: Signal<Out, Bit>,
@@ -91,37 +97,46 @@ pub struct LinkProcessor<const N: usize> {
     pub room_valid: Input<Bit>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
-    /// The axes that wait for their limit; bit i is axis i.
-    pub homing: Input<Word<N>>,
-    instructions: Memory<8, 16>,
-    data: Memory<8, 8>,
-    ring: Memory<8, 8>,
+    /// The axes that wait for the source of their seek; bit i is axis i.
+    pub seeking: Input<Word<N>>,
+    /// The axes that have hit it, until the host ends the seek; bit i is axis i.
+    pub hits: Input<Word<N>>,
+    /// The latch waits for its edge.
+    pub latch_armed: Input<Bit>,
+    /// The edges since the latch was armed that it did not latch, at most 15.
+    pub latch_edges: Input<Word<4>>,
+    instructions: Memory<9, 16>,
+    data: Memory<9, 8>,
+    ring: Memory<9, 8>,
     crc: CrcUnit,
     stage: Register<Word<2>>,
-    pc: Register<Word<8>>,
+    pc: Register<Word<9>>,
     sum: Register<Word<8>>,   // A
     index: Register<Word<8>>, // X
     // The address of the next byte to write in the ring buffer.
-    written: Register<Word<8>>,
+    written: Register<Word<9>>,
     // The address of the next byte to read in the ring buffer.
-    read: Register<Word<8>>,
+    read: Register<Word<9>>,
+    word: Register<Word<3>>,  // `put_word`
     space: Register<Word<3>>, // `room`
-    control: Register<Word<2>>,
-    clears: Register<Bit>, // `clear`
+    power: Register<Bit>,     // `enable`
+    clears: Register<Bit>,    // `clear`
     code: Signal<Local, Word<16>>,
     executes: Signal<Local, Bit>,
     sets: Signal<Local, Bit>,
     stores: Signal<Local, Bit>,
     jumps: Signal<Local, Bit>,
     acts: Signal<Local, Bit>,
-    does: Signal<Local, Bit>, // the instruction acts, and neither sets nor stores
+    does: Signal<Local, Bit>, // the instruction acts, and neither sets nor stores nor jumps
     waits: Signal<Local, Bit>,
     waited: Signal<Local, Bit>,
     steps: Signal<Local, Bit>,
     over: Signal<Local, Bit>,
     state: Signal<Local, Word<8>>,
     place: Signal<Local, Word<8>>,
+    page: Signal<Local, Word<9>>,
     port: Signal<Local, Word<8>>,
+    other: Signal<Local, Word<8>>,
     value: Signal<Local, Word<8>>,
     holds: Signal<Local, Bit>,
     empty: Signal<Local, Bit>,
@@ -129,26 +144,29 @@ pub struct LinkProcessor<const N: usize> {
     execute: Literal<2, 2>,
     next_stage: Literal<2, 1>,
     one: Literal<8, 1>,
-    from_data: Literal<3, 0>,
-    from_data_at_x: Literal<3, 1>,
-    from_ring: Literal<3, 2>,
-    from_x: Literal<3, 3>,
-    from_check: Literal<3, 4>,
+    next_place: Literal<9, 1>,
+    next_word: Literal<3, 1>,
+    last_word: Literal<3, 7>,
+    constants: Literal<9, 0x100>,
+    from_ring: Literal<3, 4>,
     none: Literal<8, 0>,
+    no_place: Literal<9, 0>,
     no_code: Literal<16, 0>,
     all: Literal<8, 0xff>,
-    at_5: Literal<4, 5>,
+    at_4: Literal<3, 4>,
+    top: Literal<4, 15>,
     bit_0: Literal<8, 1>,
     bit_1: Literal<8, 2>,
     bit_2: Literal<8, 4>,
-    bit_3: Literal<8, 8>,
     bit_4: Literal<8, 16>,
+    bit_6: Literal<8, 64>,
+    bit_7: Literal<8, 128>,
     if_zero: Literal<3, 1>,
     if_x7: Literal<3, 2>,
-    if_x6: Literal<3, 3>,
+    if_full: Literal<3, 3>,
     if_nothing: Literal<3, 4>,
     if_fault: Literal<3, 5>,
-    if_startable: Literal<3, 6>,
+    if_commit: Literal<3, 6>,
     if_special: Literal<3, 7>,
 }
 
@@ -179,40 +197,43 @@ impl<const N: usize> LinkProcessor<N> {
 impl<const N: usize> Logic for LinkProcessor<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, stage, pc, sum, index, written, read, space, control, clears);
+        dff_setup!(self, clock, stage, pc, sum, index, written, read, word, space, power, clears);
         clock!(self, clock, instructions, data, ring, crc);
 
         // The present instruction, decoded.
         self.instructions.read_address.next = self.pc.q.val();
-        self.instructions.write_address.next = self.none.val();
+        self.instructions.write_address.next = self.no_place.val();
         self.instructions.write_data.next = self.no_code.val();
         self.instructions.write_bits.next = self.no_code.val();
         self.code.next = self.instructions.read_data.val();
         self.executes.next = self.stage.q.val() == self.execute.val();
         self.sets.next = self.executes.val() & self.code.val().get_bit(15);
-        self.stores.next = self.executes.val() & self.code.val().get_bit(14);
+        self.stores.next =
+            self.executes.val() & self.code.val().get_bit(14) & !self.code.val().get_bit(15);
         self.jumps.next = self.code.val().get_bit(13);
-        self.acts.next = self.executes.val() & self.code.val().get_bit(12);
-        self.does.next =
-            self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
+        self.acts.next =
+            self.executes.val() & self.code.val().get_bit(12) & !self.code.val().get_bit(13);
+        self.does.next = self.executes.val()
+            & !self.code.val().get_bit(13)
+            & !self.code.val().get_bit(14)
+            & !self.code.val().get_bit(15);
         self.steps.next = self.does.val() & self.code.val().get_bit(2);
         self.waits.next = self.does.val() & self.code.val().get_bit(5);
         self.state.next = self.none.val();
         if self.fault.val() {
-            self.state.next =
-                (bit_cast::<8, CAUSE_BITS>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
-        }
-        if self.halted.val() {
-            self.state.next = self.state.val() | self.bit_1.val();
-        }
-        if self.idle.val() {
-            self.state.next = self.state.val() | self.bit_2.val();
+            self.state.next = self.state.val() | self.bit_0.val();
         }
         if self.ready.val() {
-            self.state.next = self.state.val() | self.bit_3.val();
+            self.state.next = self.state.val() | self.bit_1.val();
         }
         if self.armed.val() {
-            self.state.next = self.state.val() | self.bit_4.val();
+            self.state.next = self.state.val() | self.bit_2.val();
+        }
+        if self.idle.val() {
+            self.state.next = self.state.val() | self.bit_6.val();
+        }
+        if self.halted.val() {
+            self.state.next = self.state.val() | self.bit_7.val();
         }
         self.waited.next =
             self.refreshed.val() | (self.code.val().get_bit(3) & self.room_valid.val());
@@ -236,40 +257,41 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         // The condition of a jump, and the address of the next instruction.
         self.empty.next = self.read.q.val() == self.written.q.val();
         self.holds.next = true;
-        if self.code.val().get_bits::<3>(8) == self.if_zero.val() {
+        if self.code.val().get_bits::<3>(9) == self.if_zero.val() {
             self.holds.next = !self.sum.q.val().any();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_x7.val() {
+        if self.code.val().get_bits::<3>(9) == self.if_x7.val() {
             self.holds.next = self.index.q.val().get_bit(7);
         }
-        if self.code.val().get_bits::<3>(8) == self.if_x6.val() {
-            self.holds.next = self.index.q.val().get_bit(6);
+        if self.code.val().get_bits::<3>(9) == self.if_full.val() {
+            self.holds.next = self.index.q.val().get_bits::<4>(4) == self.top.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_nothing.val() {
+        if self.code.val().get_bits::<3>(9) == self.if_nothing.val() {
             self.holds.next = self.empty.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_fault.val() {
+        if self.code.val().get_bits::<3>(9) == self.if_fault.val() {
             self.holds.next = self.fault.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_startable.val() {
-            self.holds.next = self.ready.val() & !self.armed.val();
+        if self.code.val().get_bits::<3>(9) == self.if_commit.val() {
+            self.holds.next = self.word.q.val() == self.last_word.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_special.val() {
+        if self.code.val().get_bits::<3>(9) == self.if_special.val() {
             self.holds.next = self.sum.q.val().get_bit(7) & self.sum.q.val().get_bit(6);
         }
         if self.executes.val() & self.over.val() {
-            self.pc.d.next = self.pc.q.val() + self.one.val();
-            if self.jumps.val() & (self.holds.val() ^ self.code.val().get_bit(11)) {
-                self.pc.d.next = self.code.val().get_bits::<8>(0);
+            self.pc.d.next = self.pc.q.val() + self.next_place.val();
+            if self.jumps.val() & (self.holds.val() ^ self.code.val().get_bit(12)) {
+                self.pc.d.next = self.code.val().get_bits::<9>(0);
             }
         }
 
         // The value that an instruction writes to A.
         self.port.next = self.state.val();
         if self.code.val().get_bit(0) {
-            self.port.next = bit_cast::<8, 3>(self.space.q.val());
-            if self.fault.val() & self.cause.val().get_bit(3) {
-                self.port.next = bit_cast::<8, 3>(self.space.q.val()) | self.bit_4.val();
+            self.port.next = bit_cast::<8, 3>(self.space.q.val()) << self.at_4.val();
+            if self.fault.val() {
+                self.port.next = (bit_cast::<8, 3>(self.space.q.val()) << self.at_4.val())
+                    | bit_cast::<8, CAUSE_BITS>(self.cause.val());
             }
         }
         if self.code.val().get_bit(1) {
@@ -278,28 +300,40 @@ impl<const N: usize> Logic for LinkProcessor<N> {
                 self.port.next = bit_cast::<8, N>(self.culprits.val());
             }
             if self.code.val().get_bit(0) {
-                self.port.next = bit_cast::<8, N>(self.homing.val());
+                self.port.next = bit_cast::<8, N>(self.seeking.val());
             }
         }
-        self.value.next = self.port.val();
-        if (self.code.val().get_bits::<3>(8) == self.from_data.val())
-            | (self.code.val().get_bits::<3>(8) == self.from_data_at_x.val())
-        {
-            self.value.next = self.data.read_data.val();
+        if self.code.val().get_bit(2) {
+            self.port.next = bit_cast::<8, N>(self.hits.val());
+            if self.code.val().get_bit(0) {
+                self.port.next = bit_cast::<8, 4>(self.latch_edges.val());
+                if self.latch_armed.val() {
+                    self.port.next = bit_cast::<8, 4>(self.latch_edges.val()) | self.bit_4.val();
+                }
+            }
         }
-        if self.code.val().get_bits::<3>(8) == self.from_ring.val() {
-            self.value.next = self.ring.read_data.val();
+        // The source in bits 10 to 8: bit 10 is 0 for the data memory.
+        self.other.next = self.ring.read_data.val();
+        if self.code.val().get_bit(8) {
+            self.other.next = self.index.q.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.from_x.val() {
-            self.value.next = self.index.q.val();
+        if self.code.val().get_bit(9) {
+            self.other.next = self.crc.word_out.val().get_bits::<8>(0);
+            if self.code.val().get_bit(8) {
+                self.other.next = self.port.val();
+            }
         }
-        if self.code.val().get_bits::<3>(8) == self.from_check.val() {
-            self.value.next = self.crc.word_out.val().get_bits::<8>(0);
+        self.value.next = self.data.read_data.val();
+        if self.code.val().get_bit(10) {
+            self.value.next = self.other.val();
         }
         if self.sets.val() {
             self.sum.d.next = self.value.val();
             if self.code.val().get_bit(11) {
                 self.sum.d.next = self.sum.q.val() ^ self.value.val();
+            }
+            if self.code.val().get_bit(14) {
+                self.sum.d.next = self.sum.q.val() & self.value.val();
             }
         }
         if self.acts.val() & self.code.val().get_bit(0) {
@@ -314,8 +348,12 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         if self.code.val().get_bit(8) {
             self.place.next = self.index.q.val();
         }
-        self.data.read_address.next = self.place.val();
-        self.data.write_address.next = self.place.val();
+        self.page.next = bit_cast::<9, 8>(self.place.val());
+        if self.code.val().get_bit(9) {
+            self.page.next = bit_cast::<9, 8>(self.place.val()) | self.constants.val();
+        }
+        self.data.read_address.next = self.page.val();
+        self.data.write_address.next = self.page.val();
         self.data.write_data.next = self.sum.q.val();
         self.data.write_bits.next = self.none.val();
         if self.stores.val() {
@@ -332,7 +370,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         // The ring buffer of received bytes.
         self.ring.read_address.next = self.read.q.val();
         if self.sets.val() & (self.code.val().get_bits::<3>(8) == self.from_ring.val()) {
-            self.read.d.next = self.read.q.val() + self.one.val();
+            self.read.d.next = self.read.q.val() + self.next_place.val();
         }
         self.ring.write_address.next = self.written.q.val();
         self.ring.write_data.next = self.received_data.val();
@@ -341,7 +379,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             self.ring.write_bits.next = self.all.val();
         }
         if self.received.val() {
-            self.written.d.next = self.written.q.val() + self.one.val();
+            self.written.d.next = self.written.q.val() + self.next_place.val();
         }
 
         // The ports of the engine.
@@ -353,23 +391,48 @@ impl<const N: usize> Logic for LinkProcessor<N> {
             & !self.code.val().get_bit(7)
             & !self.code.val().get_bit(8)
         {
-            self.control.d.next = self.sum.q.val().get_bits::<2>(0);
+            self.power.d.next = self.sum.q.val().get_bit(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
-        self.home_valid.next =
-            self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
-        self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
-        self.broken.next =
-            self.does.val() & self.code.val().get_bit(8) & !self.code.val().get_bit(6);
-        self.snapshot.next =
-            self.does.val() & self.code.val().get_bit(8) & self.code.val().get_bit(6);
+        self.seek_valid.next = self.does.val()
+            & self.code.val().get_bit(6)
+            & self.code.val().get_bit(7)
+            & !self.code.val().get_bit(8);
+        self.seek_source_valid.next = self.does.val()
+            & self.code.val().get_bit(6)
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(8);
+        self.latch_arm.next = self.does.val()
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(9)
+            & !self.code.val().get_bit(6)
+            & !self.code.val().get_bit(8);
+        self.kick.next = self.does.val()
+            & self.code.val().get_bit(7)
+            & !self.code.val().get_bit(6)
+            & !self.code.val().get_bit(8);
+        self.broken.next = self.does.val()
+            & self.code.val().get_bit(8)
+            & !self.code.val().get_bit(6)
+            & !self.code.val().get_bit(7);
+        self.stop.next = self.does.val()
+            & self.code.val().get_bit(7)
+            & self.code.val().get_bit(8)
+            & !self.code.val().get_bit(6);
+        self.snapshot.next = self.does.val()
+            & self.code.val().get_bit(8)
+            & self.code.val().get_bit(6)
+            & !self.code.val().get_bit(7);
         self.clear.next = self.clears.q.val();
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
         self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
+        if self.put_valid.val() & self.over.val() {
+            self.word.d.next = self.word.q.val() + self.next_word.val();
+        }
+        self.put_word.next = self.word.q.val();
         self.put_data.next = self.crc.word_out.val();
-        self.enable.next = self.control.q.val().get_bit(0);
-        self.stop.next = self.control.q.val().get_bit(1);
+        self.enable.next = self.power.q.val();
         self.x.next = self.index.q.val();
         self.a.next = self.sum.q.val();
     }

@@ -6,7 +6,9 @@ use crate::line::{LineOutputs, UartSim};
 use crate::primitives::word::Word;
 use crate::sim::{rising_edge, settle};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineError, EngineInputs, Put, STATUS_BITS, StateItem, StateWord};
+use carrystep_core::engine::{
+    EngineError, EngineInputs, Put, STATUS_BITS, SeekSource, StateItem, StateWord,
+};
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl::prelude::{Block, check_all};
 
@@ -73,7 +75,10 @@ impl<const N: usize> AnyLink for Link<N> {
         self.armed.next = engine.armed;
         self.cause.next = Word::from(cause);
         self.culprits.next = Word::from(u64::from(culprits));
-        self.homing.next = Word::from(u64::from(engine.homing));
+        self.seeking.next = Word::from(u64::from(engine.seeking));
+        self.hits.next = Word::from(u64::from(engine.hits));
+        self.latch_armed.next = engine.latch_armed;
+        self.latch_edges.next = Word::from(u64::from(engine.latch_edges));
         settle(self);
         let [axis, word] =
             [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
@@ -87,7 +92,12 @@ impl<const N: usize> AnyLink for Link<N> {
                 clear: self.clear.val(),
                 stop: self.stop.val(),
                 broken: self.broken.val(),
-                home: self.home_valid.val().then(|| self.home_mask.val().value() as u8),
+                seek_source: self
+                    .seek_source_valid
+                    .val()
+                    .then(|| SeekSource::of_byte(self.seek_source.val().value() as u8)),
+                seek: self.seek_valid.val().then(|| self.seek_mask.val().value() as u8),
+                latch_arm: self.latch_arm.val(),
                 snapshot: self.snapshot.val(),
                 kick: self.kick.val(),
                 enable: self.enable.val(),

@@ -17,6 +17,7 @@
 #define BAUD (5u * 1000u * 1000u) /* at most a fifth of the gateware's clock */
 #define CHIP_SELECT 17u
 #define AXES 6u
+#define SESSION 0x2040u /* any number from 1 on that no other host of this gateware uses */
 
 /* Build id of the gateware that the move was planned for: its registers BUILD_HIGH and BUILD_LOW.
  */
@@ -86,8 +87,20 @@ static bool ask(uint8_t address, carrystep_answer *answer)
     return false;
 }
 
-/* Reads the facts of the gateware. False if this program was not made for it; nothing was written.
- */
+/* Opens a session. False if the gateware is busy for another host, or does not answer. */
+static bool open_session(void)
+{
+    carrystep_answer answer;
+    uint32_t begin = now();
+    carrystep_open(&session, SESSION, AXES);
+    while (carrystep_opening(&session) && now() - begin < 500u) {
+        turn(&answer);
+    }
+    return carrystep_owns(&session);
+}
+
+/* Reads the facts of the gateware, and opens a session. False if this program was not made for it;
+ * then nothing was written. */
 static bool connect(void)
 {
     carrystep_answer identity, protocol, low, high;
@@ -100,8 +113,7 @@ static bool connect(void)
         CARRYSTEP_FINE) {
         return false;
     }
-    carrystep_adopt(&session, high.next, AXES);
-    return high.idle; /* otherwise a host before this one has left something in the queues */
+    return open_session();
 }
 
 /* A move of axis 0 at a tick of 2 us: half a second of acceleration to 5000 steps/s and half a
@@ -149,8 +161,8 @@ static bool run(void)
     for (;;) {
         bool over = fed == CARRYSTEP_FED && !carrystep_writing(&session);
         bool heard = turn(&answer);
-        if (heard && answer.fault) {
-            return false; /* answer.cause says why; all axes go down by themselves */
+        if (!carrystep_owns(&session) || (heard && answer.fault)) {
+            return false; /* another host has the gateware; or answer.cause says why all axes stop */
         }
         if (heard && over && answer.idle) {
             return true;

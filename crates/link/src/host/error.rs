@@ -3,8 +3,8 @@
 use crate::command::ProgramError;
 use crate::facts::GatewareMismatch;
 use crate::registers::CAUSES;
+use crate::session::SessionLost;
 use crate::travel::TooLong;
-use crate::window::{Foreign, OutOfStep};
 use core::fmt;
 use thiserror::Error;
 
@@ -44,21 +44,27 @@ pub enum HostError<E> {
     /// The gateware is not the one that this driver was made for.
     #[error(transparent)]
     Refused(#[from] GatewareMismatch),
-    /// The gateware's sequence number is not one that this host can have caused.
+    /// The gateware does not keep this host's session any more.
     #[error(transparent)]
-    OutOfStep(#[from] OutOfStep),
-    /// The answers belong to requests of another host on this line.
-    #[error(transparent)]
-    Foreign(#[from] Foreign),
-    /// The drivers have lost power although this host did not remove it.
+    SessionLost(#[from] SessionLost),
+    /// The gateware was restarted: it has lost this host's session, and the drivers their power.
     #[error(
-        "the drivers have lost their power without a stop: the gateware was restarted (position and queue are lost: connect again, and home), or another host has taken the power away"
+        "the gateware was restarted, so the drivers have no power and position and queues are lost: connect again, and home"
     )]
     Restarted,
-    /// A program was given while the machine is not at rest.
+    /// A write before a session was opened.
+    #[error("this host has not opened a session with the gateware: open one before you write")]
+    NoSession,
+    /// The gateware opens no session, because it is busy.
     #[error(
-        "the machine moves, or another host has left segments in its queues: stop and clear it first"
+        "axes move or segments wait, of another host, for longer than {ms} ms: wait for its end, or stop them (`carrystep stop`)"
     )]
+    Occupied {
+        /// Time waited, ms.
+        ms: u32,
+    },
+    /// A program was given while the machine is not at rest.
+    #[error("the machine moves, or segments wait in its queues: stop and clear it first")]
     NotIdle,
     /// The program cannot be sent.
     #[error(transparent)]

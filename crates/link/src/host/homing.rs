@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! switch   closed ########|  open
-//!                    <----|-----o            1  move off: away by move_off in any case
+//!                    o----|----->            1  move off: away by move_off, if the switch is closed
 //!                    <====|=======================o   2  seek: fast, up to max_travel
 //!                    o----|----------->      3  back off: to move_off from the accepted limit
 //!                       <-|------------o     4  approach: slow; its limit sets the position
@@ -16,13 +16,16 @@ use crate::command::{ProgramError, Segment};
 use crate::feeder::SegmentSource;
 use crate::frame::of_axis;
 use crate::line::Line;
-use crate::registers::{HOME, LIMIT_POSITION};
+use crate::registers::{INPUTS, SEEK, SEEK_POSITION};
 use crate::travel::Travel;
 
 mod request;
 
 use request::{AXES, each};
 pub use request::{AxisHoming, Homed, Homing, HomingStage, Wiring};
+
+/// Index of the limit in [`CAUSES`](crate::registers::CAUSES).
+const LIMIT: u8 = 5;
 
 /// Result of one move of homing.
 struct Leg {
@@ -71,9 +74,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// after each exchange with the line, with the mask of the axes that move, the stage and the
     /// progress. Unless the result is [`Homed::At`], no axis is homed.
     ///
-    /// Every axis first moves away from its switch, because a switch that is already closed could
-    /// not be detected. Whether the switch is still closed after this move can be detected only
-    /// with the wiring `Pair`, where the limit is then met at once ([`HomingFault::StillClosed`]).
+    /// The debounced states of the switches are read first. An axis whose switch is closed moves away
+    /// from it, and the switch must be open afterwards ([`HomingFault::StillClosed`]). With the
+    /// wiring `One` a closed switch may be that of any axis, so all of them move away, in any case.
     ///
     /// # Errors
     /// [`HostError::Homing`] gives the axes and the reason. Other errors are those of
@@ -84,11 +87,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         mut watch: impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Homed, HostError<L::Error>> {
         homing.check().map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
-        let beyond =
-            (homing.mask() | homing.others).checked_shr(self.session.axes().into()).unwrap_or(0);
+        let beyond = (homing.mask() | homing.others).checked_shr(self.axes().into()).unwrap_or(0);
         if beyond != 0 {
-            let axis = self.session.axes() + beyond.trailing_zeros() as u8;
-            return Err(ProgramError::Axis { axis, axes: self.session.axes() }.into());
+            let axis = self.axes() + beyond.trailing_zeros() as u8;
+            return Err(ProgramError::Axis { axis, axes: self.axes() }.into());
         }
         let mut edges = [0; AXES];
         match self.find_all(homing, &mut edges, &mut watch)? {
@@ -105,19 +107,27 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
-        // With one input for all switches, a closed switch of any axis would hide the others.
-        if one
-            && self
-                .move_off(homing, homing.mask() | homing.others & homing.known(), watch)?
-                .is_none()
-        {
-            return Ok(None);
-        }
-        for group in
-            homing.groups.iter().map(|group| group & homing.known()).filter(|&group| group != 0)
-        {
-            if !one && self.move_off(homing, group, watch)?.is_none() {
+        // With one input for all switches, a closed switch of any axis would hide the others, and a
+        // switch that bounces may look open: all axes move away from theirs in any case.
+        if one {
+            let axes = homing.mask() | homing.others & homing.known();
+            if self.move_off(homing, axes, watch)?.is_none() {
                 return Ok(None);
+            }
+        }
+        // A seek has one source, and with the wiring `Pair` the two ends have a row each: the axes
+        // of a group whose switches are at low ends home before the others.
+        let ends = |group: u8| match homing.wiring {
+            Wiring::Pair => [group & !homing.toward_max(), group & homing.toward_max()],
+            Wiring::Each | Wiring::One => [group, 0],
+        };
+        let groups = homing.groups.iter().flat_map(|group| ends(group & homing.known()));
+        for group in groups.filter(|&group| group != 0) {
+            if !one {
+                let closed = self.closed(homing, group)?;
+                if closed != 0 && self.move_off(homing, closed, watch)?.is_none() {
+                    return Ok(None);
+                }
             }
             let alone = each(group).map(|axis| 1 << axis);
             let together = [group].into_iter().filter(|_| !one);
@@ -157,7 +167,22 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if leg.met != 0 && homing.wiring != Wiring::Pair {
             return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
         }
-        Ok(Some(()))
+        self.opened(homing, axes).map(Some)
+    }
+
+    /// The axes whose home switches are closed, of these, by their debounced states.
+    fn closed(&mut self, homing: &Homing<'_>, axes: u8) -> Result<u8, HostError<L::Error>> {
+        let [low, high, ..] = self.register(INPUTS)?.to_le_bytes();
+        let at_high_end = if homing.wiring == Wiring::Pair { homing.toward_max() } else { 0 };
+        Ok(axes & (low & !at_high_end | high & at_high_end))
+    }
+
+    /// Checks that the home switches of these axes are open.
+    fn opened(&mut self, homing: &Homing<'_>, axes: u8) -> Result<(), HostError<L::Error>> {
+        match self.closed(homing, axes)? {
+            0 => Ok(()),
+            axes => Err(HostError::Homing { axes, why: HomingFault::StillClosed }),
+        }
     }
 
     /// The axes search, back off and approach. The positions at which the approach met the limits
@@ -173,7 +198,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let Some(found) = self.leg(homing, axes, HomingStage::Seek, seek, watch)? else {
             return Ok(None);
         };
-        found.all(homing, axes, HomingFault::NotFound, |axis| axis.seek)?;
+        found.all(axes, HomingFault::NotFound)?;
         let ran_on = each(axes).fold([0; AXES], |mut ran_on, axis| {
             let rests = self.status.positions.get(usize::from(axis)).copied().unwrap_or(0);
             ran_on
@@ -192,6 +217,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if leg.met != 0 {
             return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
         }
+        self.opened(homing, axes)?;
         // The approach need not go further than the axis has backed off, plus the distance that it
         // moves while the level is accepted.
         let near = |number, axis: &AxisHoming| {
@@ -203,7 +229,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let Some(found) = self.leg(homing, axes, HomingStage::Approach, near, watch)? else {
             return Ok(None);
         };
-        found.all(homing, axes, HomingFault::NotAgain, |axis| axis.slow)?;
+        found.all(axes, HomingFault::NotAgain)?;
+        found.moved(axes)?;
         for axis in each(axes) {
             edges
                 .get_mut(usize::from(axis))
@@ -242,8 +269,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 
     /// One move of several axes, which all wait for their limits; `None` if it was stopped. A limit
-    /// stops only the axis that meets it. After a move away from the switch, the axes rest until
-    /// the level of the switch is accepted.
+    /// stops only the axis that meets it. With one input for both ends of an axis, no axis waits
+    /// while it moves away from its switch, which may still be closed. After a move away from the
+    /// switch, the axes rest until the level of the switch is accepted.
     fn leg(
         &mut self,
         homing: &Homing<'_>,
@@ -252,70 +280,86 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
         watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<Leg>, HostError<L::Error>> {
-        let mut moves = Moves { start: Some(axes), ..Moves::default() };
-        for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {
-            let (steps, toward, speed) = wish(number, axis);
-            let rest = if toward { 0 } else { homing.settle() };
-            let travel = axis.travel(steps, toward, speed, rest).map_err(|error| {
-                HostError::Homing { axes: 1 << number, why: HomingFault::TooLong(error) }
-            })?;
-            moves
-                .travels
-                .get_mut(usize::from(number))
-                .into_iter()
-                .for_each(|place| *place = travel);
-        }
         let begun = self.read_status()?.positions;
-        self.write(HOME, axes.into())?;
-        let ended = self.stream(moves, |progress| watch(axes, stage, progress));
-        let waits = self.status.answer.homing & axes;
-        if matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
-            // From here on no axis waits for a limit.
-            self.write(HOME, 0)?;
+        let mut leg = Leg { met: 0, latched: [0; AXES], begun };
+        // An axis whose limit is met before the start hinders the others from starting.
+        let mut left = axes;
+        while left != 0 {
+            let moves = moves(homing, left, &wish)
+                .map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
+            let source = homing.source(left, stage);
+            if let Some(source) = source {
+                self.write(SEEK, u32::from(left) | u32::from(source) << 8)?;
+            }
+            let ended = self.stream(moves, |progress| watch(left, stage, progress));
+            let waits = if source.is_some() { self.status.answer.seeking } else { left };
+            if source.is_some() && matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
+                // From here on no axis waits for a limit, and those that have met it may move
+                // again.
+                self.write(SEEK, 0)?;
+            }
+            if let Err(HostError::Fault { cause: LIMIT, culprits }) = ended
+                && source.is_none()
+            {
+                self.clear()?;
+                // One input for all does not tell whose switch it is.
+                let axes = if homing.wiring == Wiring::One { left } else { culprits };
+                return Err(HostError::Homing { axes, why: HomingFault::Closed });
+            }
+            let ended = ended?;
+            if ended == Ended::Stopped {
+                return Ok(None);
+            }
+            let met = left & !waits;
+            for axis in each(met) {
+                let position = self.register(of_axis(SEEK_POSITION, axis))?.cast_signed();
+                leg.latched.get_mut(usize::from(axis)).into_iter().for_each(|at| *at = position);
+            }
+            if met != 0 {
+                // An axis that has met its limit rests at any fraction of a step. A clear sets the
+                // fraction to the middle of the step.
+                self.stop()?;
+                self.clear()?;
+            }
+            leg.met |= met;
+            left = if ended == Ended::SeekEnded && met != 0 { left & !met } else { 0 };
         }
-        if ended? == Ended::Stopped {
-            return Ok(None);
-        }
-        let met = axes & !waits;
-        let mut latched = [0; AXES];
-        for (axis, place) in (0..).zip(&mut latched).filter(|(axis, _)| met >> axis & 1 == 1) {
-            *place = self.register(of_axis(LIMIT_POSITION, axis))?.cast_signed();
-        }
-        if met != 0 {
-            // An axis that has met its limit rests at any fraction of a step. A clear sets the
-            // fraction to the middle of the step.
-            self.stop()?;
-            self.clear()?;
-        }
-        Ok(Some(Leg { met, latched, begun }))
+        Ok(Some(leg))
     }
 }
 
+/// The moves of these axes: steps, whether toward the switch, and speed of each as `wish` gives
+/// them. A failure names its axis.
+fn moves(
+    homing: &Homing<'_>,
+    axes: u8,
+    wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
+) -> Result<Moves, (u8, HomingFault)> {
+    let mut moves = Moves { start: Some(axes), ..Moves::default() };
+    for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {
+        let (steps, toward, speed) = wish(number, axis);
+        let rest = if toward { 0 } else { homing.settle() };
+        let travel = axis
+            .travel(steps, toward, speed, rest)
+            .map_err(|error| (number, HomingFault::TooLong(error)))?;
+        moves.travels.get_mut(usize::from(number)).into_iter().for_each(|place| *place = travel);
+    }
+    Ok(moves)
+}
+
 impl Leg {
-    /// Checks that all of these axes met their limits, and that no limit was already closed at the
-    /// start of the move.
-    fn all<E>(
-        &self,
-        homing: &Homing<'_>,
-        axes: u8,
-        missed: HomingFault,
-        speed: impl Fn(&AxisHoming) -> u64,
-    ) -> Result<(), HostError<E>> {
+    /// Checks that all of these axes have met their limits.
+    fn all<E>(&self, axes: u8, missed: HomingFault) -> Result<(), HostError<E>> {
         match axes & !self.met {
-            0 => {}
-            axes => return Err(HostError::Homing { axes, why: missed }),
+            0 => Ok(()),
+            axes => Err(HostError::Homing { axes, why: missed }),
         }
-        if homing.wiring != Wiring::Pair {
-            return Ok(());
-        }
-        // A limit that was already closed is found by the first sample after the start. One that
-        // closes during the move is accepted only after `debounce` samples.
-        let at_once = |axis: &u8| {
-            let Some(homes) = homing.axis(*axis) else { return false };
-            let samples = u128::from(homing.round) * 2;
-            let reach = 1 + ((u128::from(speed(homes)) * samples) >> 64) as u32;
-            apart(at(&self.begun, *axis), at(&self.latched, *axis)) <= reach
-        };
+    }
+
+    /// Checks that each of these axes has moved before it has met its limit. One that was met at
+    /// once has closed between the last look at the switches and the start.
+    fn moved<E>(&self, axes: u8) -> Result<(), HostError<E>> {
+        let at_once = |axis: &u8| apart(at(&self.begun, *axis), at(&self.latched, *axis)) == 0;
         match each(axes).filter(at_once).fold(0, |mask, axis| mask | 1 << axis) {
             0 => Ok(()),
             axes => Err(HostError::Homing { axes, why: HomingFault::StillClosed }),

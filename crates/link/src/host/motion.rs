@@ -1,11 +1,17 @@
 //! Motion: streams a program until the machine has executed it, and jogs one axis.
 
-use super::{Clock, Host, HostError, Status};
+use super::cancelled::CancelledStart;
+use super::snapshot::SnapshotReader;
+use super::{Clock, Host, HostError, Snapshot, Status};
 use crate::command::{ProgramError, Segment};
 use crate::feeder::{Feeder, SegmentSource};
-use crate::frame::{Answer, of_axis};
+use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
-use crate::registers::POSITION;
+use crate::registers::{POSITION, SNAPSHOT, TICKS};
+use crate::session::Session;
+
+/// TICKS is read once in so many reads of the state, for the comparison of the clocks.
+const TICKS_PERIOD: u32 = 16;
 
 /// Progress of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +20,8 @@ pub struct Progress<'a> {
     pub status: &'a Status,
     /// Whether the whole program is in the gateware.
     pub handed_over: bool,
+    /// The last snapshot that was taken on [`Wish::Snapshot`].
+    pub snapshot: Option<&'a Snapshot>,
 }
 
 /// Decision of the caller who watches a program.
@@ -21,6 +29,10 @@ pub struct Progress<'a> {
 pub enum Wish {
     /// Continue.
     GoOn,
+    /// Continue, and take a snapshot; it appears in [`Progress::snapshot`] some exchanges later.
+    /// Ignored while one is being taken, and by calls other than [`Host::stream`] and
+    /// [`Host::jog`].
+    Snapshot,
     /// Stop all axes by their ramps now.
     Stop,
 }
@@ -32,6 +44,33 @@ pub enum Ended {
     Done,
     /// The caller stopped it. Segments still in the queues were discarded.
     Stopped,
+    /// An axis of the program has hit the source of its seek while segments or a start for it were
+    /// still to be sent. None of them was executed after that; other axes may still move, and their
+    /// queues may hold segments: end the seek, then [`Host::stop`] and [`Host::clear`].
+    SeekEnded,
+}
+
+/// A snapshot of a program that runs.
+#[allow(clippy::large_enum_variant, reason = "there is one, on the stack, and no_std has no boxes")]
+enum Capture {
+    /// None is being taken.
+    None,
+    /// SNAPSHOT was written.
+    Written,
+    /// Its words are being read.
+    Read(SnapshotReader),
+}
+
+impl Capture {
+    /// Sends what comes next.
+    fn advance<const N: usize>(&mut self, session: &mut Session<N>, axes: u8) {
+        if matches!(self, Self::Written) && !session.capturing() {
+            *self = Self::Read(SnapshotReader::new(axes));
+        }
+        if let Self::Read(reader) = self {
+            reader.ask(session);
+        }
+    }
 }
 
 /// A program of one move of one axis.
@@ -56,6 +95,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// exchange with the line.
     ///
     /// # Errors
+    /// [`HostError::NoSession`] if [`Self::open`] was not called.
     /// [`HostError::Fault`] if the machine stops by itself. All axes rest by then, and the
     /// positions are exact. [`ProgramError::NoPower`] if [`Self::enable`] was not called; nothing
     /// was sent. Other errors concern the line.
@@ -64,6 +104,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         source: impl SegmentSource,
         mut watch: impl FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
+        if self.session.number().is_none() {
+            return Err(HostError::NoSession);
+        }
         let Answer { idle, fault, ready, .. } = self.read_status()?.answer;
         if !idle && !fault {
             return Err(HostError::NotIdle);
@@ -71,9 +114,14 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if !ready && !fault {
             return Err(ProgramError::NoPower.into());
         }
-        let mut feeder = Feeder::new(source);
+        let mut feeder = Feeder::wide(source);
         let mut last_status = self.clock.milliseconds();
+        let mut looks = 0_u32;
+        let (mut capture, mut snapshot) = (Capture::None, None);
+        let axes = self.axes();
+        let mut cancelled = CancelledStart::default();
         loop {
+            capture.advance(&mut self.session, axes);
             let handed_over = match self.session.feed(&mut feeder) {
                 Ok(done) => done && !self.session.writing(),
                 Err(error) => {
@@ -84,7 +132,18 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
             };
             let mut idle = false;
-            self.pump(|answer| idle = answer.idle)?;
+            self.pump(|answer| {
+                idle = answer.idle;
+                cancelled.hear(answer, axes);
+                if let Capture::Read(reader) = &mut capture {
+                    reader.hear(answer);
+                }
+            })?;
+            if let Capture::Read(reader) = &capture
+                && let Some(whole) = reader.whole(&mut self.ticks)
+            {
+                (capture, snapshot) = (Capture::None, Some(whole));
+            }
             let answer = self.status.answer;
             if answer.fault {
                 self.wait("the stop", |answer| answer.halted)?;
@@ -94,25 +153,47 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 self.read_status()?;
                 return Err(HostError::Fault { cause: answer.cause, culprits: answer.culprits });
             }
+            if self.session.seek_ended() || cancelled.is_certain() {
+                self.read_status()?;
+                return Ok(Ended::SeekEnded);
+            }
             if handed_over && idle {
                 self.read_status()?;
                 return Ok(Ended::Done);
             }
-            if watch(&Progress { status: &self.status, handed_over }) == Wish::Stop {
-                self.stop_while(|status| {
-                    // The caller watches the ramps too. Its decision has no effect here, because
-                    // the axes already stop.
-                    let _ = watch(&Progress { status, handed_over });
-                })?;
-                return Ok(Ended::Stopped);
+            let snapshot = snapshot.as_ref();
+            match watch(&Progress { status: &self.status, handed_over, snapshot }) {
+                Wish::GoOn => {}
+                Wish::Snapshot if matches!(capture, Capture::None) => {
+                    let write = Body::Write { address: SNAPSHOT, word: 0 };
+                    if self.session.write(write).is_ok() {
+                        capture = Capture::Written;
+                    }
+                }
+                Wish::Snapshot => {}
+                Wish::Stop => {
+                    self.stop_while(|status| {
+                        // The caller watches the ramps too. Its decision has no effect here,
+                        // because the axes already stop.
+                        let _ = watch(&Progress { status, handed_over, snapshot });
+                    })?;
+                    return Ok(Ended::Stopped);
+                }
             }
             let now = self.clock.milliseconds();
             if now.wrapping_sub(last_status) >= self.patience.status_period {
                 last_status = now;
                 self.listen();
-                for axis in 0..self.session.axes() {
-                    // An error only means that enough reads are in progress.
+                // An error only means that enough reads are in progress.
+                if looks.is_multiple_of(TICKS_PERIOD) {
+                    let _ = self.session.read(TICKS);
+                }
+                looks = looks.wrapping_add(1);
+                for axis in 0..axes {
                     let _ = self.session.read(of_axis(POSITION, axis));
+                }
+                if handed_over && self.session.seeking() {
+                    cancelled.ask(&mut self.session, axes);
                 }
             }
         }
@@ -129,8 +210,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         segments: &[Segment],
         watch: impl FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
-        if axis >= self.session.axes() {
-            return Err(ProgramError::Axis { axis, axes: self.session.axes() }.into());
+        if axis >= self.axes() {
+            return Err(ProgramError::Axis { axis, axes: self.axes() }.into());
         }
         if !segments.last().is_some_and(|segment| segment.last) {
             return Err(ProgramError::NoEnd { axis }.into());

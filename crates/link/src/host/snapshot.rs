@@ -1,9 +1,23 @@
 //! Snapshots: the state of all axes in one and the same tick, also while they move.
 
 use super::{Clock, Host, HostError};
-use crate::frame::of_axis;
+use crate::frame::{Answer, of_axis};
 use crate::line::Line;
 use crate::registers as map;
+use crate::session::Session;
+use crate::ticks::TickCount;
+
+/// The words of each axis.
+const WORDS: [u8; 5] = [
+    map::SNAPSHOT_P_LOW,
+    map::SNAPSHOT_P_HIGH,
+    map::SNAPSHOT_POSITION,
+    map::SNAPSHOT_LEFT,
+    map::SNAPSHOT_STATUS,
+];
+
+/// Number of words that are read at a time; other reads have room beside them.
+const AT_A_TIME: usize = 4;
 
 /// The state of an axis in the tick of a snapshot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -51,62 +65,98 @@ impl AxisState {
 /// The state of all axes in one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Snapshot {
-    /// Number of the tick, counted from configuration, modulo 2^32.
-    pub ticks: u32,
+    /// Number of the tick, without the wraps of TICKS ([`TickCount`]).
+    pub tick: i64,
     /// Each axis; those that the build does not have are zero.
     pub axes: [AxisState; map::MOST_AXES as usize],
 }
 
-impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Takes a snapshot of all axes and reads it. Motion is not affected.
-    ///
-    /// # Errors
-    /// [`HostError::TooLong`] if another host takes snapshots all the time, so that this one is
-    /// never read whole. Other errors concern the line.
-    pub fn snapshot(&mut self) -> Result<Snapshot, HostError<L::Error>> {
-        let begin = self.clock.milliseconds();
-        loop {
-            self.write(map::SNAPSHOT, 0)?;
-            if let Some(snapshot) = self.read_snapshot()? {
-                return Ok(snapshot);
-            }
-            if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
-                let cause = self.status.answer.cause_name();
-                let ms = self.patience.change;
-                return Err(HostError::TooLong { what: "the snapshot", cause, ms });
-            }
+/// A snapshot that the gateware has taken and that is being read.
+#[derive(Debug, Clone)]
+pub(super) struct SnapshotReader {
+    snapshot: Snapshot,
+    ticks: u32,
+    /// The words that are missing, one bit each: TICKS, then those of each axis.
+    missing: u64,
+}
+
+impl SnapshotReader {
+    pub(super) fn new(axes: u8) -> Self {
+        let count = 1 + WORDS.len() * usize::from(axes);
+        Self { snapshot: Snapshot::default(), ticks: 0, missing: (1 << count) - 1 }
+    }
+
+    /// Address, axis and kind of a word; the kind is an index of [`WORDS`].
+    fn word(at: usize) -> (u8, usize, Option<usize>) {
+        let Some(at) = at.checked_sub(1) else { return (map::SNAPSHOT_TICKS, 0, None) };
+        let (axis, kind) = (at / WORDS.len(), at % WORDS.len());
+        (of_axis(WORDS.get(kind).copied().unwrap_or(0), axis as u8), axis, Some(kind))
+    }
+
+    fn missing(&self) -> impl Iterator<Item = usize> + use<> {
+        let missing = self.missing;
+        (0..u64::BITS as usize).filter(move |at| missing >> at & 1 == 1)
+    }
+
+    /// Requests some of the missing words.
+    pub(super) fn ask<const N: usize>(&self, session: &mut Session<N>) {
+        for at in self.missing().take(AT_A_TIME) {
+            // An error only means that enough reads are in progress.
+            let _ = session.read(Self::word(at).0);
         }
     }
 
-    /// Reads the words of a snapshot; `None` if they are not all of one tick.
-    fn read_snapshot(&mut self) -> Result<Option<Snapshot>, HostError<L::Error>> {
-        let mut snapshot = Snapshot::default();
-        for axis in 0..self.session.axes() {
-            let of = |register| of_axis(register, axis);
-            let [p_low, p_high, position, left, status, ticks] = self.registers([
-                of(map::SNAPSHOT_P_LOW),
-                of(map::SNAPSHOT_P_HIGH),
-                of(map::SNAPSHOT_POSITION),
-                of(map::SNAPSHOT_LEFT),
-                of(map::SNAPSHOT_STATUS),
-                of(map::SNAPSHOT_TICKS),
-            ])?;
-            if axis > 0 && ticks != snapshot.ticks {
-                return Ok(None);
-            }
-            snapshot.ticks = ticks;
-            let mut state = AxisState {
-                p: u64::from(p_high) << 32 | u64::from(p_low),
-                position: position.cast_signed(),
-                left,
-                status,
-            };
-            if !state.runs() {
-                state.left = 0;
-            }
-            snapshot.axes.get_mut(usize::from(axis)).into_iter().for_each(|place| *place = state);
+    /// Takes an answer.
+    pub(super) fn hear(&mut self, answer: &Answer) {
+        let Some(at) = self.missing().find(|&at| answer.is_read_of(Self::word(at).0)) else {
+            return;
+        };
+        self.missing &= !(1 << at);
+        let (_, axis, kind) = Self::word(at);
+        let Some(kind) = kind else {
+            self.ticks = answer.data;
+            return;
+        };
+        let Some(state) = self.snapshot.axes.get_mut(axis) else { return };
+        match kind {
+            0 => state.p |= u64::from(answer.data),
+            1 => state.p |= u64::from(answer.data) << 32,
+            2 => state.position = answer.data.cast_signed(),
+            3 => state.left = answer.data,
+            _ => state.status = answer.data,
         }
-        Ok(Some(snapshot))
+    }
+
+    /// The snapshot, once all its words were read.
+    pub(super) fn whole(&self, ticks: &mut TickCount) -> Option<Snapshot> {
+        if self.missing != 0 {
+            return None;
+        }
+        let mut snapshot = Snapshot { tick: ticks.see(self.ticks), ..self.snapshot };
+        for state in snapshot.axes.iter_mut().filter(|state| !state.runs()) {
+            state.left = 0;
+        }
+        Some(snapshot)
+    }
+}
+
+impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
+    /// Takes a snapshot of all axes and reads it. Motion is not affected. While a program is
+    /// streamed, [`Wish::Snapshot`](super::Wish::Snapshot) takes one.
+    ///
+    /// # Errors
+    /// [`HostError::NoSession`] if [`Self::open`] was not called. Other errors concern the line.
+    pub fn snapshot(&mut self) -> Result<Snapshot, HostError<L::Error>> {
+        self.write(map::SNAPSHOT, 0)?;
+        let mut reader = SnapshotReader::new(self.axes());
+        loop {
+            if let Some(snapshot) = reader.whole(&mut self.ticks) {
+                return Ok(snapshot);
+            }
+            self.listen();
+            reader.ask(&mut self.session);
+            self.pump(|answer| reader.hear(answer))?;
+        }
     }
 }
 

@@ -34,7 +34,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             "the drivers' power",
             |answer| answer.ready,
             |status| {
-                asked = watch(&Progress { status, handed_over: false });
+                asked = watch(&Progress { status, handed_over: false, snapshot: None });
                 asked
             },
         )?;
@@ -56,7 +56,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 
     /// Stops all axes by their ramps, and waits until they rest. Segments in the queues are
-    /// discarded. [`Self::clear`] ends the stop.
+    /// discarded. [`Self::clear`] ends the stop. No session is needed: this stops the axes of any
+    /// host.
     ///
     /// # Errors
     /// [`HostError`] if the connection fails or the axes do not rest in time.
@@ -72,8 +73,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         mut watch: impl FnMut(&Status),
     ) -> Result<Status, HostError<L::Error>> {
-        self.session.withdraw();
-        self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
+        self.listen();
+        self.session.stop();
+        while self.session.stopping() || self.session.writing() {
+            self.pump(|_| ())?;
+        }
         self.wait_while(
             "the stop",
             |answer| answer.fault && answer.halted,
@@ -85,7 +89,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.read_status()
     }
 
-    /// Ends a stop of any cause; the queues are empty then. Does nothing if no stop is in force.
+    /// Ends a stop of any cause as soon as it is complete; the queues are empty then. Does nothing if
+    /// no stop is in force.
     ///
     /// # Errors
     /// [`HostError::StillPressed`] if the e-stop is still asserted some 20 ms after the first try.
@@ -94,7 +99,6 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let begin = self.clock.milliseconds();
         self.read_status()?;
         if self.status.answer.fault {
-            self.write(map::CONTROL, self.power())?;
             self.wait("the stop", |answer| answer.halted)?;
         }
         let first = self.clock.milliseconds();
@@ -118,24 +122,6 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
         }
         Ok(())
-    }
-
-    /// Stops and clears a machine that another host left in motion or with segments in its queues.
-    /// Does nothing to a machine at rest.
-    ///
-    /// # Errors
-    /// As [`Self::stop`] and [`Self::clear`].
-    pub fn settle(&mut self) -> Result<(), HostError<L::Error>> {
-        let Answer { idle, fault, .. } = self.read_status()?.answer;
-        if !idle && !fault {
-            self.stop()?;
-        }
-        self.clear()
-    }
-
-    /// The bit of CONTROL that keeps the drivers' power as it is.
-    const fn power(&self) -> u32 {
-        if self.powered || self.status.answer.ready { map::CONTROL_ENABLE } else { 0 }
     }
 
     /// Reads the state until it is as wanted.

@@ -2,10 +2,25 @@
 
 use crate::session::Timing;
 
+/// A time of the host's clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Moment {
+    /// Microseconds since an arbitrary moment.
+    pub us: u64,
+    /// Greatest time by which `us` lies before the true time, us.
+    pub resolution_us: u32,
+}
+
 /// A clock.
 pub trait Clock {
     /// Milliseconds since an arbitrary moment; the value wraps.
     fn milliseconds(&mut self) -> u32;
+
+    /// The time for comparisons with the gateware's clock. Without an implementation of its own it
+    /// is the time in milliseconds, and a comparison ends when that wraps.
+    fn moment(&mut self) -> Moment {
+        Moment { us: u64::from(self.milliseconds()) * 1000, resolution_us: 1000 }
+    }
 }
 
 /// The clock of the operating system.
@@ -24,6 +39,10 @@ impl Default for SystemClock {
 impl Clock for SystemClock {
     fn milliseconds(&mut self) -> u32 {
         self.0.elapsed().as_millis() as u32
+    }
+
+    fn moment(&mut self) -> Moment {
+        Moment { us: self.0.elapsed().as_micros() as u64, resolution_us: 1 }
     }
 }
 

@@ -71,11 +71,10 @@ static void put_bytes(const uint8_t *bytes, size_t length, bool first)
 static void put_answer(const carrystep_answer *a)
 {
     char text[80];
-    snprintf(text, sizeof text, "%02x:%02x:%02x:%c%c%c%c%c%c%c:%u:%u:%02x:%02x:%08" PRIx32, (unsigned)a->sequence,
+    snprintf(text, sizeof text, "%02x:%02x:%02x:%c%c%c%c%c%c:%u:%u:%u:%02x:%02x:%08" PRIx32, (unsigned)a->sequence,
              (unsigned)a->address, (unsigned)a->next, a->fault ? 'f' : '.', a->halted ? 'h' : '.', a->idle ? 'i' : '.',
-             a->ready ? 'r' : '.', a->armed ? 'a' : '.', a->refused ? 'x' : '.',
-             a->written ? 'w' : '.', (unsigned)a->cause, (unsigned)a->free,
-             (unsigned)a->culprits, (unsigned)a->homing, a->data);
+             a->ready ? 'r' : '.', a->armed ? 'a' : '.', a->written ? 'w' : '.', (unsigned)a->reason,
+             (unsigned)a->cause, (unsigned)a->free, (unsigned)a->culprits, (unsigned)a->seeking, a->data);
     put(text);
 }
 
@@ -99,7 +98,7 @@ static void take_bytes(uint32_t now, char *text)
         if (event == CARRYSTEP_HEARD) {
             put_answer(&answer);
         } else {
-            put(event == CARRYSTEP_DAMAGED ? "damaged" : "step");
+            put(event == CARRYSTEP_DAMAGED ? "damaged" : "lost");
         }
     }
     if (!any) {
@@ -167,9 +166,15 @@ static void obey(char *words)
         carrystep_begin(&session, (uint32_t)a[0], (uint32_t)a[1]);
         count = 0;
         loaded = false;
-    } else if (strcmp(verb, "adopt") == 0) {
+    } else if (strcmp(verb, "open") == 0) {
         sscanf(rest, "%lx %lu", &a[0], &a[1]);
-        carrystep_adopt(&session, (uint8_t)a[0], (uint8_t)a[1]);
+        carrystep_open(&session, (uint16_t)a[0], (uint8_t)a[1]);
+    } else if (strcmp(verb, "owns") == 0) {
+        put(yes(carrystep_owns(&session)));
+    } else if (strcmp(verb, "seek-ended") == 0) {
+        put(yes(carrystep_seek_ended(&session)));
+    } else if (strcmp(verb, "stop") == 0) {
+        carrystep_stop(&session);
     } else if (strcmp(verb, "read") == 0) {
         put(yes(carrystep_read(&session, (uint8_t)strtoul(rest, NULL, 16))));
     } else if (strcmp(verb, "write") == 0) {

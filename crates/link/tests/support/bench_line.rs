@@ -65,8 +65,7 @@ impl Line for End {
             Peer::Gateware => {
                 let done = device.log.len();
                 inbox.extend(out[..sent].iter().flat_map(|&byte| device.byte(byte)));
-                let is_stop =
-                    |done: &Done| matches!(*done, Done::Write(0x20, word) if word & 2 != 0);
+                let is_stop = |done: &Done| matches!(*done, Done::Write(0x26, _));
                 if device.log[done..].iter().any(is_stop) {
                     stopped.get_or_insert(*now);
                 }

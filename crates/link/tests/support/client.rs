@@ -2,8 +2,10 @@
 //! (`tests/bench/link_bench.c`) understands the same commands.
 //!
 //! ```text
-//! begin RESEND PAUSE          a new session
-//! adopt NEXT AXES
+//! begin RESEND PAUSE          a new dialogue
+//! open NUMBER AXES            asks for a session; its number is hexadecimal
+//! owns                        replies yes or no
+//! stop
 //! read ADDRESS                replies yes or no; addresses, words and masks are hexadecimal
 //! write ADDRESS WORD          replies yes or no
 //! segment AXIS TICKS V A J LAST     adds a segment to the program
@@ -12,7 +14,7 @@
 //! feed                        replies feeding, fed, bad or unpowered
 //! withdraw
 //! send NOW                    replies the bytes of one request, or -
-//! take NOW BYTES              replies a word per frame: the answer's fields, `damaged` or `step`
+//! take NOW BYTES              replies a word per frame: the answer's fields, `damaged` or `lost`
 //! step NOW BYTES              take, feed, and send until nothing is left; answers | feed | bytes
 //! check IDENTITY PROTOCOL BUILD WANTED      replies fine, device, protocol or build
 //! busy                        replies which of `waiting` and `writing` hold
@@ -20,9 +22,10 @@
 
 use super::{hex, unhex};
 use carrystep_link::{
-    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Segment, Session,
-    Timing, slip,
+    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Refusal, Segment,
+    Session, Timing, slip,
 };
+use std::num::NonZeroU16;
 
 pub trait Client {
     fn say(&mut self, words: &str) -> String;
@@ -33,7 +36,6 @@ pub const SLOTS: usize = 64;
 
 pub struct RustClient {
     session: Session<SLOTS>,
-    axes: u8,
     commands: Vec<Command>,
     feeder: Option<Feeder<Owned>>,
 }
@@ -73,12 +75,7 @@ impl Owned {
 
 impl Default for RustClient {
     fn default() -> Self {
-        Self {
-            session: Session::new(Timing::default()),
-            axes: 0,
-            commands: Vec::new(),
-            feeder: None,
-        }
+        Self { session: Session::new(Timing::default()), commands: Vec::new(), feeder: None }
     }
 }
 
@@ -95,19 +92,19 @@ fn hexadecimal(word: &str) -> u64 {
 }
 
 fn fields(answer: &Answer) -> String {
-    let Answer { sequence, address, next, cause, free, culprits, homing, data, .. } = *answer;
+    let Answer { sequence, address, next, cause, free, culprits, seeking, data, .. } = *answer;
     let flags = [
         (answer.fault, 'f'),
         (answer.halted, 'h'),
         (answer.idle, 'i'),
         (answer.ready, 'r'),
         (answer.armed, 'a'),
-        (answer.refused, 'x'),
         (answer.written, 'w'),
     ];
     let flags: String = flags.iter().map(|&(on, letter)| if on { letter } else { '.' }).collect();
+    let reason = answer.refusal.map_or(0, Refusal::number);
     format!(
-        "{sequence:02x}:{address:02x}:{next:02x}:{flags}:{cause}:{free}:{culprits:02x}:{homing:02x}:{data:08x}"
+        "{sequence:02x}:{address:02x}:{next:02x}:{flags}:{reason}:{cause}:{free}:{culprits:02x}:{seeking:02x}:{data:08x}"
     )
 }
 
@@ -126,7 +123,7 @@ impl RustClient {
                 Ok(Some(answer)) => said.push(fields(&answer)),
                 Ok(None) if self.session.broken() > before => said.push("damaged".to_owned()),
                 Ok(None) => {}
-                Err(_) => said.push("step".to_owned()),
+                Err(_) => said.push("lost".to_owned()),
             }
         }
         if said.is_empty() { "-".to_owned() } else { said.join(" ") }
@@ -156,9 +153,15 @@ impl Client for RustClient {
                     Session::new(Timing { resend: number(resend), pause: number(pause) });
                 nothing
             }
-            ("adopt", [next, axes]) => {
-                self.axes = number(axes) as u8;
-                self.session.adopt(hexadecimal(next) as u8, self.axes);
+            ("open", [own, axes]) => {
+                let own = NonZeroU16::new(hexadecimal(own) as u16).expect("a number");
+                self.session.open(own, number(axes) as u8);
+                nothing
+            }
+            ("owns", []) => yes(self.session.number().is_some()),
+            ("seek-ended", []) => yes(self.session.seek_ended()),
+            ("stop", []) => {
+                self.session.stop();
                 nothing
             }
             ("read", [address]) => yes(self.session.read(hexadecimal(address) as u8).is_ok()),

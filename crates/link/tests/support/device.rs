@@ -57,10 +57,12 @@ pub struct Device {
     pub damaged: u64,
     pub repeated: u64,
     pub out_of_turn: u64,
+    /// The number of the owner's session; 0: nobody owns it.
+    pub session: u16,
     bytes: Vec<u8>,
     escaped: bool,
     broken: bool,
-    next: u8,
+    pub next: u8,
     pub powered: bool,
     pressed: bool,
     armed: Option<u8>,
@@ -108,34 +110,85 @@ impl Device {
     }
 
     fn request(&mut self, content: &[u8]) -> Vec<u8> {
-        let [sequence, address, words @ ..] = content else { return Vec::new() };
+        let [sequence, address, rest @ ..] = content else { return Vec::new() };
         let (sequence, address) = (*sequence, *address);
+        let (session, words) = match rest {
+            [] => (None, &[][..]),
+            [low, high, words @ ..] => (Some(u16::from_le_bytes([*low, *high])), words),
+            [_] => (Some(0), &[0][..]),
+        };
         let written = !words.is_empty();
-        let expected = [0, 0, 1, 8][usize::from(address >> 6)];
-        if written && words.len() != 4 * expected {
+        let words: Vec<u32> = words
+            .chunks(4)
+            .map(|w| if let [a, b, c, d] = *w { u32::from_le_bytes([a, b, c, d]) } else { 0 })
+            .collect();
+        let expected = match address {
+            _ if !written => 2 + session.map_or(0, |_| 2),
+            0..0x80 => 0,
+            0xc8 => 4 + 4 * (3 + 6 * (words[0] & 0xff).count_ones() as usize),
+            0xc0.. => 36,
+            _ => 8,
+        };
+        if content.len() != expected {
             self.damaged += 1;
             return Vec::new();
         }
         self.frames += 1;
-        let mut refused = false;
-        if written {
-            let words: Vec<u32> =
-                words.chunks(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
-            match self.next.wrapping_sub(sequence) {
-                0 => refused = !self.execute(address & 0x7f, &words),
+        let owns = session.is_some_and(|number| number != 0 && number == self.session);
+        let reason = match address {
+            _ if !written => {
+                if session.is_none() || owns {
+                    0
+                } else {
+                    3
+                }
+            }
+            0xa5 => self.open(session.unwrap_or(0)),
+            0xa6 => {
+                self.log.push(Done::Write(0x26, words[0]));
+                self.stop(7);
+                0
+            }
+            _ if !owns => 3,
+            _ => match self.next.wrapping_sub(sequence) {
+                0 => {
+                    if self.execute(address & 0x7f, &words) {
+                        0
+                    } else {
+                        2
+                    }
+                }
                 1..=127 if self.bugs.executes_again => {
                     self.execute(address & 0x7f, &words);
+                    0
                 }
-                1..=127 => self.repeated += 1,
+                1..=127 => {
+                    self.repeated += 1;
+                    0
+                }
                 _ if self.bugs.skips_the_missing => {
                     self.next = sequence;
                     self.execute(address & 0x7f, &words);
+                    0
                 }
-                _ => refused = true,
+                _ => 1,
+            },
+        };
+        self.out_of_turn += u64::from(reason != 0);
+        self.answer(sequence, address, written, reason, &words)
+    }
+
+    /// Opens a session; returns the reason of a refusal.
+    fn open(&mut self, number: u16) -> u8 {
+        match number {
+            0 => 3,
+            _ if !self.idle() && self.fault.is_none() => 2,
+            _ => {
+                self.session = number;
+                self.next = 0;
+                0
             }
-            self.out_of_turn += u64::from(refused);
         }
-        self.answer(sequence, address, written, refused)
     }
 
     /// Executes a write; returns false if the device is busy.
@@ -145,26 +198,30 @@ impl Device {
             return false;
         }
         self.next = self.next.wrapping_add(1);
-        if let Ok(words) = <[u32; 8]>::try_from(words) {
-            self.log.push(Done::Segment(axis as u8, words));
-            match self.fault {
-                Some(_) => {}
-                None if axis >= self.axes.into() || self.queues[axis].len() == 7 => {
-                    self.fault = Some(2);
+        if address >= 0x40 {
+            let (mask, ticks, cubics) = match address {
+                0x48 => (words[0] as u8, words[1], &words[2..words.len() - 1]),
+                _ => (1 << axis, words[0], &words[1..7]),
+            };
+            let last = words[words.len() - 1];
+            let axes = (0..8).filter(|axis| mask >> axis & 1 == 1);
+            let full = |axis: &usize| *axis >= self.axes.into() || self.queues[*axis].len() == 7;
+            if self.fault.is_none() && (mask == 0 || axes.clone().any(|axis| full(&axis))) {
+                self.fault = Some(2);
+            }
+            for (axis, cubic) in axes.zip(cubics.chunks(6)) {
+                let words = [&[ticks], cubic, &[last]].concat();
+                self.log.push(Done::Segment(axis as u8, words.try_into().expect("8 words")));
+                if self.fault.is_none() {
+                    self.queues[axis].push_back((ticks.wrapping_add(1), last & 1 == 1));
                 }
-                None => self.queues[axis].push_back((words[0].wrapping_add(1), words[7] & 1 == 1)),
             }
             return true;
         }
         self.log.push(Done::Write(address, words[0]));
         let mask = words[0] as u8;
         match address {
-            0x20 => {
-                self.powered = words[0] & 1 == 1;
-                if words[0] & 2 != 0 {
-                    self.stop(7);
-                }
-            }
+            0x20 => self.powered = words[0] & 1 == 1,
             0x21 if self.fault.is_none() => {
                 if (0..8).any(|axis| mask >> axis & 1 == 1 && self.queues[axis].is_empty()) {
                     self.stop(2);
@@ -179,6 +236,11 @@ impl Device {
             _ => {}
         }
         true
+    }
+
+    /// An axis runs a segment of so many ticks, which another host has sent.
+    pub fn load(&mut self, axis: usize, ticks: u32) {
+        self.running[axis] = Some((ticks, true));
     }
 
     /// Asserts or releases the e-stop.
@@ -196,19 +258,40 @@ impl Device {
         self.running = [None; 8];
     }
 
-    fn answer(&self, sequence: u8, address: u8, written: bool, refused: bool) -> Vec<u8> {
-        let axis = if written && address < 0xc0 { 0 } else { usize::from(address & 7) };
+    fn answer(
+        &self,
+        sequence: u8,
+        address: u8,
+        written: bool,
+        reason: u8,
+        words: &[u32],
+    ) -> Vec<u8> {
+        let axis = match address {
+            0xc8 if written => 0,
+            _ if written && address < 0xc0 => 0,
+            _ => usize::from(address & 7),
+        };
         let data = match address {
             0..0x18 if !written => self.facts.get(usize::from(address)).copied().unwrap_or(0),
             _ => self.position[axis] as u32,
         };
+        let mask = if written && address == 0xc8 { words[0] } else { 1 << axis };
+        let room = (0..8).filter(|axis| mask >> axis & 1 == 1).map(|axis| self.queues[axis].len());
+        let free = 7 - room.max().unwrap_or(0) as u8;
         let halted = self.fault.is_some();
-        let state = [halted, halted, self.idle(), self.powered, self.armed.is_some()];
-        let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on))
-            | self.fault.unwrap_or(0) << 5;
-        let free = 7 - self.queues[axis].len() as u8;
-        let room = free | u8::from(refused) << 3 | u8::from(written) << 7;
-        let mut frame = vec![sequence, address, self.next, bits, room, 0, 0];
+        let flags = [
+            halted,
+            self.powered,
+            self.armed.is_some(),
+            written,
+            false,
+            false,
+            self.idle(),
+            halted,
+        ];
+        let flags = flags.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on));
+        let cause = self.fault.unwrap_or(0) | reason << 4;
+        let mut frame = vec![sequence, address, self.next, flags, free, 0, 0, cause];
         frame.extend(data.to_le_bytes());
         on_the_line(&frame)
     }

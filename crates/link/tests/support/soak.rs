@@ -41,13 +41,12 @@ pub struct Outcome {
 /// Runs a program. The error says which property was violated.
 pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result<Outcome, String> {
     let Soak { faults, seed, axes, bugs } = soak;
-    let first = seed as u8;
-    let mut device = Device::new(axes, first);
+    let mut device = Device::new(axes, seed as u8);
     device.bugs = bugs;
     device.powered = true;
     let (mut there, mut back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
     client.say("begin 12 2");
-    client.say(&format!("adopt {first:02x} {axes}"));
+    open(client, &mut device, seed as u16 | 1);
     for command in commands {
         match command {
             Command::Segment { axis, segment: s } => {
@@ -78,8 +77,8 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
         let parts: Vec<&str> = said.split(" | ").collect();
         let [answers, fed, bytes] = parts.as_slice() else { return Err(format!("{said:?}")) };
         for answer in answers.split(' ').filter(|&word| word != "-" && word != "damaged") {
-            if answer == "step" {
-                return Err(format!("out of step after {now} ms"));
+            if answer == "lost" {
+                return Err(format!("the session is lost after {now} ms"));
             }
             check_answer(answer, &mut sent)?;
         }
@@ -116,12 +115,22 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     Err(format!("nothing more is done after {since} ms, {done} of {}", commands.len()))
 }
 
+/// Opens a session over a perfect line.
+fn open(client: &mut dyn Client, device: &mut Device, number: u16) {
+    client.say(&format!("open {number:x} {}", device.axes));
+    let asked = unhex(&client.say("send 0"));
+    let answer: Vec<u8> = asked.into_iter().flat_map(|byte| device.byte(byte)).collect();
+    client.say(&format!("take 0 {}", hex(&answer)));
+    assert_eq!(client.say("owns"), "yes");
+    device.frames = 0;
+}
+
 /// Checks that an answer that the client accepted is one that the device sent, and not older than
 /// one accepted before.
 fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String> {
     let bytes = |text: &str| {
         let parts: Vec<&str> = text.split(':').collect();
-        [parts[0], parts[1], parts[2], parts[8]].map(str::to_owned)
+        [parts[0], parts[1], parts[2], parts[9]].map(str::to_owned)
     };
     let wanted = bytes(answer);
     let same = |line: &Vec<u8>| {
@@ -137,7 +146,7 @@ fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String
                 _ => frame.push(byte),
             }
         }
-        let data = u32::from_le_bytes([frame[7], frame[8], frame[9], frame[10]]);
+        let data = u32::from_le_bytes([frame[8], frame[9], frame[10], frame[11]]);
         [
             format!("{:02x}", frame[0]),
             format!("{:02x}", frame[1]),

@@ -1,6 +1,6 @@
 //! The engine without the words of state that it outputs for a host: up to eight accumulators with
 //! queues. The results of a tick take effect for all axes together at the strobe that ends it. The
-//! contract is the section "engine" of docs/clock-by-clock.md up to "Homing"; change both together.
+//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both together.
 //!
 //! ```text
 //! tick     |       n       |     n + 1     |     n + 2     |
@@ -17,19 +17,23 @@
 mod axis_model;
 mod guard;
 mod inspection;
-mod limits;
+mod latch;
 mod observed;
 mod plain;
 mod reset;
+mod seek;
 mod strobe;
+mod switches;
 
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, PUT_BEAT, Put};
 use guard::{Stop, Supervisor};
+use latch::LatchState;
 pub(crate) use observed::Ending;
 use reset::Reset;
+use seek::Seek;
 use std::sync::Arc;
 use strobe::Decision;
 
@@ -50,8 +54,13 @@ pub struct Motion {
     /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
     rest: u32,
     axis_models: Vec<AxisModel>,
-    /// The level of each axis' limit pin, as sampled in its last time slot; true is active.
+    /// The level of the switch that each axis has sampled in its last time slot; true is active,
+    /// false if it has sampled none.
     pins: Vec<bool>,
+    /// The interlock was open at its last sample.
+    interlock: bool,
+    seek: Seek,
+    latch: LatchState,
 }
 
 impl Motion {
@@ -82,6 +91,9 @@ impl Motion {
                 .map(axis_model)
                 .collect(),
             pins: vec![false; build.axes()],
+            interlock: false,
+            seek: Seek::default(),
+            latch: LatchState::default(),
         }
     }
 
@@ -116,7 +128,10 @@ impl Motion {
             resetting: self.reset.is_resetting(),
             armed: self.armed.is_some(),
             ready: inputs.enable && self.supervisor.is_warm(guard),
-            homing: bits(&self.axis_models, |axis_model| axis_model.homing.waits),
+            seeking: bits(&self.axis_models, |axis_model| axis_model.seek.waits),
+            hits: bits(&self.axis_models, |axis_model| axis_model.seek.slows),
+            latch_armed: self.latch.armed,
+            latch_edges: self.latch.edges,
             state: None,
             refreshed: false,
             room: self
@@ -134,7 +149,8 @@ impl Motion {
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
         // The order of these calls is the priority of the causes: the first one is latched. It is
-        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, stop.
+        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, interlock,
+        // stop.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
@@ -159,6 +175,9 @@ impl Motion {
         if strobe && self.supervisor.misses_the_host(guard) && !waits {
             stop.call(Cause::Watchdog, 0, guard);
         }
+        if strobe && self.interlock {
+            stop.call(Cause::Interlock, 0, guard);
+        }
         if inputs.stop || reset.ending {
             stop.call(Cause::Stop, 0, guard);
             stop.frozen |= reset.ending;
@@ -166,12 +185,9 @@ impl Motion {
         if before.fault.is_some() {
             self.armed = None;
         }
-        self.meet();
-        if let Some(mask) = inputs.home {
-            for (axis, axis_model) in self.axis_models.iter_mut().enumerate() {
-                axis_model.homing.waits = mask >> axis & 1 == 1;
-            }
-        }
+        self.watch_interlock();
+        self.clock_seek(inputs, strobe);
+        self.latch.clock(guard, inputs, strobe);
         self.supervisor.clock(guard, inputs, strobe, outputs.idle);
         self.stop = stop;
         if strobe && before.clearing {

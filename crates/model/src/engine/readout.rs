@@ -3,8 +3,9 @@
 //! docs/clock-by-clock.md.
 //!
 //! ```text
-//! beat     4        5                  6          10       11      12
-//! word     P low    left, discarded    position   P high   ticks   status
+//! beat     4        5                  6          7        10       11      12
+//! word     P low    left, discarded    position   switch   P high   ticks   status
+//!          |        looks at the pin of the switch
 //!          compares position and discarded steps with the shaper
 //! ```
 
@@ -16,9 +17,15 @@ pub(crate) use leap::Span;
 use super::motion::{Ending, Motion};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    AxisStatus, EngineInputs, EngineOutputs, StateItem, StatePage, StateWord, TIME_SLOT_CLOCKS,
+    AxisStatus, EngineInputs, EngineOutputs, SWITCH_LEVEL, SWITCH_STATE, StateItem, StatePage,
+    StateWord, TIME_SLOT_CLOCKS,
 };
 use counts::{COMPARE_BEAT, Counts};
+
+/// The beat of a time slot in which the level of a switch is read, and the one in which it is
+/// output.
+const LOOK_BEAT: u32 = 5;
+const SWITCH_BEAT: u32 = 7;
 
 /// The last beat of a time slot, which outputs the status.
 const LAST_BEAT: u32 = TIME_SLOT_CLOCKS - 1;
@@ -33,40 +40,48 @@ pub struct Readout {
     asked: bool,
     /// The words of this tick are those of a snapshot.
     takes: bool,
-    /// The axes that found their limit in the tick before, one bit each.
-    met: u8,
+    /// The axes whose state at the hit of a seek is to be output, one bit each.
+    captures: u8,
+    /// The level of the switch of this time slot, from the beat in which it is read to the one in
+    /// which it is output; else false.
+    level: bool,
 }
 
 impl Readout {
     /// The readout at configuration.
     pub(crate) fn new(build: &EngineBuild) -> Self {
         let counts = vec![Counts::default(); build.axes()];
-        Self { counts, ticks: 0, asked: false, takes: false, met: 0 }
+        Self { counts, ticks: 0, asked: false, takes: false, captures: 0, level: false }
     }
 
     /// The outputs of an engine with this motion in this cycle.
     pub(crate) fn outputs(&self, motion: &Motion, inputs: &EngineInputs) -> EngineOutputs {
         let slot = motion.time_slot();
+        let last = self.counts.len() - 1;
         EngineOutputs {
-            state: slot.and_then(|(axis, beat)| self.word(motion, axis, beat)),
-            refreshed: slot == Some((self.counts.len() - 1, LAST_BEAT)) && !self.takes,
+            state: slot.and_then(|(axis, beat)| match beat {
+                SWITCH_BEAT => switch_word(motion, axis, motion.row()?, self.level),
+                _ => self.word(motion, axis, beat),
+            }),
+            refreshed: slot == Some((last, LAST_BEAT))
+                && self.page(motion, last) == StatePage::Live,
             ..motion.outputs(inputs)
         }
     }
 
-    /// True if this tick and the next one output live words, unless a snapshot is requested or a
-    /// limit is found in this tick.
-    pub(crate) const fn is_live(&self) -> bool {
-        !self.asked && !self.takes && self.met == 0
+    /// True if this tick and the next one output live words, unless a snapshot is requested, or a
+    /// seek hits or the latch accepts an edge in this tick.
+    pub(crate) const fn is_live(&self, motion: &Motion) -> bool {
+        !self.asked && !self.takes && self.captures == 0 && !motion.latches()
     }
 
-    /// The word of state that an axis outputs in this beat of its time slot of the present tick.
+    /// The word of its state that an axis outputs in this beat of its time slot of the present tick.
     fn word(&self, motion: &Motion, axis: usize, beat: u32) -> Option<StateWord> {
         let (counts, state) = (self.counts[axis], motion.axis_state(axis));
-        let page = self.page(axis);
+        let page = self.page(motion, axis);
         let (item, word) = match beat {
             COMPARE_BEAT => (StateItem::PLow, state.p as u32),
-            5 if page == StatePage::Limit => return None,
+            5 if page == StatePage::Seek => return None,
             5 => match state.left {
                 Some(left) => (StateItem::Left, left),
                 None => (StateItem::Discarded, counts.discarded),
@@ -88,9 +103,11 @@ impl Readout {
         Some(StateWord { page, axis: axis as u8, item, word })
     }
 
-    const fn page(&self, axis: usize) -> StatePage {
-        if self.met >> axis & 1 == 1 {
-            StatePage::Limit
+    const fn page(&self, motion: &Motion, axis: usize) -> StatePage {
+        if motion.latches() {
+            StatePage::Latch
+        } else if self.captures >> axis & 1 == 1 {
+            StatePage::Seek
         } else if self.takes {
             StatePage::Snapshot
         } else {
@@ -98,7 +115,7 @@ impl Readout {
         }
     }
 
-    /// All words of the present tick, each with the clock in which it is output.
+    /// All words of the present tick but those of switches, each with the clock in which it is output.
     pub(crate) fn words(&self, motion: &Motion) -> impl Iterator<Item = (u32, StateWord)> {
         (0..self.counts.len()).flat_map(move |axis| {
             (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {
@@ -108,20 +125,35 @@ impl Readout {
         })
     }
 
-    /// Observes the motion before a clock. The result is for [`Readout::clock`].
-    pub(crate) fn observe(&mut self, motion: &Motion) -> Option<Ending> {
-        if let Some((axis, COMPARE_BEAT)) = motion.time_slot() {
-            let runs = motion.axis_state(axis).left.is_some();
-            self.counts[axis].compare(motion.shaper(axis), runs);
+    /// Observes the motion before a clock with these inputs. The result is for
+    /// [`Readout::clock`].
+    pub(crate) fn observe(&mut self, motion: &Motion, inputs: &EngineInputs) -> Option<Ending> {
+        if let Some((axis, beat)) = motion.time_slot() {
+            match beat {
+                COMPARE_BEAT => {
+                    let runs = motion.axis_state(axis).left.is_some();
+                    self.counts[axis].compare(motion.shaper(axis), runs);
+                }
+                LOOK_BEAT => {
+                    self.level = motion.row().is_some_and(|row| motion.pin(inputs, axis, row));
+                }
+                SWITCH_BEAT => self.level = false,
+                _ => {}
+            }
         }
-        motion.ending()
+        let ending = motion.ending();
+        if ending.is_some() && !motion.latches() {
+            // This tick has output them.
+            self.captures = 0;
+        }
+        ending
     }
 
     /// Advances by one cycle; `motion` has already advanced.
     pub(crate) fn clock(&mut self, motion: &Motion, inputs: &EngineInputs, ending: Option<Ending>) {
         let asked = self.asked;
         self.asked |= inputs.snapshot;
-        let Some(Ending { met, empties, forgets }) = ending else { return };
+        let Some(Ending { hits, empties, forgets }) = ending else { return };
         for (axis, counts) in self.counts.iter_mut().enumerate() {
             counts.commit();
             counts.carry(motion.carry(axis));
@@ -133,8 +165,20 @@ impl Readout {
             }
         }
         self.ticks = self.ticks.wrapping_add(1);
-        self.met = met;
-        self.takes = asked && met == 0;
-        self.asked = inputs.snapshot || (asked && met != 0);
+        self.captures |= hits;
+        let taken = self.captures != 0 || motion.latches();
+        self.takes = asked && !taken;
+        self.asked = inputs.snapshot || (asked && taken);
     }
+}
+
+/// The word of a switch, if it is output: the row, and the level that was read.
+fn switch_word(motion: &Motion, axis: usize, row: u8, level: bool) -> Option<StateWord> {
+    let bit = |bit, is_set| if is_set { bit } else { 0 };
+    (!motion.is_resetting()).then(|| StateWord {
+        page: StatePage::of_number(row),
+        axis: axis as u8,
+        item: StateItem::Switch,
+        word: bit(SWITCH_STATE, motion.switch_state(axis, row)) | bit(SWITCH_LEVEL, level),
+    })
 }

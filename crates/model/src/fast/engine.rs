@@ -2,7 +2,8 @@
 //! of [`Motion`].
 //!
 //! It leaps over clocks in which the axes only repeat their additions, ramps included. Accepted
-//! words, loads, starts, calls of stops, changes of debounced limits and clears are executed by the
+//! words, loads, starts, calls of stops, changes of debounced switches, hits of seeks, edges of the
+//! latch and clears are executed by the
 //! clock-by-clock model.
 
 use super::edges::{self, Edges};
@@ -48,7 +49,7 @@ impl FastEngine {
 
     /// Runs with these inputs up to cycle `end`, or until a cycle that the host must react to: an
     /// offered word or start is accepted, axes start, or `fault`, `halted`, `idle`, `enabled` or
-    /// `homing` changes after it. Returns the outputs in that cycle, or `None` if `end` was
+    /// any output of the seek or of the latch changes after it. Returns the outputs in that cycle, or `None` if `end` was
     /// reached.
     pub fn run(
         &mut self,
@@ -65,8 +66,9 @@ impl FastEngine {
             let taken = (outputs.put_ready && inputs.put.is_some())
                 || (outputs.start_ready && inputs.start.is_some());
             let state = |outputs: EngineOutputs| {
-                let EngineOutputs { fault, halted, idle, enabled, homing, .. } = outputs;
-                (fault, halted, idle, enabled, homing)
+                let EngineOutputs { fault, halted, idle, enabled, .. } = outputs;
+                let EngineOutputs { seeking, hits, latch_armed, latch_edges, .. } = outputs;
+                (fault, halted, idle, enabled, seeking, hits, latch_armed, latch_edges)
             };
             if taken || outputs.started || state(self.outputs(inputs)) != state(outputs) {
                 return Some(outputs);

@@ -58,7 +58,7 @@ impl HostedEngine {
 
     /// Advances by one cycle and reports the edges on the pins to `to`.
     pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
-        let ending = self.readout.observe(self.engine.core());
+        let ending = self.readout.observe(self.engine.core(), inputs);
         self.engine.clock(inputs, to);
         self.readout.clock(self.engine.core(), inputs, ending);
     }
@@ -77,8 +77,10 @@ impl HostedEngine {
         if inputs.snapshot {
             return 0;
         }
-        let begin = self.cycle();
-        let skipped = self.readout.is_live() && self.leap_to_whole_tick(inputs, most, to) > 0;
+        let from = self.cycle();
+        let begin = self.readout.begin(self.engine.core());
+        let skipped = self.readout.is_live(self.engine.core())
+            && self.leap_to_whole_tick(inputs, most, to) > 0;
         let clock = self.core().clock_of_tick();
         self.words.clear();
         self.words.extend(self.readout.words(self.engine.core()));
@@ -92,7 +94,9 @@ impl HostedEngine {
             .iter()
             .filter(|(clock, _)| passed.contains(&u64::from(*clock)))
             .for_each(|(_, word)| words(*word));
-        self.cycle() - begin
+        let clocks = self.cycle() - from;
+        begin.switch_words(self.engine.core(), inputs, clocks, &mut words);
+        clocks
     }
 
     /// Skips all cycles before the last whole tick of those that can be skipped, if this whole tick
@@ -135,6 +139,7 @@ impl HostedEngine {
         let mut following = Following::new(&mut self.readout, &self.engine, to);
         let passed = self.engine.leap_fitting(inputs, most, fit, &mut following);
         following.finish(&self.engine);
+        self.readout.pass_level(self.engine.core(), inputs, passed);
         passed
     }
 }

@@ -12,15 +12,17 @@ use super::crc::{CrcUnit, Told};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::Image;
 use carrystep_core::link::processor::{
-    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition,
-    FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, TAX,
-    UNLESS, ValueSource, WAIT, XOR,
+    ACTS, AND, BROKEN, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP,
+    CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH, PUTS, ROOM,
+    SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
 };
-use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
 
 /// Number of entries in each byte memory and in the program.
-const SIZE: usize = 256;
+const SIZE: usize = 512;
+
+/// Number of words of a segment, the commit included.
+const SEGMENT_WORDS: u8 = 8;
 
 /// The clock of an instruction in which it is executed.
 const EXECUTE: u8 = 2;
@@ -36,16 +38,19 @@ pub(super) struct LinkProcessor {
     received: u8,
     crc: CrcUnit,
     stage: u8,
-    pc: u8,
+    /// Index of the next instruction.
+    pc: u16,
     a: u8,
     x: u8,
     /// Index in the ring at which the next byte is written.
-    written: u8,
+    written: u16,
     /// Index in the ring from which the next byte is read.
-    read_from: u8,
+    read_from: u16,
+    /// Number of words of a segment that the engine has taken since the last commit.
+    put: u8,
     /// The room that the engine last reported for an axis, in segments.
     room: u8,
-    control: u8,
+    enable: bool,
     clear: bool,
 }
 
@@ -66,11 +71,18 @@ pub(super) struct Outputs {
     pub x: u8,
     /// A word of a segment.
     pub word: u32,
+    /// Its number.
+    pub number: u8,
     pub puts: bool,
     pub starts: bool,
     /// A is offered to the transmitter.
     pub goes: bool,
-    pub homes: bool,
+    /// A is a new mask of the axes that seek.
+    pub seeks: bool,
+    /// A is a new source of seeks.
+    pub sources: bool,
+    /// The latch is armed.
+    pub arms: bool,
     pub kicks: bool,
     pub broken: bool,
     /// A snapshot is requested.
@@ -100,8 +112,9 @@ impl LinkProcessor {
             x: 0,
             written: 0,
             read_from: 0,
+            put: 0,
             room: 0,
-            control: 0,
+            enable: false,
             clear: false,
         }
     }
@@ -111,10 +124,11 @@ impl LinkProcessor {
         self.stage == EXECUTE && self.code & bit != 0
     }
 
-    /// True if an instruction that neither sets nor stores is executed in this clock and contains
-    /// all of these bits.
+    /// True if an instruction that neither sets nor stores nor jumps is executed in this clock and
+    /// contains all of these bits.
     fn does(&self, bits: Code) -> bool {
-        self.executes(ACTS) && self.code & (SETS | STORES) == 0 && self.code & bits == bits
+        let acts = self.executes(ACTS) && self.code & (SETS | STORES | JUMPS) == 0;
+        acts && self.code & bits == bits
     }
 
     /// The axis whose room is requested.
@@ -123,38 +137,50 @@ impl LinkProcessor {
     }
 
     pub(super) fn outputs(&self) -> Outputs {
-        let Self { a, x, clear, control, .. } = *self;
-        let control = u32::from(control);
+        let Self { a, x, clear, enable, .. } = *self;
         Outputs {
             a,
             x,
             word: self.crc.word(),
+            number: self.put,
             puts: self.does(PUTS),
             starts: self.does(STARTS),
             goes: self.does(WAIT | GOES),
-            homes: self.does(CONTROL | KICK),
-            kicks: self.does(KICK) && !self.does(CONTROL),
-            broken: self.does(BROKEN) && !self.does(CONTROL),
-            snapshot: self.does(CONTROL | BROKEN),
+            seeks: self.tells(CONTROL | KICK),
+            sources: self.tells(CONTROL | KICK | BROKEN),
+            arms: self.tells(KICK) && self.code & CLEARING != 0,
+            kicks: self.tells(KICK),
+            broken: self.tells(BROKEN),
+            snapshot: self.tells(CONTROL | BROKEN),
             clear,
-            stop: control & CONTROL_STOP != 0,
-            enable: control & CONTROL_ENABLE != 0,
+            stop: self.tells(KICK | BROKEN),
+            enable,
         }
+    }
+
+    /// True if an instruction is executed that contains these and no others of three bits, each
+    /// combination of which has a meaning of its own.
+    fn tells(&self, bits: Code) -> bool {
+        self.does(bits) && self.code & (CONTROL | KICK | BROKEN) == bits
     }
 
     pub(super) fn clock(&mut self, inputs: &Inputs<'_>) {
         let Self { code, a, x, .. } = *self;
-        let place = usize::from(if code & INDEXED != 0 { x } else { code as u8 });
+        let page = usize::from(code & CONSTANTS) >> 1;
+        let place = page + usize::from(if code & INDEXED != 0 { x } else { code as u8 });
         let over = self.is_over(inputs);
         let told = self.tells_check(inputs.fact);
         let next_pc = if code & JUMPS != 0 && self.holds(inputs.engine) != (code & UNLESS != 0) {
-            code as u8
+            code & TARGET
         } else {
-            self.pc.wrapping_add(1)
+            after(self.pc)
         };
         let value = self.value(inputs.engine);
-        let [sets, stores, acts] = [SETS, STORES, ACTS].map(|bit| self.executes(bit));
-        let controls = self.does(CONTROL) && code & (KICK | BROKEN) == 0;
+        let sets = self.executes(SETS);
+        let stores = self.executes(STORES) && code & SETS == 0;
+        let acts = self.executes(ACTS) && code & JUMPS == 0;
+        let controls = self.tells(CONTROL);
+        let puts = self.does(PUTS) && over;
 
         // The memories are read before this clock writes to them.
         self.code = self.program[usize::from(self.pc)];
@@ -168,10 +194,14 @@ impl LinkProcessor {
             (self.stage, self.pc) = (0, next_pc);
         }
         if sets {
-            self.a = if code & XOR != 0 { a ^ value } else { value };
+            self.a = match (code & AND != 0, code & XOR != 0) {
+                (false, false) => value,
+                (false, true) => a ^ value,
+                (true, _) => a & value,
+            };
         }
         if sets && code >> 8 & 7 == ValueSource::Received as Code {
-            self.read_from = self.read_from.wrapping_add(1);
+            self.read_from = after(self.read_from);
         }
         if stores {
             self.data[place] = a;
@@ -183,15 +213,18 @@ impl LinkProcessor {
             self.x = x.wrapping_add(1);
         }
         if controls {
-            self.control = a & 3;
+            self.enable = a & 1 == 1;
             self.clear = code & CLEARING != 0;
+        }
+        if puts {
+            self.put = (self.put + 1) % SEGMENT_WORDS;
         }
         if let Some(room) = inputs.engine.room {
             self.room = room;
         }
         if let Some(byte) = inputs.received {
             self.ring[usize::from(self.written)] = byte;
-            self.written = self.written.wrapping_add(1);
+            self.written = after(self.written);
         }
     }
 
@@ -221,13 +254,13 @@ impl LinkProcessor {
 
     /// True if the condition of a jump holds.
     fn holds(&self, engine: &EngineOutputs) -> bool {
-        match self.code >> 8 & 7 {
+        match self.code >> CONDITION & 7 {
             c if c == Condition::Zero as Code => self.a == 0,
             c if c == Condition::X7 as Code => self.x & 0x80 != 0,
-            c if c == Condition::X6 as Code => self.x & 0x40 != 0,
+            c if c == Condition::Full as Code => self.x >= 0xf0,
             c if c == Condition::Nothing as Code => self.read_from == self.written,
             c if c == Condition::Fault as Code => engine.fault.is_some(),
-            c if c == Condition::Startable as Code => engine.ready && !engine.armed,
+            c if c == Condition::Commit as Code => self.put == SEGMENT_WORDS - 1,
             c if c == Condition::Special as Code => self.a >= 0xc0,
             _ => true,
         }
@@ -236,31 +269,39 @@ impl LinkProcessor {
     /// The value that A would take.
     fn value(&self, engine: &EngineOutputs) -> u8 {
         match self.code >> 8 & 7 {
-            s if s == ValueSource::Data as Code || s == ValueSource::DataAtX as Code => self.read,
             s if s == ValueSource::Received as Code => self.received,
             s if s == ValueSource::X as Code => self.x,
             s if s == ValueSource::Crc as Code => self.crc.word() as u8,
-            _ => match self.code as u8 & 3 {
-                ROOM => self.room | (number(engine) >> 3) << 4,
-                CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
-                HOMING => engine.homing,
-                _ => {
-                    let bits = [
-                        engine.fault.is_some(),
-                        engine.halted,
-                        engine.idle,
-                        engine.ready,
-                        engine.armed,
-                    ];
-                    let cause = number(engine) & 7;
-                    bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
-                }
-            },
+            s if s == ValueSource::Engine as Code => self.item(engine),
+            _ => self.read,
+        }
+    }
+
+    /// The item of the engine that the operand selects.
+    fn item(&self, engine: &EngineOutputs) -> u8 {
+        let (cause, culprits) =
+            engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u8, culprits));
+        match self.code as u8 & 7 {
+            ROOM => self.room << 4 | cause,
+            CULPRITS => culprits,
+            SEEKING => engine.seeking,
+            HITS => engine.hits,
+            LATCH => u8::from(engine.latch_armed) << 4 | engine.latch_edges,
+            _ => {
+                let bits = [
+                    (engine.fault.is_some(), 0),
+                    (engine.ready, 1),
+                    (engine.armed, 2),
+                    (engine.idle, 6),
+                    (engine.halted, 7),
+                ];
+                bits.iter().fold(0, |state, &(bit, at)| state | u8::from(bit) << at)
+            }
         }
     }
 }
 
-/// The number of the stop's cause; 0 without a fault.
-fn number(engine: &EngineOutputs) -> u8 {
-    engine.fault.map_or(0, |(cause, _)| cause as u8)
+/// The next index in a memory.
+const fn after(index: u16) -> u16 {
+    (index + 1) % SIZE as u16
 }

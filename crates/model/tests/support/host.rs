@@ -1,8 +1,8 @@
-//! A host that writes random segments, starts, homes, takes snapshots, stops, clears and resets,
-//! and presses switches.
+//! A host that writes random segments, starts, seeks, arms the latch, takes snapshots, stops, clears
+//! and resets, and presses switches.
 
 use super::random::Random;
-use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Put};
+use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Put, SWITCH_ROWS, SeekSource};
 use carrystep_core::{EngineBuild, Segment};
 use carrystep_model::Engine;
 use std::collections::VecDeque;
@@ -90,17 +90,22 @@ impl Host {
             let Self { inputs, .. } = self;
             (inputs.stop, inputs.broken, inputs.reset, inputs.snapshot) =
                 (false, false, false, false);
-            (inputs.home, inputs.kick) = (None, self.kicks);
+            (inputs.seek, inputs.seek_source, inputs.latch_arm) = (None, None, false);
+            inputs.kick = self.kicks;
         }
     }
 
     fn act(&mut self, engine: &Engine) {
         let Self { random, inputs, axes, .. } = self;
-        let mask = (random.next() & random.next()) as u8 & ((1_u16 << *axes) - 1) as u8;
+        let all = ((1_u16 << *axes) - 1) as u8;
+        let mask = (random.next() & random.next()) as u8 & all;
         let waiting = waiting(engine, *axes);
         self.pulse = 1;
         if engine.motion().fault().is_some() && !random.once_in(4) {
             (inputs.clear, inputs.estop) = (true, self.rests_at.estop);
+            if random.once_in(2) {
+                inputs.inputs = self.rests_at.inputs;
+            }
             return;
         }
         if !inputs.enable && random.once_in(2) {
@@ -120,11 +125,26 @@ impl Host {
             0..50 if waiting != 0 => inputs.start = Some(waiting),
             0..58 => inputs.snapshot = true,
             58 => (inputs.snapshot, self.pulse) = (true, 1 + random.below(400)),
-            59..63 => inputs.home = Some(u8::MAX),
-            63..64 => inputs.home = Some(mask),
-            64..68 => inputs.limit_min ^= mask | 1,
-            68..72 => inputs.limit_max ^= mask | 1,
-            72..76 => (inputs.kick, inputs.clear) = (true, true),
+            59..62 => {
+                inputs.seek_source = Some(source(random, *axes));
+                inputs.seek = random.one_of(&[None, Some(mask), Some(all), Some(all)]);
+                inputs.latch_arm = random.once_in(3);
+            }
+            62 => inputs.seek = random.one_of(&[Some(0), Some(mask), Some(all)]),
+            63 => inputs.latch_arm = true,
+            64..72 => {
+                // The latch is often connected to a switch.
+                inputs.latch ^= random.once_in(2);
+                match random.below(8) {
+                    0..3 => inputs.limit_min ^= mask | 1,
+                    3..6 => inputs.limit_max ^= mask | 1,
+                    6 => inputs.inputs[0] ^= mask | 1,
+                    _ => inputs.inputs[1] ^= mask,
+                }
+            }
+            72..74 => (inputs.latch, inputs.latch_arm) = (!inputs.latch, random.once_in(4)),
+            74 if random.once_in(4) => inputs.inputs[1] ^= 1,
+            74..76 => (inputs.kick, inputs.clear) = (true, true),
             80..82 => inputs.stop = true,
             82..84 => inputs.estop = !inputs.estop,
             76..80 => self.kicks = !self.kicks,
@@ -143,6 +163,17 @@ impl Host {
 fn waiting(engine: &Engine, axes: u8) -> u8 {
     let waiting = (0..axes).filter(|axis| engine.motion().waiting((*axis).into()) > 0);
     waiting.fold(0, |mask, axis| mask | 1 << axis) & !engine.motion().in_a_move()
+}
+
+/// Any source, now and then one that does not exist.
+fn source(random: &mut Random, axes: u8) -> SeekSource {
+    let axes = u64::from(axes).max(random.one_of(&[1, 1, 8]));
+    SeekSource {
+        axis: random.below(axes) as u8,
+        row: random.below(SWITCH_ROWS.into()) as u8,
+        own: random.below(2) == 0,
+        level: !random.once_in(3),
+    }
 }
 
 /// A segment of up to 100 ticks, fast enough for steps more often than not.

@@ -2,11 +2,13 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+pub mod books;
 pub mod host;
 pub mod random;
+pub mod script;
 pub mod words;
 
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{InputRow, Latch, LimitWiring};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use random::Random;
 
@@ -41,6 +43,17 @@ pub fn build(random: &mut Random) -> EngineBuild {
     guard.limit_freezes = random.below(2) == 0;
     guard.estop_low = random.below(2) == 0;
     guard.limits_low = random.below(2) == 0;
+    let exist = ((1_u16 << axes) - 1) as u8;
+    guard.inputs = [(); 2].map(|()| {
+        // A row without inputs is not sampled.
+        let exist = random.next() as u8 & exist & random.one_of(&[0, u8::MAX]);
+        InputRow { exist, low: random.next() as u8 & exist }
+    });
+    if guard.inputs != [InputRow::default(); 2] {
+        guard.round = guard.round.max(4);
+    }
+    let latch = Latch { low: random.below(2) == 0, looks: random.one_of(&[1, 2, 5, 16]) };
+    guard.latch = random.one_of(&[None, Some(latch)]);
     guard.stop = (0..axes).map(|_| 1 << (54 + random.below(7))).collect();
     build.check().unwrap();
     build

@@ -2,7 +2,7 @@
 
 use super::host::Cycle;
 use carrystep_core::engine::StateItem::{
-    Discarded, Left, PHigh, PLow, Position, Status, Ticks as Tick,
+    Discarded, Left, PHigh, PLow, Position, Status, Switch, Ticks as Tick,
 };
 use carrystep_core::engine::{AxisStatus, StatePage, StateWord};
 
@@ -17,6 +17,8 @@ pub struct AxisWords {
     pub position: i32,
     pub ticks: u32,
     pub status: AxisStatus,
+    /// The row and the word of a switch that was sampled.
+    pub switch: Option<(StatePage, u32)>,
 }
 
 /// The words of all axes in the cycles of a whole tick. Panics if a word is missing, is output in
@@ -30,28 +32,28 @@ pub fn of_tick(tick: &[Cycle], axes: usize) -> Vec<AxisWords> {
             assert_eq!((word.axis, word.item), (axis as u8, item));
             word
         };
-        for quiet in [0, 1, 2, 3, 7, 8, 9] {
+        for quiet in [0, 1, 2, 3, 8, 9] {
             assert_eq!(beat(quiet), None);
         }
         let words = [(4, PLow), (6, Position), (10, PHigh), (11, Tick), (12, Status)]
             .map(|(at, item)| word(at, item));
         let [p, position, p_high, ticks, status] = words.map(|word: StateWord| word.word);
         let page = words[0].page;
+        let switch = beat(7).map(|_| word(7, Switch)).map(|word| (word.page, word.word));
         assert!(words.iter().chain(&beat(5)).all(|word| word.page == page), "axis {axis}");
         let status = AxisStatus::of_word(status);
         let of = |item| beat(5).filter(|word| word.item == item).map(|word| word.word);
         let (left, discarded) = (of(Left), of(Discarded));
-        let shown =
-            [status.running, !status.running].map(|shown| shown && page != StatePage::Limit);
+        let shown = [status.running, !status.running].map(|shown| shown && page != StatePage::Seek);
         assert_eq!([left.is_some(), discarded.is_some()], shown, "axis {axis} on {page:?}");
         let p = u64::from(p_high) << 32 | u64::from(p);
         let position = position.cast_signed();
-        all.push(AxisWords { page, p, left, discarded, position, ticks, status });
+        all.push(AxisWords { page, p, left, discarded, position, ticks, status, switch });
     }
-    let takes = all.iter().any(|words| words.page == StatePage::Snapshot);
+    let is_live = all.last().is_some_and(|words| words.page == StatePage::Live);
     for (clock, (_, outputs)) in tick.iter().enumerate() {
         let last = clock + 1 == 13 * axes;
-        assert_eq!(outputs.refreshed, last && !takes, "refreshed in clock {clock}");
+        assert_eq!(outputs.refreshed, last && is_live, "refreshed in clock {clock}");
         assert!(clock < 13 * axes || outputs.state.is_none());
     }
     all

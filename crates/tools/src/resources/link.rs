@@ -8,7 +8,7 @@ use carrystep_core::link::{LineKind, Uart};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// Budget of the link: logic cells and block RAMs.
-pub const LINK_BUDGET: Size = Size { logic_cells: 300, block_rams: 7 };
+pub const LINK_BUDGET: Size = Size { logic_cells: 350, block_rams: 6 };
 
 /// Name of the line of each row on the page.
 pub const LINES: [&str; 2] = ["UART, 3 Mbaud", "SPI"];

@@ -58,7 +58,7 @@ const TWO: EngineRow = EngineRow {
     axes: 6,
     tick_ns: 2000,
     clock_hz: 48_000_000,
-    budget: Size { logic_cells: 955, block_rams: 9 },
+    budget: Size { logic_cells: 985, block_rams: 9 },
     met: true,
     always: true,
 };
@@ -67,14 +67,14 @@ const TWO: EngineRow = EngineRow {
 const ONE: EngineRow = EngineRow {
     tick_ns: 1000,
     clock_hz: 80_000_000,
-    budget: Size { logic_cells: 980, block_rams: 9 },
+    budget: Size { logic_cells: 1010, block_rams: 9 },
     ..TWO
 };
 
 /// Six axes to be compared with eight: a tick of 2 us at the slowest clock that eight axes need.
 const SIX: EngineRow = EngineRow { clock_hz: 56_000_000, always: false, ..TWO };
 const EIGHT: EngineRow =
-    EngineRow { axes: 8, budget: Size { logic_cells: 1085, block_rams: 13 }, ..SIX };
+    EngineRow { axes: 8, budget: Size { logic_cells: 1125, block_rams: 13 }, ..SIX };
 
 /// Eight axes, six axes, and the greatest ratio of their logic cells.
 pub const EIGHT_TO_SIX: (EngineRow, EngineRow, f64) = (EIGHT, SIX, 1.15);
@@ -109,16 +109,16 @@ pub const FAMILIES: [FamilyRow; 3] = [
     FamilyRow {
         name: "xc3s",
         of: TWO,
-        budget: Mapped { luts: 775, flip_flops: 410, carries: 370, block_rams: 16 },
+        budget: Mapped { luts: 815, flip_flops: 425, carries: 375, block_rams: 16 },
     },
     FamilyRow {
         name: "xc6s",
         of: TWO,
-        budget: Mapped { luts: 745, flip_flops: 415, carries: 60, block_rams: 8 },
+        budget: Mapped { luts: 760, flip_flops: 425, carries: 60, block_rams: 8 },
     },
     FamilyRow {
         name: "xc7",
         of: TWO,
-        budget: Mapped { luts: 720, flip_flops: 415, carries: 60, block_rams: 6 },
+        budget: Mapped { luts: 720, flip_flops: 425, carries: 60, block_rams: 6 },
     },
 ];

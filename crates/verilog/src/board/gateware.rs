@@ -3,7 +3,7 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{Overrides, engine_of, line_name, line_of, link_of, link_ports};
+use crate::core::{Overrides, Ports, engine_of, line_name, line_of, link_of, link_ports};
 use crate::parameters::overrides;
 use crate::prefix::Prefix;
 use crate::purposes::{ENGINE_NAME, LINK_NAME};
@@ -49,6 +49,7 @@ impl<'a> Gateware<'a> {
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
+        board.connects_inputs(&build.guard)?;
         if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
         }
@@ -211,6 +212,12 @@ impl<'a> Gateware<'a> {
         ENGINE_PORTS.iter().filter(single).map(|port| (port, self.board.bits(port.name) > 0))
     }
 
+    /// The inactive level of the pins at a port of the engine.
+    fn inactive(&self, name: &str) -> Option<u64> {
+        let levels = EngineInputs::default().levels(&self.build.guard).at_ports();
+        levels.iter().find(|(port, _)| *port == name).and_then(|(_, level)| *level)
+    }
+
     fn has_led(&self) -> bool {
         self.board.bits("led") > 0
     }
@@ -260,9 +267,15 @@ impl<'a> Gateware<'a> {
             others => axes - 1,
             count => axes,
             switches => self.switches().map(|(port, pin)| {
-                let inactive = EngineInputs::default().levels(&self.build.guard).at_ports();
-                let level = inactive.iter().find(|(name, _)| *name == port.name);
-                context! { name => port.name, pin, inactive => level.and_then(|(_, level)| *level) }
+                context! { name => port.name, pin, inactive => self.inactive(port.name) }
+            }).collect::<Vec<Value>>(),
+            inputs => ["inputs_0", "inputs_1"].map(|name| {
+                context! { name, inactive => self.inactive(name) }
+            }),
+            unlinked => unlinked(&between).map(|port| {
+                let zero = format!("{}'d0", port.width.of(axes));
+                let tied = if port.direction == Direction::Input { zero } else { String::new() };
+                context! { name => port.name, tied }
             }).collect::<Vec<Value>>(),
             led => self.has_led(),
             led_low => self.board.led_low,
@@ -304,6 +317,12 @@ fn limit_bits(build: &EngineBuild) -> (usize, usize) {
         LimitWiring::Each => (build.axes(), 0),
         LimitWiring::Pair => (build.axes(), build.axes()),
     }
+}
+
+/// The engine's ports for a host that the link does not have. They are tied to 0 or left open.
+fn unlinked(between: &Ports) -> impl Iterator<Item = &'static Port> {
+    let is_linked = |port: &&Port| between.iter().any(|(name, _)| name == port.name);
+    ENGINE_PORTS.iter().filter(move |port| port.peer == Peer::Host && !is_linked(port))
 }
 
 /// Name of a port's bit. If the port has one bit only, the name has no number.

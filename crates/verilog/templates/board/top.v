@@ -97,6 +97,12 @@ module {{ top }} (
         .limit_min(limit_min),
 {% endif %}
         .limit_max({{ "limit_max" if high is not none else count ~ "'d0" }}),
+{% for port in inputs %}
+        .{{ port.name }}({{ count }}'d{{ port.inactive }}),
+{% endfor %}
+{% for port in unlinked %}
+        .{{ port.name }}({{ port.tied }}),
+{% endfor %}
         .step(step),
         .dir(dir),
         .enabled(enabled),

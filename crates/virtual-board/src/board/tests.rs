@@ -4,9 +4,10 @@
 use super::*;
 use carrystep_core::engine::{LimitWiring, StatePage};
 use carrystep_core::link::registers::{
-    CLEAR, CONTROL, CONTROL_ENABLE, CONTROL_STOP, HOME, P_LOW, PHASES, SEGMENT, SNAPSHOT, START,
+    CLEAR, CONTROL, CONTROL_ENABLE, OPEN, P_LOW, PHASES, SEEK, SEGMENT, SEGMENTS, SNAPSHOT, START,
+    STOP,
 };
-use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC, WRITE};
+use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC, Refusal, WRITE};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_model::Engine;
 use carrystep_model::fast::{Change, Edge};
@@ -79,23 +80,39 @@ fn frame(content: &[u8]) -> Vec<u8> {
 
 /// A random request as an escaped frame. `next` is the number of the next write.
 fn request(random: &mut SplitMix64, axes: u8, answers: &Answers, filled: &mut u32) -> Vec<u8> {
-    let Answers { next, state, .. } = *answers;
+    let Answers { next, state, reason, .. } = *answers;
     let mut below = |end: u64| random.next_u64() % end;
     let mask = (1 << axes) - 1;
-    let (is_fault, is_ready) = (state & 1 == 1, state & 8 != 0);
+    let (is_fault, is_ready) = (state & 1 == 1, state & 2 != 0);
     let (address, words) = match below(20) {
+        0..15 if reason == Refusal::Session.number() => (OPEN, vec![below(2) as u32]),
         0..10 if is_fault => (CLEAR, vec![0]),
         0..10 if !is_ready => (CONTROL, vec![CONTROL_ENABLE]),
         0..2 => return frame(&[below(256) as u8, below(256) as u8]),
         // The link reads these words in the clocks in which the engine outputs them.
         2..4 => return frame(&[0, P_LOW + below(2) as u8]),
         4 => return frame(&[0, PHASES]),
-        5 => (CONTROL, vec![CONTROL_ENABLE | if below(4) == 0 { CONTROL_STOP } else { 0 }]),
+        5 if below(4) == 0 => (STOP, vec![0]),
+        5 if below(4) == 0 => (OPEN, vec![below(2) as u32]),
+        5 => (CONTROL, vec![CONTROL_ENABLE]),
         6..10 if *filled != 0 => (START, vec![std::mem::take(filled)]),
         6 => (START, vec![below(256) as u32]),
-        12 => (HOME, vec![mask]),
+        12 => (SEEK, vec![mask]),
         10..12 => (SNAPSHOT, vec![0]),
         9 => (CLEAR, vec![0]),
+        13 | 14 => {
+            // Now and then with an axis that does not exist.
+            let axes = if below(20) == 0 { 8 } else { axes };
+            let chosen = below(1 << axes) as u32;
+            *filled |= chosen & mask;
+            let mut words = vec![chosen, below(1000) as u32];
+            // Any V, small A, no J.
+            let most = [1 << 32, 1 << 32, 1 << 32, 1 << 12, 1, 1].repeat(8);
+            let count = 6 * chosen.count_ones() as usize;
+            words.extend(most[..count].iter().map(|&most| below(most) as u32));
+            words.push(below(2) as u32);
+            (SEGMENTS, words)
+        }
         _ => {
             // Now and then an axis that does not exist.
             let axes = if below(20) == 0 { 8 } else { axes };
@@ -110,7 +127,9 @@ fn request(random: &mut SplitMix64, axes: u8, answers: &Answers, filled: &mut u3
             (SEGMENT + axis, vec![below(1000) as u32, v, v_high, a, a_high, 0, 0, last])
         }
     };
-    let mut content = vec![next, WRITE | address];
+    // Now and then another host's request.
+    let session = if below(30) == 0 { 2 } else { 1 };
+    let mut content = vec![next, WRITE | address, session, 0];
     words.iter().for_each(|word| content.extend(word.to_le_bytes()));
     if below(10) == 0 {
         // A damaged frame, which nothing executes.
@@ -126,8 +145,10 @@ struct Answers {
     count: u64,
     /// The number that the next write must have.
     next: u8,
-    /// Bit 0: a fault; bit 3: the drivers are ready.
+    /// Bit 0: a fault; bit 1: the drivers are ready.
     state: u8,
+    /// The reason of the last refusal.
+    reason: u8,
 }
 
 impl Answers {
@@ -136,8 +157,8 @@ impl Answers {
             (END, None) => {}
             (END, _) => {
                 self.count += 1;
-                if let [_, _, next, state, ..] = self.frame[..] {
-                    (self.next, self.state) = (next, state);
+                if let [_, _, next, state, _, _, _, why, ..] = self.frame[..] {
+                    (self.next, self.state, self.reason) = (next, state, why >> 4);
                 }
                 self.frame.clear();
             }
@@ -237,7 +258,7 @@ fn board_that_skips_clocks_equals_one_that_executes_all() {
     for on_spi in [false, true] {
         let mut met = [0; 4];
         for axes in 1..=AXES {
-            let one = compare(axes, on_spi, 40);
+            let one = compare(axes, on_spi, 80);
             met.iter_mut().zip(one).for_each(|(all, one)| *all += one);
         }
         let least = [10_000, 100, 300, 20];

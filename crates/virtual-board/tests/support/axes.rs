@@ -11,6 +11,7 @@ use carrystep_link::{Clock, Exchanged, Host, Line, Patience, Timing};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, Switches, VerilatedBoard};
 use std::cell::{Ref, RefCell};
+use std::num::NonZeroU16;
 use std::rc::Rc;
 
 /// Reads a machine file.
@@ -220,7 +221,7 @@ impl<B: Make> Bench<B> {
         Self(Rc::new(RefCell::new(world)))
     }
 
-    /// Connects a host to the board.
+    /// Connects a host to the board, and opens a session.
     pub fn connect(&self, machine: &Machine) -> Host<Self, Self> {
         let patience = Patience {
             timing: Timing { resend: 12, pause: 2 },
@@ -230,7 +231,9 @@ impl<B: Make> Bench<B> {
             status_period: 5,
         };
         let id = uart(machine).build_id(&machine.engine());
-        Host::connect(self.clone(), self.clone(), Some(id.0), patience).unwrap()
+        let mut host = Host::connect(self.clone(), self.clone(), Some(id.0), patience).unwrap();
+        host.open(NonZeroU16::MIN).unwrap();
+        host
     }
 
     pub fn board(&self) -> Ref<'_, B> {

@@ -2,7 +2,7 @@
 //! microsecond more than its bits.
 
 use super::wire::{Faults, Wire};
-use super::{CLOCK_HZ, Kind, MS, Seen, build};
+use super::{CLOCK_HZ, Kind, MS, SESSION, Seen, build};
 use carrystep_core::link::LineKind;
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Clock, Host, Patience, Timing};
@@ -68,12 +68,15 @@ impl<B: Kind> Bus<B> {
         })))
     }
 
-    /// Connects a host that refuses any other build.
+    /// Connects a host that refuses any other build, and opens a session.
     pub fn connect(&self) -> BusHost<B> {
         let id = LineKind::Spi.build_id(&build());
         // No USB bridge delays an answer here.
         let patience = Patience { timing: Timing { resend: 5, pause: 1 }, ..Patience::default() };
-        Host::connect(SpiLine::new(self.clone()), self.clone(), Some(id.0), patience).unwrap()
+        let line = SpiLine::new(self.clone());
+        let mut host = Host::connect(line, self.clone(), Some(id.0), patience).unwrap();
+        host.open(SESSION).unwrap();
+        host
     }
 }
 

@@ -18,6 +18,7 @@ use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, VerilatedBoard}
 use random::Random;
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::num::NonZeroU16;
 use std::rc::Rc;
 use wire::{Faults, Wire};
 
@@ -31,6 +32,9 @@ pub const TICK: u64 = CLOCK_HZ * TICK_NS / 1_000_000_000;
 pub const STOP: u64 = 1 << 45;
 /// Greatest speed of [`waves`], 2^-64 step per tick.
 pub const FASTEST: i64 = 1 << 58;
+
+/// Number of the session of these hosts.
+pub const SESSION: NonZeroU16 = NonZeroU16::new(0xdbc0).unwrap();
 
 pub type BoardHost<B> = Host<End<B>, End<B>>;
 
@@ -236,9 +240,11 @@ impl<B: Kind> End<B> {
         })))
     }
 
-    /// Connects a host that refuses any other build.
+    /// Connects a host that refuses any other build, and opens a session.
     pub fn connect(&self, uart: Uart) -> BoardHost<B> {
-        self.connect_to(uart.build_id(&build()), Patience::default()).unwrap()
+        let mut host = self.connect_to(uart.build_id(&build()), Patience::default()).unwrap();
+        host.open(SESSION).unwrap();
+        host
     }
 
     /// Connects a host that refuses any other build than `id`.

@@ -3,11 +3,20 @@
 use super::link::device::on_the_line;
 use super::{CLOCK_HZ, Kind, Seen};
 use carrystep_core::link::{END, Uart};
-use carrystep_link::registers::{CONTROL, POSITION, SEGMENT, WRITE};
+use carrystep_link::registers::{CONTROL, OPEN, POSITION, SEGMENT, WRITE};
 use carrystep_link::{Answer, frame};
 
 /// Time limit for an answer, clocks.
 const PATIENCE: u64 = 30_000;
+
+/// The session of the host.
+pub const SESSION: u16 = 0xdbc0;
+
+/// The bytes of a write of this session, without its CRC.
+pub fn write(sequence: u8, address: u8, session: u16, words: &[u32]) -> Vec<u8> {
+    let head = [sequence, address].into_iter().chain(session.to_le_bytes());
+    head.chain(words.iter().flat_map(|word| word.to_le_bytes())).collect()
+}
 
 /// A host that sends one request at a time.
 pub struct Talk<B> {
@@ -19,12 +28,13 @@ pub struct Talk<B> {
 }
 
 impl<B: Kind> Talk<B> {
+    /// A host that has opened a session.
     pub fn new() -> Self {
-        Self {
-            board: B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()),
-            next: 0,
-            edges: Seen::default(),
-        }
+        let board = B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap());
+        let mut talk = Self { board, next: 0, edges: Seen::default() };
+        let answer = talk.ask(&write(0x5a, WRITE | OPEN, SESSION, &[0]));
+        assert_eq!((answer.next, answer.refusal), (0, None), "{answer:?}");
+        talk
     }
 
     pub fn powered() -> Self {
@@ -74,11 +84,18 @@ impl<B: Kind> Talk<B> {
         self.words(WRITE | frame::of_axis(SEGMENT, axis), &words)
     }
 
+    /// The bytes of a write of the owner, without its CRC.
+    pub fn content(&self, sequence: u8, address: u8, words: &[u32]) -> Vec<u8> {
+        write(sequence, address, SESSION, words)
+    }
+
+    /// A read of the owner, which restarts the watchdog.
+    pub fn own_read(&mut self, address: u8) -> Answer {
+        self.ask(&write(0, address, SESSION, &[]))
+    }
+
     pub fn words(&mut self, address: u8, words: &[u32]) -> Answer {
-        let head = [self.next, address];
-        let content: Vec<u8> =
-            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
-        let answer = self.ask(&content);
+        let answer = self.ask(&self.content(self.next, address, words));
         self.next = self.next.wrapping_add(1);
         assert_eq!(answer.next, self.next, "{answer:?}");
         answer

@@ -4,8 +4,7 @@
 use super::link::client::Client;
 use super::link::{hex, unhex};
 use carrystep_link::registers::{
-    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLEAR, CONTROL, CONTROL_ENABLE, CONTROL_STOP, IDENTITY,
-    POSITION, PROTOCOL,
+    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLEAR, CONTROL, CONTROL_ENABLE, IDENTITY, POSITION, PROTOCOL,
 };
 use carrystep_link::{Clock, Command, Line, frame};
 use std::fmt::Debug;
@@ -27,7 +26,7 @@ pub struct Heard {
 impl Heard {
     fn of(words: &str) -> Self {
         let parts: Vec<&str> = words.split(':').collect();
-        let [_, address, next, flags, cause, .., data] = parts.as_slice() else {
+        let [_, address, next, flags, _, cause, .., data] = parts.as_slice() else {
             panic!("the client said {words:?}")
         };
         let number = |text, radix| u32::from_str_radix(text, radix).expect("a number");
@@ -91,7 +90,14 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         if verdict != "fine" {
             return Err(Refused { verdict, build });
         }
-        host.client.say(&format!("adopt {:02x} {axes}", host.last.next));
+        host.until("the session", |host| {
+            host.client.say(&format!("open 1a2b {axes}"));
+            host.until("the answer", |host| {
+                host.pump();
+                !host.waits()
+            });
+            host.client.say("owns") == "yes"
+        });
         Ok(host)
     }
 
@@ -120,7 +126,7 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
             }
             answers
         };
-        assert!(!answers.contains("step"), "out of step: {answers}");
+        assert!(!answers.contains("lost"), "the session is lost: {answers}");
         for words in answers.split(' ').filter(|&words| words != "-" && words != "damaged") {
             self.last = Heard::of(words);
         }
@@ -205,29 +211,31 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
                 host.register(POSITION);
             }
             if watch() && !host.last.is('f') {
-                host.rest(CONTROL_STOP);
+                host.rest(true);
             }
             host.last.is('f') || fed && host.last.is('i')
         });
         if self.last.is('f') {
-            self.rest(0);
+            self.rest(false);
             return Some(self.last.cause);
         }
         self.feeds = false;
         None
     }
 
-    /// Withdraws the program, writes `stop` to CONTROL, and waits until the axes rest.
-    fn rest(&mut self, stop: u32) {
+    /// Withdraws the program, stops the axes if they are to be stopped, and waits until they rest.
+    fn rest(&mut self, stop: bool) {
         self.feeds = false;
-        self.client.say("withdraw");
-        self.write(CONTROL, CONTROL_ENABLE | stop);
+        self.client.say(if stop { "stop" } else { "withdraw" });
+        self.until("the stop", |host| {
+            host.pump();
+            !host.waits()
+        });
         self.wait("rest", |last| last.is('h'));
     }
 
     /// Ends a stop.
     pub fn clear(&mut self) {
-        self.write(CONTROL, CONTROL_ENABLE);
         self.write(CLEAR, 0);
         self.wait("the clear", |last| !last.is('f'));
     }

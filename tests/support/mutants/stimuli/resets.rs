@@ -1,8 +1,9 @@
-//! Stimuli with resets: in motion, during a stop, while limits and homing are active, held for some
+//! Stimuli with resets: in motion, during a stop, while limits and a seek are active, held for some
 //! ticks, and in the middle of a segment. Further ones number the words of a segment wrongly.
 
 use super::Stimulus;
 use super::cruise::{ROUND, THEN, TICK, again, both_ways, cruise};
+use carrystep_core::engine::SeekSource;
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 
@@ -18,7 +19,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         twice(build),
         during_a_clear(build),
         with_discarded_steps(build),
-        of_homing(build),
+        of_a_seek(build),
         of_the_limits(build),
         of_a_count(build),
         of_silence(build),
@@ -94,15 +95,16 @@ fn with_discarded_steps(build: &EngineBuild) -> Stimulus {
     stimulus
 }
 
-/// Axes that wait for their limits when the reset comes do not wait after it.
-fn of_homing(build: &EngineBuild) -> Stimulus {
+/// Axes that wait for a source when the reset comes do not wait after it.
+fn of_a_seek(build: &EngineBuild) -> Stimulus {
     let program = [cruise(700, both_ways(1 << 54)), again(30_000)].concat();
-    let mut events = vec![(THEN - 900, Event::Home(0x2d))];
+    let source = SeekSource { axis: 0, row: 0, own: true, level: true };
+    let mut events = vec![(THEN - 901, Event::SeekSource(source)), (THEN - 900, Event::Seek(0x2d))];
     events.extend(pulse(THEN, 1));
     events
-        .extend([(THEN + 2 * TICK + 50, Event::Home(0x3f)), (THEN + 40 * TICK, Event::Home(0x12))]);
+        .extend([(THEN + 2 * TICK + 50, Event::Seek(0x3f)), (THEN + 40 * TICK, Event::Seek(0x12))]);
     events.extend(pulse(THEN + 60 * TICK, 3 * TICK));
-    Stimulus::new(build, "a reset of axes that wait for limits", &program, &events)
+    Stimulus::new(build, "a reset of axes that seek", &program, &events)
 }
 
 /// All limits are active, and become inactive just before the reset: the engine forgets them at

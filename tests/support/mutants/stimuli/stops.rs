@@ -3,12 +3,21 @@
 
 use super::cruise::{ROUND, THEN, again, both_ways, cruise};
 use super::{Stimulus, coincidences};
-use carrystep_core::engine::EngineOutputs;
+use carrystep_core::engine::{EngineOutputs, SeekSource};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 
 /// The modules on the path from a limit switch to the stop.
-const GUARDS: [&str; 6] = ["limits", "switches", "stops", "supervisor", "time_slot", "engine"];
+const GUARDS: [&str; 8] = [
+    "switches",
+    "switch_memory",
+    "seek_control",
+    "edge_latch",
+    "stops",
+    "supervisor",
+    "time_slot",
+    "engine",
+];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     let mut all = vec![
@@ -29,7 +38,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     all.extend(coincidences::starts_that_stop(build));
     all.extend(coincidences::two_causes(build));
     all.push(bounces(build));
-    all.push(homing(build));
+    all.push(seeks(build));
     all.extend((0..AXES).map(|axis| coincidences::last_step(build, axis)));
     all.push(silence(build));
     all
@@ -124,19 +133,28 @@ fn bounces(build: &EngineBuild) -> Stimulus {
     Stimulus::new(build, "limits that bounce", &program, &events).only_for(&GUARDS)
 }
 
-/// The host selects every set of axes. Then all axes wait for their limits, the odd ones for the
-/// low ends, and find them one after the other while segments are in their queues.
-fn homing(build: &EngineBuild) -> Stimulus {
+/// The host selects every set of axes. Then the odd axes seek their low ends and hit them one after
+/// the other while segments are in their queues, and after them the even axes their high ends.
+fn seeks(build: &EngineBuild) -> Stimulus {
     let mut events: Events =
-        (0..64).map(|axes: u8| (100 * u64::from(axes), Event::Home(axes))).collect();
-    let ends = (0..AXES as u8).map(|axis| THEN + 9 * ROUND * u64::from(axis)).zip(0..AXES as u8);
+        (0..64).map(|axes: u8| (100 * u64::from(axes), Event::Seek(axes))).collect();
+    let source = |row| Event::SeekSource(SeekSource { axis: 0, row, own: true, level: true });
+    events.extend([(6_400, source(0)), (6_500, Event::Seek(0b10_1010))]);
     let (mut low, mut high) = (0, 0);
-    for (at, axis) in ends {
+    // A hit comes eight to ten rounds after its switch has closed. The odd axes rest before the source
+    // changes: their closed switches would stop them otherwise.
+    for (place, axis) in [(0, 1), (1, 3), (2, 5), (5, 0), (6, 2), (7, 4)] {
+        let at = THEN + 12 * ROUND * place;
+        if axis == 0 {
+            events.extend([(at - ROUND, source(1)), (at - ROUND, Event::Seek(0b01_0101))]);
+        }
         let end = if axis % 2 == 0 { &mut high } else { &mut low };
         *end |= 1 << axis;
         events.extend([(at, Event::LimitMin(low)), (at, Event::LimitMax(high))]);
     }
     events.extend([(120 * ROUND, Event::LimitMin(0)), (120 * ROUND, Event::LimitMax(0))]);
+    // As long as the host does not end the seek, no axis that has hit can be started.
+    events.push((125 * ROUND, Event::Seek(0)));
     let row = |ticks, last| {
         let segment = move |v| Segment { ticks, v, a: 0, j: 0, last };
         (0..)
@@ -147,9 +165,9 @@ fn homing(build: &EngineBuild) -> Stimulus {
         row(3_000, false).chain(row(3_000, false)).chain(row(3_000, true)).collect();
     program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 900_000 }]);
     program.extend(cruise(40, both_ways(-(1 << 59))));
-    let stimulus = Stimulus::new(build, "homing", &program, &events);
-    let met = |(_, outputs): &(u64, EngineOutputs)| outputs.homing == 0 && outputs.fault.is_none();
-    assert!(stimulus.recording.outputs.last().is_some_and(met), "all axes meet their limits");
+    let stimulus = Stimulus::new(build, "seeks", &program, &events);
+    let met = |(_, outputs): &(u64, EngineOutputs)| outputs.seeking == 0 && outputs.fault.is_none();
+    assert!(stimulus.recording.outputs.last().is_some_and(met), "all axes hit their limits");
     stimulus
 }
 

@@ -1,6 +1,5 @@
 //! The distance by which an axis overruns its switch, and conversions of speeds.
 
-use crate::machine::{Axis, Machine};
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_core::build::Timebase;
 use carrystep_core::engine::Guard;
@@ -11,16 +10,6 @@ use carrystep_core::engine::Guard;
 pub fn overrun(speed: u64, stop: u64, guard: &Guard) -> u64 {
     let ramp = u128::from(speed) * u128::from(speed) / (2 * u128::from(stop.max(1)));
     steps_up(ramp.saturating_add(accepted(speed, guard)))
-}
-
-impl Axis {
-    /// Distance in steps by which this axis must move away from a closed switch until the switch is
-    /// open: `move_off` if the axis homes, otherwise the overrun of a limit stop from full speed.
-    pub fn move_off(&self, machine: &Machine) -> u32 {
-        let full =
-            || overrun(per_tick(&self.speed_limit, &machine.timebase), self.stop, &machine.guard);
-        self.home.map_or_else(|| u32::try_from(full()).unwrap_or(u32::MAX), |home| home.move_off)
-    }
 }
 
 /// Converts steps/s to 2^-64 step per tick, rounded down.

@@ -32,7 +32,7 @@ module promises (
     input wire turned,
     input wire back,
     input wire crosses,
-    input wire caught,
+    input wire meets,
     input wire [2:0] pulses,
     input wire [2:0] losses,
     input wire rises,        // a pulse of `who` in this clock
@@ -140,12 +140,12 @@ module promises (
     // ---- The carries of `who` since the last clear, counted from the position at that clear.
 
     reg [31:0] carried = 0;
-    reg was_caught = 0;              // in the time slot before, the limit was found
+    reg was_meets = 0;              // in the time slot before, the next words were to be those of a hit
     wire [31:0] step = !(fine & crosses) ? 0 : back ? -32'd1 : 32'd1;
     always @(posedge clock) begin
         if (ends) begin
             carried <= clear ? told_then : carried + step;
-            was_caught <= caught;
+            was_meets <= meets;
         end
     end
     wire [31:0] ahead = carried - told;
@@ -183,7 +183,7 @@ module promises (
         promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
 
         promise_15_on_way: assert (!mine || !in_time_slot || on_way == ahead[3:0]);
-        promise_15_met_in_the_tick_before: assert (!mine || !in_time_slot || met == was_caught);
+        promise_15_met_in_the_tick_before: assert (!mine || !in_time_slot || met == was_meets);
     end
 
     reg was_unseen = 0, was_ends = 0, was_mine = 0, was_wrong = 0, was_take = 0;
@@ -235,7 +235,7 @@ module promises (
         invariant_12: assert (control[18:16] == due);
         invariant_15: assert (!in_time_slot || word == present);
         invariant_16: assert (beat[12:1] == 0 || dut_filled == (fresh_now == live_now));
-        invariant_14: assert (control[23:20] == ahead[3:0] && control[19] == was_caught);
+        invariant_14: assert (control[23:20] == ahead[3:0] && control[19] == was_meets);
         invariant_13: assert ((mine && beat[12:1] != 0 ? dut_took == takes : !takes) && (!takes || beat[12:8] != 0));
         invariant_3: assert (control[13:8] == {written_off[2:0], told[2:0]});
         invariant_4: assert (!mine || first_clock || was_ends || word == control);

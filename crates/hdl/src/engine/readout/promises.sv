@@ -3,10 +3,10 @@
 //
 //   parameters   `DUT: the name of the exported module `readout`
 //   assumptions  There is no beat 0 to 12 at a strobe, at most one of them in a clock, and a tick has
-//                a time slot of the last axis (proved in time_slot/promises.sv). A limit is found in
-//                beat 12 (proved in limits/promises.sv). In the tick after the one in which the limit
-//                of an axis was found, `met` is asserted in its time slot, and in no other time slot
-//                (proved in queue/promises.sv).
+//                a time slot of the last axis (proved in time_slot/promises.sv). A source is hit in beat
+//                12 (proved in seek_control/promises.sv). `met` is asserted in the time slot of an
+//                axis in the tick after `meets` was, and in no other (proved in queue/promises.sv).
+//                `latches` follows `comes` at a strobe, or is 0 (proved in edge_latch/promises.sv).
 
 module promises (
     input wire clock,
@@ -16,13 +16,21 @@ module promises (
     input wire snapshot,
     input wire caught,
     input wire met,
+    input wire sweeps,
+    input wire comes,
+    input wire latches,
+    input wire samples,
+    input wire [1:0] row,
+    input wire earlier,
+    input wire level,
+    input wire resetting,
     input wire [31:0] word,
     input wire [2:0] live,
     input wire running,
     input wire [2:0] room,
     input wire [3:0] on_way
 );
-    wire valid, refreshed;
+    wire valid, refreshed, meets;
     wire [1:0] page;
     wire [2:0] item;
     wire [31:0] state;
@@ -31,39 +39,58 @@ module promises (
     // ---- Snapshots, as docs/clock-by-clock.md specifies them.
 
     reg first_clock = 1, asked = 0, takes = 0;
-    reg finds = 0;                   // in this tick a limit was found
-    reg found = 0;                   // in the tick before a limit was found
+    reg finds = 0;                   // in this tick an axis was to be output for a hit in the next one
+    reg found = 0;                   // in the tick before
+    reg all = 0;                     // all axes are to be output for the hit of their common source
+    wire again = caught | met & latches;
+    wire all_again = sweeps | all & latches;
+    wire taken = finds | all_again | comes;
     always @(posedge clock) begin
         first_clock <= 0;
-        asked <= snapshot | (strobe ? asked & finds : asked);
-        if (strobe) takes <= asked & !finds;
+        asked <= snapshot | (strobe ? asked & taken : asked);
+        if (strobe) takes <= asked & !taken;
         if (strobe) found <= finds;
-        finds <= strobe ? 0 : finds | caught;
+        if (strobe) all <= all_again;
+        finds <= strobe ? 0 : finds | again & beat[12];
     end
+    reg latched = 0;                 // `comes` at the strobe before
+    always @(posedge clock) if (strobe) latched <= comes;
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && (!strobe || beat[12:0] == 0));
         assume (!caught || beat[12]);
         assume (!met || found);
+        assume ((!latches || latched) && (!comes || strobe));
     end
 
-    // ---- The page of a whole tick: it may be another one only for an axis at its limit.
+    // ---- The page of a whole tick: it may be another one only for an axis at its hit.
 
-    reg [1:0] page_of_tick = 1;
-    always @(posedge clock) if (strobe) page_of_tick <= asked & !finds ? 2 : 1;
-    wire in_time_slot = beat[12:0] != 0;
+    wire captured = met | all;
+    wire of_switch = beat[7] & samples & !resetting;
+    wire [1:0] page_now = latches ? 3 : captured ? 0 : takes ? 2 : 1;
+
+    // The words of this tick that were output so far: some belong to a snapshot, some do not.
+
+    reg some_of_snapshot = 0, some_others = 0;
+    always @(posedge clock) begin
+        some_of_snapshot <= !strobe & (some_of_snapshot | valid & !of_switch & page == 2);
+        some_others <= !strobe & (some_others | valid & !of_switch & page != 2);
+    end
 
     // ---- The promises.
 
     always_comb begin
-        promise_15_one_page_in_a_tick: assert (!valid || page == (met ? 0 : page_of_tick));
-        promise_15_a_snapshot_is_of_all_axes: assert (!(page == 2 && met));
-        promise_15_each_word_once: assert (valid == (beat[4] | (beat[5] & !met) | beat[6] | beat[10] | beat[11] | beat[12]));
-        promise_15_items: assert (!valid || item == (beat[4] ? 4 : beat[5] ? {2'b00, running} : beat[6] ? 6 : beat[10] ? 5
-            : beat[11] ? 3 : 7));
-        promise_15_words_as_the_memory_has_them: assert (!valid || beat[12] || state == word);
+        promise_15_one_page_in_a_tick: assert (!valid || page == (of_switch ? row : page_now));
+        promise_15_a_snapshot_is_of_all_axes: assert (!(some_of_snapshot && some_others));
+        promise_15_a_hit_waits_for_the_latch: assert (meets == again && (!(strobe && all && latches) || taken));
+        promise_15_each_word_once: assert (valid == (beat[4] | (beat[5] & page_now != 0) | beat[6] | of_switch | beat[10] | beat[11]
+            | beat[12]));
+        promise_15_items: assert (!valid || item == (beat[4] ? 4 : beat[5] ? {2'b00, running} : beat[6] ? 6 : beat[7] ? 2
+            : beat[10] ? 5 : beat[11] ? 3 : 7));
+        promise_15_words_as_the_memory_has_them: assert (!valid || beat[12] || beat[7] || state == word);
+        promise_15_switches: assert (!valid || !beat[7] || state[7:6] == {earlier, level});
         promise_15_status: assert (!beat[12] || state[15:0] == {on_way, 3'b000, 3'd7 - room, running, 2'b00, live});
-        promise_15_refreshed: assert (refreshed == (beat[12] && is_last && !takes));
-        promise_13_inactive: assert (!first_clock || !(page == 2));
+        promise_15_refreshed: assert (refreshed == (beat[12] && is_last && page_now == 1));
+        promise_13_inactive: assert (!first_clock || !valid || of_switch || page == 1);
     end
 
     // ---- The invariants that make the promises inductive.
@@ -71,11 +98,13 @@ module promises (
     (* inside = "dut.asked" *) wire dut_asked;
     (* inside = "dut.takes" *) wire dut_takes;
     (* inside = "dut.found" *) wire dut_found;
+    (* inside = "dut.swept" *) wire dut_swept;
 
 `ifdef INVARIANTS
     always_comb begin
-        invariant_1: assert (dut_asked == asked && dut_takes == takes && dut_found == finds);
-        invariant_2: assert (page_of_tick == (takes ? 2 : 1) && !(takes && found));
+        invariant_1: assert (dut_asked == asked && dut_takes == takes && dut_found == finds && dut_swept == all);
+        invariant_2: assert (!(takes && (found || all || latched)));
+        invariant_3: assert ((!some_of_snapshot || takes) && (!some_others || !takes));
     end
 `endif
 
@@ -83,7 +112,8 @@ module promises (
 
     always_comb begin
         cover_15_snapshot: cover (takes && refreshed == 0 && beat[12]);
-        cover_15_waits_for_a_limit: cover (asked && found && beat[4] && met);
+        cover_15_waits_for_a_hit: cover (asked && found && beat[4] && met);
+        cover_15_hit_behind_the_latch: cover (valid && page == 0 && all && !latched && !beat[7]);
         cover_15_two_in_a_row: cover (takes && asked && strobe);
     end
 endmodule

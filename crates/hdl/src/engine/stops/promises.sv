@@ -23,6 +23,7 @@ module promises (
     input wire pressed,
     input wire breaks,
     input wire missed,
+    input wire interlock,
     input wire asked,
     input wire clear,
     input wire pins_busy,
@@ -67,10 +68,11 @@ module promises (
     wire e_stop = strobe & pressed;
     wire found = strobe & tick_found;
     wire watchdog = strobe & missed;
-    wire called = overrun | e_stop | breaks | found | watchdog | asked | ending;
+    wire opened = strobe & interlock;
+    wire called = overrun | e_stop | breaks | found | watchdog | opened | asked | ending;
     wire freezes = overrun | e_stop | breaks | strobe & tick_freezes | ending;
     wire [3:0] call = overrun ? OVERRUN : e_stop ? E_STOP : breaks ? PROTOCOL : found ? tick_cause
-        : watchdog ? WATCHDOG : STOP;
+        : watchdog ? WATCHDOG : opened ? INTERLOCK : STOP;
     wire [`AXES-1:0] caller = overrun ? late : !e_stop & !breaks & found ? tick_axis : 0;
     // `clear` clears the stop in this tick.
     (* inside = "dut.wiping" *) wire wiping;
@@ -95,7 +97,7 @@ module promises (
         {was_call, was_cause, was_caller, was_culprits} <= {call, cause, caller, culprits};
         {ran, found_before, found_freezing} <= {tick_ran, tick_found, tick_freezes};
         told <= clear;
-        quiet <= !pins_busy & !pressed;
+        quiet <= !pins_busy & !pressed & !interlock;
         if (strobe) halted_at_strobe <= halted & !cleared;
         was_at_rest <= halted & halted_at_strobe;
     end
@@ -158,6 +160,7 @@ module promises (
         cover_5_frozen_in_a_ramp: cover (frozen && !was_frozen && cause == WATCHDOG);
         cover_10_halted_by_a_ramp: cover (halted && !frozen && cause == UNDERRUN && culprits == 2);
         cover_10_cleared: cover (was_cleared);
+        cover_10_interlock: cover (halted && !frozen && cause == INTERLOCK);
         cover_12_two_in_one_clock: cover (fault && !was_fault && was_call == OVERRUN && found_before);
     end
 endmodule

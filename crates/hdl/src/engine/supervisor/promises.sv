@@ -25,7 +25,8 @@ module promises (
 );
     localparam [23:0] ROUND = `ROUND, WATCHDOG = `WATCHDOG, WARM = `WARM, LONG = 24'hffffff;
 
-    wire pressed, missed, enabled, warm, tick_0, tick_1;
+    wire pressed, missed, enabled, warm, begins_round;
+    wire [1:0] row;
     `DUT dut (.*);
 
     function [23:0] more(input [23:0] count);
@@ -81,7 +82,7 @@ module promises (
         promise_14_warm_is_powered: assert (!warm || enabled);
         promise_14_warm_in_time: assert (warm || !enabled || powered < WARM * ROUND);
 
-        promise_12_one_round_for_all: assert (tick_0 == (tick == 0) && tick_1 == (tick == 1));
+        promise_12_one_round_for_all: assert (begins_round == (tick < 4) && row == tick[1:0]);
     end
 
     // ---- The invariants that make the promises inductive: a time in ticks agrees with the

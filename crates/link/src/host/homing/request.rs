@@ -8,6 +8,13 @@ use core::fmt;
 /// Number of axes of the largest build.
 pub(super) const AXES: usize = MOST_AXES as usize;
 
+/// Lowest bit of the row in the source of a seek.
+const SEEK_ROW: u32 = 3;
+/// Bit of the source of a seek: each axis waits for its own switch.
+const SEEK_OWN: u8 = 1 << 5;
+/// Bit of the source of a seek: it waits for the active level.
+const SEEK_LEVEL: u8 = 1 << 6;
+
 /// Wiring of the limit switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wiring {
@@ -107,6 +114,26 @@ impl Homing<'_> {
     /// The mask of the axes of all groups.
     pub fn mask(&self) -> u8 {
         self.groups.iter().fold(0, |mask, group| mask | group) & self.known()
+    }
+
+    /// The mask of the axes whose switches are at their high ends.
+    pub(super) fn toward_max(&self) -> u8 {
+        let at_max = |axis: &u8| self.axis(*axis).is_some_and(|axis| axis.toward_max);
+        each(self.known()).filter(at_max).fold(0, |mask, axis| mask | 1 << axis)
+    }
+
+    /// The source for which these axes wait in this stage, as the register SEEK has it; `None` if
+    /// they move without waiting. Toward their switches they wait for these, away from them for the
+    /// switches at their other ends.
+    pub(super) fn source(&self, axes: u8, stage: HomingStage) -> Option<u8> {
+        let toward = matches!(stage, HomingStage::Seek | HomingStage::Approach);
+        let high = axes & self.toward_max() != 0;
+        let row = match self.wiring {
+            Wiring::Pair => u8::from(high == toward),
+            Wiring::Each | Wiring::One if toward => 0,
+            Wiring::Each | Wiring::One => return None,
+        };
+        Some(row << SEEK_ROW | SEEK_OWN | SEEK_LEVEL)
     }
 
     /// The mask of the axes that have homing parameters.

@@ -1,10 +1,12 @@
-//! One axis of the engine: the calculation of one tick, and the debounced limit inputs. It must
-//! stay equal to "A tick of an axis" and "The guard's inputs" in docs/clock-by-clock.md.
+//! One axis of the engine: the calculation of one tick. It must stay equal to "A tick of an axis"
+//! in docs/clock-by-clock.md.
 
+use super::seek::AxisSeek;
+use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Guard, LimitWiring, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{Cause, Guard, QUEUE, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
 
 /// Number of slots of an axis: those of its queue, and that of the running segment.
@@ -30,34 +32,7 @@ impl Queued {
     }
 }
 
-/// A limit input: the debounced state, and the number of consecutive samples that differ from it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Limit {
-    pub(super) active: bool,
-    pub(super) against: u32,
-}
-
-/// One sample of a limit input.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct LimitSample {
-    /// True for `limit_max`, false for `limit_min`.
-    pub(super) max: bool,
-    /// The sampled level; true is active.
-    pub(super) pin: bool,
-}
-
-/// The state of homing of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Homing {
-    /// The axis waits for its limit to become active.
-    pub(super) waits: bool,
-    /// The limit became active in this tick.
-    pub(super) meets: bool,
-    /// After that, the axis slows down in a ramp of its own.
-    pub(super) slows: bool,
-}
-
-/// One axis: its accumulator, its queue, its limits, the stages behind the accumulator and the step
+/// One axis: its accumulator, its queue, its switches, the stages behind the accumulator and the step
 /// shaper.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct AxisModel {
@@ -69,7 +44,7 @@ pub(super) struct AxisModel {
     pub(super) ramp: Option<bool>,
     /// Acceleration of ramps, in 2^-64 step per tick^2.
     pub(super) stop: i64,
-    pub(super) homing: Homing,
+    pub(super) seek: AxisSeek,
     pub(super) queue: VecDeque<Queued>,
     /// Number of segments that have left the queue, modulo [`SLOTS`]: the slot of the running
     /// segment, or of the last one that ran.
@@ -79,7 +54,8 @@ pub(super) struct AxisModel {
     pub(super) words: [u32; SEGMENT_WORDS as usize],
     /// Number of the word of that segment that must come next.
     pub(super) next_word: u8,
-    pub(super) limits: [Limit; 2],
+    /// The switches of this axis, one of each row.
+    pub(super) switches: [Switch; SWITCH_ROWS as usize],
     pub(super) computed: Stage,
     pub(super) emitted: Stage,
     pub(super) shaper: shaper::ShaperState,
@@ -102,13 +78,13 @@ impl AxisModel {
             unfit: false,
             ramp: None,
             stop: stop.cast_signed(),
-            homing: Homing::default(),
+            seek: AxisSeek::default(),
             queue: VecDeque::new(),
             slot: 0,
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
             next_word: 0,
-            limits: [Limit::default(); 2],
+            switches: Default::default(),
             computed: Stage::default(),
             emitted: Stage::default(),
             shaper,
@@ -126,17 +102,18 @@ impl AxisModel {
         self.pass_slots(usize::from(self.running.is_some()));
     }
 
+    /// True if the axis is in a ramp, that of all axes (`all`) or one of its own.
+    pub(super) const fn is_in_ramp(&self, all: bool) -> bool {
+        all || self.seek.ramps
+    }
+
     /// Counts segments that leave the queue.
     fn pass_slots(&mut self, segments: usize) {
         self.slot = ((usize::from(self.slot) + segments) % SLOTS) as u8;
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
-    pub(super) fn tick(
-        &self,
-        tick: Tick<'_>,
-        sample: Option<LimitSample>,
-    ) -> (Self, Option<Cause>) {
+    pub(super) fn tick(&self, tick: Tick<'_>, sample: Option<Sample>) -> (Self, Option<Cause>) {
         let mut next = self.clone();
         next.emitted = self.computed;
         next.computed = Stage::default();
@@ -151,26 +128,16 @@ impl AxisModel {
         }
         if let Some(sample) = sample {
             let sign = next.computed.sign;
-            let hit = next.limits[usize::from(sample.max)].hit(sample, tick, sign);
-            if hit && !self.homing.meets && !self.homing.slows {
+            let switch = &mut next.switches[usize::from(sample.row)];
+            if switch.finds_limit(sample, tick.guard, sign) && !self.seek.is_excused {
                 found = Some(Cause::Limit);
             }
         }
-        if self.homing.slows && next.running.is_none() {
+        if self.seek.ramps && next.running.is_none() {
             next.pass_slots(next.queue.len());
             next.queue.clear();
         }
-        let slows = self.homing.meets || (self.homing.slows && next.running.is_some());
-        next.homing = Homing { meets: false, slows, ..self.homing };
         (next, found)
-    }
-
-    /// True if the limit of the axis stops it in this tick.
-    pub(super) fn hits(&self, tick: Tick<'_>, sample: LimitSample) -> bool {
-        let fits = |segment: &Queued| !tick.halted && !self.unfit && segment.v != i64::MIN;
-        let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
-        let mut limit = self.limits[usize::from(sample.max)];
-        limit.hit(sample, tick, sign)
     }
 
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
@@ -181,7 +148,7 @@ impl AxisModel {
             .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
         next.computed = Stage { step, sign: v.signum() as i8 };
         next.p = self.p.wrapping_add(v.cast_unsigned());
-        if tick.ramp || self.homing.slows {
+        if self.is_in_ramp(tick.ramp) {
             let Some(back) = self.ramp else {
                 next.running = Some(segment);
                 next.ramp = Some(v < 0);
@@ -211,31 +178,5 @@ impl AxisModel {
         next.running = Some(on);
         next.unfit = unfit;
         Some(Cause::Underrun)
-    }
-}
-
-impl Limit {
-    /// Takes one sample in a tick whose V has this sign; returns true if the limit stops the axis.
-    fn hit(&mut self, sample: LimitSample, tick: Tick<'_>, sign: i8) -> bool {
-        let became = self.sample(sample.pin, tick.guard.debounce);
-        match tick.guard.limits {
-            LimitWiring::None => false,
-            LimitWiring::Pair => self.active && sign == if sample.max { 1 } else { -1 },
-            LimitWiring::Each | LimitWiring::One => became && sign != 0,
-        }
-    }
-
-    /// Takes one sample; returns true if the debounced state becomes active with it.
-    fn sample(&mut self, pin: bool, debounce: u32) -> bool {
-        if pin == self.active {
-            self.against = 0;
-            return false;
-        }
-        self.against += 1;
-        if self.against < debounce {
-            return false;
-        }
-        *self = Self { active: pin, against: 0 };
-        pin
     }
 }

@@ -19,8 +19,8 @@ pub(crate) struct AxisState {
 /// What the strobe of this clock does beside adding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Ending {
-    /// The axes that found in this tick the limit for which they waited, one bit each.
-    pub met: u8,
+    /// The axes whose state is captured for the hit of a seek in this tick, one bit each.
+    pub hits: u8,
     /// The queues are emptied, by a clear or a reset.
     pub empties: bool,
     /// The number of discarded steps is set to 0, by a reset.
@@ -50,10 +50,22 @@ impl Motion {
     pub(crate) fn ending(&self) -> Option<Ending> {
         let forgets = self.reset.forgets();
         self.strobe().then(|| Ending {
-            met: super::bits(&self.axis_models, |axis_model| axis_model.homing.meets),
+            hits: super::bits(&self.axis_models, |axis_model| {
+                axis_model.seek.hits || self.seek.sweeps
+            }),
             empties: self.stop.clearing || forgets,
             forgets,
         })
+    }
+
+    /// True if the words of state of this tick are latched.
+    pub(crate) const fn latches(&self) -> bool {
+        self.latch.latches
+    }
+
+    /// True while the engine returns to its state at configuration.
+    pub(crate) const fn is_resetting(&self) -> bool {
+        self.reset.is_resetting()
     }
 
     /// The step of an axis in the tick before the last strobe: 1 forward, -1 backward, or 0.

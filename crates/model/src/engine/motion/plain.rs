@@ -1,17 +1,50 @@
 //! Access for the fast model: computes how many clocks of the engine can be skipped because every
 //! axis only repeats its additions, and advances the counters that run during that time.
 //!
-//! All other events (an accepted word, a load, the call of a stop, a change of a debounced limit,
-//! an axis that comes to rest) are executed by [`Motion::clock`]. Every condition here must be
+//! All other events (an accepted word, a load, the call of a stop, a change of a debounced switch,
+//! the hit of a seek, an edge of the latch, an axis that comes to rest) are executed by [`Motion::clock`]. Every condition here must be
 //! conservative: a skipped clock must have no other effect.
 
-use super::axis_model::{AxisModel, Limit};
+use super::axis_model::AxisModel;
 use super::guard::Stop;
-use super::limits::SAMPLE_BEAT;
+use super::seek::AxisSeek;
+use super::switches::{INTERLOCK_ROW, SAMPLE_BEAT, Switch};
 use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
-use carrystep_core::engine::{EngineInputs, LimitWiring, PUT_BEAT, QUEUE, TIME_SLOT_CLOCKS};
+use carrystep_core::engine::{
+    EngineInputs, LimitWiring, PUT_BEAT, QUEUE, SWITCH_ROWS, TIME_SLOT_CLOCKS,
+};
+
+/// Strobes before the first event, and ticks before the first tick with an event that comes before
+/// its strobe.
+#[derive(Debug, Clone, Copy)]
+struct Plain {
+    strobes: u64,
+    ticks: u64,
+}
+
+impl Plain {
+    /// Nothing is plain.
+    const NOT: Self = Self { strobes: 0, ticks: 0 };
+
+    const fn and(self, other: Self) -> Self {
+        Self {
+            strobes: if self.strobes < other.strobes { self.strobes } else { other.strobes },
+            ticks: if self.ticks < other.ticks { self.ticks } else { other.ticks },
+        }
+    }
+
+    /// At the first event at a strobe, `strobes` others are before it.
+    const fn to_strobe(strobes: u64) -> Self {
+        Self { strobes, ticks: u64::MAX }
+    }
+
+    /// The event may come anywhere in its tick.
+    const fn to_tick(ticks: u64) -> Self {
+        Self { strobes: ticks, ticks }
+    }
+}
 
 impl Motion {
     /// Number of clocks in a tick.
@@ -29,6 +62,11 @@ impl Motion {
         self.clock
     }
 
+    /// Number of the tick in the round, from 0.
+    pub(crate) const fn tick_of_round(&self) -> u32 {
+        self.supervisor.tick_of_round
+    }
+
     /// The number of cycles, at most `most`, in which these inputs change nothing and every strobe
     /// only adds.
     pub(crate) fn plain_clocks(&self, inputs: &EngineInputs, most: u64) -> u64 {
@@ -37,13 +75,10 @@ impl Motion {
         }
         let per_tick = u64::from(self.clocks_per_tick());
         let to_strobe = per_tick - 1 - u64::from(self.clock);
-        let mut strobes = self.plain_strobes(inputs);
-        if self.axis_models.iter().any(|axis_model| axis_model.homing.waits) {
-            // The engine finds the limit in the axis' time slot, which is before the strobe.
-            let Some(before) = strobes.checked_sub(1) else { return 0 };
-            strobes = before;
-        }
-        let to_event = strobes.saturating_mul(per_tick).saturating_add(to_strobe);
+        let Plain { strobes, ticks } = self.plain(inputs);
+        let Some(whole) = ticks.checked_sub(1) else { return 0 };
+        let to_tick = whole.saturating_mul(per_tick).saturating_add(to_strobe + 1);
+        let to_event = strobes.saturating_mul(per_tick).saturating_add(to_strobe).min(to_tick);
         most.min(to_event).min(self.clocks_to_put(inputs))
     }
 
@@ -56,8 +91,11 @@ impl Motion {
         self.time_slots
             && !(inputs.reset || self.reset.ending || self.misplaced)
             && (fault || !(inputs.stop || inputs.broken || nobody))
-            && inputs.home.is_none()
-            && !self.axis_models.iter().any(|axis_model| axis_model.homing.meets || axis_model.homing.slows)
+            && inputs.seek.is_none()
+            && inputs.seek_source.is_none()
+            && !self.seek.sweeps
+            && self.axis_models.iter().all(|axis_model| axis_model.is_steady(self.seek.released))
+            && self.latch.is_steady(guard, inputs)
             && !(fault && self.armed.is_some())
             // `idle` would become true at the end of the last pulse.
             && !(self.rest == 2 && busy)
@@ -76,22 +114,24 @@ impl Motion {
         ((beat + per_tick - self.clock) % per_tick).into()
     }
 
-    /// Strobes before the first strobe that does more than add.
-    fn plain_strobes(&self, inputs: &EngineInputs) -> u64 {
+    /// How long nothing happens but that strobes add and samples count.
+    fn plain(&self, inputs: &EngineInputs) -> Plain {
         let (guard, stop, fault) = (&self.build.guard, &self.stop, self.stop.fault.is_some());
         let running = bits(&self.axis_models, |axis_model| axis_model.running.is_some());
         let waiting = bits(&self.axis_models, |axis_model| !axis_model.queue.is_empty());
+        let ramps = bits(&self.axis_models, |axis_model| axis_model.seek.ramps);
         let ran = running != 0 && !stop.halted;
         let halted = stop.frozen || (stop.ramp && !ran);
         let goes_on =
             Stop { ramp: fault, halted, settled: stop.halted, clearing: false, ..*stop } == *stop;
-        let clears = inputs.clear && stop.settled && !self.supervisor.pressed();
-        let starts = self.armed.is_some_and(|mask| mask & !waiting != 0 || mask & running == 0);
+        let clears = inputs.clear && stop.settled && !self.supervisor.pressed() && !self.interlock;
+        let opens = self.interlock && !fault;
+        let starts = self
+            .armed
+            .is_some_and(|mask| mask & !waiting != 0 || mask & running == 0 || mask & ramps != 0);
         let rests = if ran || waiting != 0 { 0 } else { 2 };
-        if !goes_on || clears || starts || self.rest != rests {
-            return 0;
-        }
-        let mut strobes = self.strobes_to_sample(inputs);
+        let is_due = !goes_on || clears || opens || starts || self.rest != rests;
+        let mut strobes = if is_due { 0 } else { self.latch.plain_strobes(guard) };
         if !fault && self.rest < 2 && !inputs.kick {
             strobes = strobes.min(self.supervisor.strobes_to_silence(guard));
         }
@@ -105,44 +145,56 @@ impl Motion {
         }
         self.axis_models
             .iter()
-            .map(|axis_model| axis_model.plain_strobes(stop.ramp))
-            .fold(strobes, u64::min)
+            .map(|axis_model| axis_model.plain(stop.ramp))
+            .fold(Plain::to_strobe(strobes).and(self.plain_samples(inputs)), Plain::and)
     }
 
-    /// Strobes before the first sample of a limit that does more than count.
-    fn strobes_to_sample(&self, inputs: &EngineInputs) -> u64 {
+    /// How long all samples of switches only count.
+    fn plain_samples(&self, inputs: &EngineInputs) -> Plain {
+        let now = self.row();
+        let is_resampled = |axis| {
+            self.clock > sample_clock(axis)
+                && now.is_some_and(|row| self.pins[axis] != self.pin(inputs, axis, row))
+        };
+        if (0..self.axis_models.len()).any(is_resampled) {
+            return Plain::NOT;
+        }
         let guard = &self.build.guard;
-        let stopped = self.stop.fault.is_some() && !guard.limit_freezes;
-        let mut strobes = u64::MAX;
-        for (axis, axis_model) in self.axis_models.iter().enumerate() {
-            let seen_now = self.pin(inputs, axis, self.supervisor.tick_of_round);
-            if self.clock > sample_clock(axis) && self.pins[axis] != seen_now {
-                return 0;
-            }
-            for end in self.samples() {
-                let limit = axis_model.limits[end as usize];
-                let first = self.supervisor.strobes_to_sample(guard, end);
-                // An active limit stops an axis that moves toward it.
-                let counts = !stopped || axis_model.homing.waits;
-                let hits = guard.limits == LimitWiring::Pair
-                    && limit.active
-                    && axis_model.running.is_some()
-                    && counts;
-                let samples = if hits {
-                    0
-                } else {
-                    limit.plain_samples(self.pin(inputs, axis, end), guard.debounce)
-                };
-                strobes =
-                    strobes.min(samples.saturating_mul(guard.round.into()).saturating_add(first));
+        let seeks = |axis_model: &AxisModel| axis_model.seek.waits || axis_model.seek.slows;
+        let seeking = self.axis_models.iter().any(seeks);
+        let mut plain = Plain::to_strobe(u64::MAX);
+        for row in self.rows() {
+            let first = self.supervisor.strobes_to_sample(guard, row.into());
+            for axis in 0..self.axis_models.len() {
+                let samples = self.plain_samples_of(inputs, axis, row);
+                let ticks = samples.saturating_mul(guard.round.into()).saturating_add(first);
+                let opens = guard.has_interlock() && row == INTERLOCK_ROW && axis == 0;
+                let within = seeking || opens;
+                plain =
+                    plain.and(if within { Plain::to_tick(ticks) } else { Plain::to_strobe(ticks) });
             }
         }
-        strobes
+        plain
     }
 
-    /// The ticks of a round in which limits are sampled: 0 for `limit_min`, 1 for `limit_max`.
-    fn samples(&self) -> std::ops::Range<u32> {
-        0..if self.build.guard.limits == LimitWiring::Pair { 2 } else { 1 }
+    /// Samples of a switch before the first one that does more than count.
+    fn plain_samples_of(&self, inputs: &EngineInputs, axis: usize, row: u8) -> u64 {
+        let (guard, axis_model) = (&self.build.guard, &self.axis_models[axis]);
+        let switch = axis_model.switches[usize::from(row)];
+        let seeks = axis_model.seek.waits || axis_model.seek.slows;
+        let stopped = self.stop.fault.is_some() && !guard.limit_freezes;
+        // An active limit stops an axis that moves toward it.
+        let stops = guard.limits == LimitWiring::Pair
+            && row < 2
+            && switch.active
+            && axis_model.running.is_some()
+            && (!stopped || seeks);
+        let hits = switch.active == self.seek.source.level && self.is_awaited(axis, row);
+        if stops || hits {
+            0
+        } else {
+            switch.plain_samples(self.pin(inputs, axis, row), guard.debounce)
+        }
     }
 
     /// Advances everything but the axes by this many clocks.
@@ -152,21 +204,26 @@ impl Motion {
         let end = begin + clocks;
         let strobes = end / per_tick;
         for axis in 0..self.axis_models.len() {
-            for sample in self.samples() {
-                let first = self.supervisor.strobes_to_sample(&self.build.guard, sample);
+            for row in 0..SWITCH_ROWS {
+                if !self.is_sampled(row) {
+                    continue;
+                }
+                let first = self.supervisor.strobes_to_sample(&self.build.guard, row.into());
                 let samples = strobes.saturating_sub(first).div_ceil(round);
-                let pin = self.pin(inputs, axis, sample);
-                self.axis_models[axis].limits[sample as usize].pass(pin, samples);
+                let pin = self.pin(inputs, axis, row);
+                self.axis_models[axis].switches[usize::from(row)].pass(pin, samples);
             }
             let at = u64::from(sample_clock(axis));
             let seen = end.checked_sub(at + 1).map(|since| since / per_tick);
             if let Some(tick) = seen.filter(|tick| tick * per_tick + at >= begin) {
                 let tick_of_round =
                     ((u64::from(self.supervisor.tick_of_round) + tick) % round) as u32;
-                self.pins[axis] = self.pin(inputs, axis, tick_of_round);
+                let row = self.row_in(tick_of_round);
+                self.pins[axis] = row.is_some_and(|row| self.pin(inputs, axis, row));
             }
         }
         self.supervisor.pass(&self.build.guard, inputs.kick, strobes);
+        self.latch.pass(strobes);
         self.clock = (end % per_tick) as u32;
     }
 
@@ -190,12 +247,26 @@ impl Motion {
     }
 }
 
-/// The clock of a tick in which an axis samples its limit.
+/// The clock of a tick in which an axis samples a switch.
 const fn sample_clock(axis: usize) -> u32 {
     axis as u32 * TIME_SLOT_CLOCKS + SAMPLE_BEAT
 }
 
 impl AxisModel {
+    /// True if nothing that the seek of the axis does is due in this tick, but for hits.
+    fn is_steady(&self, released: bool) -> bool {
+        let AxisSeek { slows, ramps, hits, is_excused, .. } = self.seek;
+        let ends = slows && self.running.is_none() && (released || !self.queue.is_empty());
+        slows == ramps && !(hits || is_excused || ends)
+    }
+
+    /// How long strobes only add; `ramp` is that of all axes.
+    fn plain(&self, ramp: bool) -> Plain {
+        let strobes = self.plain_strobes(self.is_in_ramp(ramp));
+        // The end of a ramp of its own can end the seek, before the strobe.
+        if self.seek.ramps { Plain::to_tick(strobes) } else { Plain::to_strobe(strobes) }
+    }
+
     /// Number of strobes that only add.
     fn plain_strobes(&self, ramp: bool) -> u64 {
         let stop = self.stop.unsigned_abs();
@@ -220,6 +291,7 @@ impl AxisModel {
     }
 
     fn moving(&self, ramp: bool) -> Moving {
+        let ramp = self.is_in_ramp(ramp);
         let cubic = self.running.map_or(Cubic::REST, |segment| match self.ramp {
             Some(back) if ramp => {
                 Cubic { v: segment.v, a: if back { self.stop } else { -self.stop }, j: 0 }
@@ -236,6 +308,7 @@ impl AxisModel {
     }
 
     fn moved(&mut self, moved: &Moving, ramp: bool, strobes: u32) {
+        let ramp = self.is_in_ramp(ramp);
         Moving {
             p: self.p,
             cubic: _,
@@ -253,13 +326,13 @@ impl AxisModel {
     }
 }
 
-impl Limit {
+impl Switch {
     /// Samples of a constant level before the one that changes the debounced state.
     fn plain_samples(self, pin: bool, debounce: u32) -> u64 {
         if pin == self.active { u64::MAX } else { (debounce - 1 - self.against).into() }
     }
 
-    /// Takes `samples` samples of the same level, at most [`Limit::plain_samples`].
+    /// Takes `samples` samples of the same level, at most [`Switch::plain_samples`].
     fn pass(&mut self, pin: bool, samples: u64) {
         // The number is at most the result of `plain_samples`, which fits.
         let samples = u32::try_from(samples).unwrap_or(u32::MAX);

@@ -6,7 +6,6 @@
 //! ```
 
 use super::Motion;
-use super::axis_model::Limit;
 use super::guard::Stop;
 
 /// How far a reset is.
@@ -37,9 +36,9 @@ impl Motion {
         }
         if was.is_resetting() {
             self.supervisor.enabled = false;
-            for axis_model in &mut self.axis_models {
-                axis_model.homing.waits = false;
-            }
+            self.interlock = false;
+            self.forget_seek();
+            self.latch.forget();
         }
         self.reset.ending |= requested;
     }
@@ -57,7 +56,7 @@ impl Motion {
             _ => {
                 self.empty();
                 for axis_model in &mut self.axis_models {
-                    axis_model.limits = [Limit::default(); 2];
+                    axis_model.switches = Default::default();
                     axis_model.shaper.discarded = 0;
                 }
                 if !requested {

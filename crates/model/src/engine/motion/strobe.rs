@@ -21,24 +21,21 @@ impl Motion {
         (axis_models.collect(), found)
     }
 
-    /// Decides at this strobe about the armed start. The start waits while an axis of its mask runs
-    /// on after this tick, or was slowing down for its limit (`slows`) when this tick began. A
-    /// limit that an axis meets in this very tick sets `slows` only for the next tick, so it does
-    /// not delay the start by itself.
+    /// Decides at this strobe about the armed start. A start of an axis whose seek had hit when this
+    /// tick began is dropped. A hit in this very tick does not change the decision.
     pub(super) fn decision(
         &self,
         (ticked, found): &(Vec<AxisModel>, Vec<(Cause, usize)>),
     ) -> Decision {
         let free = self.stop.fault.is_none() && found.is_empty();
         let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };
-        // A start needs a segment that was in the queue before this tick.
-        if mask & bits(&self.axis_models, |axis_model| axis_model.queue.is_empty()) != 0 {
+        let masked = |axes: u8| mask & axes != 0;
+        if masked(bits(&self.axis_models, |axis_model| axis_model.seek.ramps)) {
+            Decision::Drop
+        } else if masked(bits(&self.axis_models, |axis_model| axis_model.queue.is_empty())) {
+            // A start needs a segment that was in the queue before this tick.
             Decision::Unfed
-        } else if mask
-            & (bits(ticked, |axis_model| axis_model.running.is_some())
-                | bits(&self.axis_models, |axis_model| axis_model.homing.slows))
-            != 0
-        {
+        } else if masked(bits(ticked, |axis_model| axis_model.running.is_some())) {
             Decision::Wait
         } else {
             Decision::Go(mask)
@@ -69,6 +66,7 @@ impl Motion {
         }
         match decision {
             Decision::Wait => {}
+            Decision::Drop => self.armed = None,
             Decision::Unfed => stop.call(Cause::Protocol, 0, guard),
             Decision::Go(mask) => {
                 self.armed = None;
@@ -105,14 +103,15 @@ impl Motion {
                 && !before.clearing
                 && !self.reset.ending
                 && !busy
-                && !self.supervisor.pressed(),
+                && !self.supervisor.pressed()
+                && !self.interlock,
             ..stop
         }
     }
 
     /// Sets P of every axis to its start value, and removes all queued segments and the words of
-    /// segments that are not committed. Positions, discarded steps, pins and debounced limits stay
-    /// as they are.
+    /// segments that are not committed. Positions, discarded steps, pins and debounced switches
+    /// stay as they are.
     pub(super) fn empty(&mut self) {
         for axis_model in &mut self.axis_models {
             axis_model.p = self.build.phase.start_value();
@@ -127,6 +126,8 @@ impl Motion {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Decision {
     Wait,
+    /// The seek of a masked axis has hit: the start is no longer armed.
+    Drop,
     /// A masked axis has no segment in its queue: a protocol fault.
     Unfed,
     Go(u8),

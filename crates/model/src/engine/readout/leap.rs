@@ -1,11 +1,13 @@
 //! Access for the fast model: the readout after many clocks in which the axes only repeat their
-//! additions. No step is discarded in them, no limit is found, nothing is cleared and no snapshot
-//! is requested, and an axis that runs goes on running.
+//! additions. No step is discarded in them, no switch changes its debounced state, no seek hits, the
+//! latch accepts no edge, nothing is cleared and no snapshot is requested, and an axis that runs
+//! goes on running.
 
-use super::Readout;
 use super::counts::COMPARE_BEAT;
+use super::{LOOK_BEAT, Readout, SWITCH_BEAT, switch_word};
+use crate::engine::Motion;
 use crate::parts::shaper::ShaperState;
-use carrystep_core::engine::TIME_SLOT_CLOCKS;
+use carrystep_core::engine::{EngineInputs, StateWord, TIME_SLOT_CLOCKS};
 
 /// A run of clocks, from this clock of a tick on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,9 +53,74 @@ impl Readout {
     pub(crate) const fn pass(&mut self, strobes: u64) {
         if strobes > 0 {
             self.ticks = self.ticks.wrapping_add(strobes as u32);
-            self.met = 0;
+            self.captures = 0;
             self.takes = self.asked;
             self.asked = false;
+        }
+    }
+
+    /// Advances the level of a switch that is read in one clock and output in a later one by
+    /// this many clocks. `motion` is the motion after them.
+    pub(crate) fn pass_level(&mut self, motion: &Motion, inputs: &EngineInputs, clocks: u64) {
+        self.level = match motion.time_slot() {
+            Some((_, beat @ LEVEL_FROM..=SWITCH_BEAT)) if clocks < u64::from(beat - LOOK_BEAT) => {
+                self.level
+            }
+            Some((axis, LEVEL_FROM..=SWITCH_BEAT)) => {
+                motion.row().is_some_and(|row| motion.pin(inputs, axis, row))
+            }
+            _ => false,
+        };
+    }
+
+    /// The beginning of a leap from here.
+    pub(crate) fn begin(&self, motion: &Motion) -> Begin {
+        Begin {
+            clock: motion.clock_of_tick().into(),
+            tick_of_round: motion.tick_of_round(),
+            level: self.level,
+        }
+    }
+}
+
+/// The beat in which the level that was read is in its register.
+const LEVEL_FROM: u32 = LOOK_BEAT + 1;
+
+/// The beginning of a leap.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Begin {
+    clock: u64,
+    tick_of_round: u32,
+    level: bool,
+}
+
+impl Begin {
+    /// Reports the words of switches that are output in this number of clocks from the beginning
+    /// on, of each address the last one. In these clocks the inputs and the debounced states of the
+    /// switches are constant, and there is no reset.
+    pub(crate) fn switch_words(
+        self,
+        motion: &Motion,
+        inputs: &EngineInputs,
+        clocks: u64,
+        words: &mut impl FnMut(StateWord),
+    ) {
+        let (round, per_tick) = (motion.build().guard.round, u64::from(motion.clocks_per_tick()));
+        for row in motion.rows() {
+            // Ticks are counted from the one of the beginning.
+            let first = u64::from((u32::from(row) + round - self.tick_of_round) % round);
+            for axis in 0..motion.build().axes() {
+                let at = axis as u64 * u64::from(TIME_SLOT_CLOCKS) + u64::from(SWITCH_BEAT);
+                let Some(clocks) = (self.clock + clocks).checked_sub(at + 1) else { break };
+                let Some(rounds) = (clocks / per_tick).checked_sub(first) else { break };
+                let tick = first + rounds / u64::from(round) * u64::from(round);
+                if tick == 0 && at < self.clock {
+                    continue;
+                }
+                let is_read = tick == 0 && at < self.clock + u64::from(SWITCH_BEAT - LOOK_BEAT);
+                let level = if is_read { self.level } else { motion.pin(inputs, axis, row) };
+                switch_word(motion, axis, row, level).into_iter().for_each(&mut *words);
+            }
         }
     }
 }

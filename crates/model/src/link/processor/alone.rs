@@ -3,8 +3,8 @@
 
 use super::LinkProcessor;
 use carrystep_core::link::processor::{
-    ACTS, BROKEN, CONTROL, CRC_BEGIN, CRC_FEED, Code, Condition, GOES, JUMPS, KICK, PUTS, SETS,
-    STARTS, STORES, ValueSource, WAIT,
+    ACTS, BROKEN, CONDITION, CONTROL, CRC_BEGIN, CRC_FEED, Code, Condition, GOES, JUMPS, KICK,
+    PUTS, SETS, STARTS, STORES, ValueSource, WAIT,
 };
 
 /// The reason for which the processor waits.
@@ -26,10 +26,7 @@ impl LinkProcessor {
         let acts = self.does(0) && self.code & TELLS != 0;
         let waits = self.does(WAIT) && !self.does(GOES);
         let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
-        let asks = self.executes(JUMPS)
-            && [Condition::Fault, Condition::Startable]
-                .iter()
-                .any(|&asked| self.code >> 8 & 7 == asked as Code);
+        let asks = self.executes(JUMPS) && self.code >> CONDITION & 7 == Condition::Fault as Code;
         acts || waits || reads || asks || self.reads_register()
     }
 
@@ -37,7 +34,7 @@ impl LinkProcessor {
     /// into the CRC.
     fn reads_register(&self) -> bool {
         const READS: Code = ACTS | CRC_BEGIN | CRC_FEED;
-        self.stage > 0 && self.code & (SETS | STORES) == 0 && self.code & READS == READS
+        self.stage > 0 && self.code & (SETS | STORES | JUMPS) == 0 && self.code & READS == READS
     }
 
     /// Stores the room that the engine has reported, in segments.
@@ -46,7 +43,7 @@ impl LinkProcessor {
     }
 
     pub(in crate::link) fn waits(&self) -> Waits {
-        let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
+        let polls = JUMPS | (Condition::Nothing as Code) << CONDITION | self.pc;
         if self.code == polls && self.read_from == self.written {
             Waits::ForByte
         } else if self.does(WAIT | GOES) {

@@ -1,0 +1,89 @@
+//! Tests of `[machine.inputs]`: the values in the gateware, and every kind of mistake.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+use carrystep_core::engine::{Guard, InputRow, Latch};
+use carrystep_files::{InputError, Machine, SourceText};
+use std::fmt::Write as _;
+
+fn read(axes: usize, keys: &str) -> Result<Machine, InputError> {
+    let mut text = format!("[machine]\n[machine.inputs]\n{keys}\n");
+    for axis in 0..axes {
+        let rest = "steps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\ndriver = \"a4988\"";
+        writeln!(text, "[[machine.axis]]\nname = \"x{axis}\"\n{rest}").unwrap();
+    }
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
+}
+
+fn guard(axes: usize, keys: &str) -> Guard {
+    let machine = read(axes, keys).unwrap();
+    machine.engine().check().unwrap();
+    machine.guard
+}
+
+const fn row(exist: u8, low: u8) -> InputRow {
+    InputRow { exist, low }
+}
+
+#[test]
+fn without_keys_there_are_no_inputs() {
+    let found = guard(1, "");
+    assert_eq!((found.inputs, found.latch), ([row(0, 0); 2], None));
+    assert!(!found.has_interlock());
+}
+
+#[test]
+fn each_key_is_an_input_of_its_row() {
+    assert_eq!(guard(1, "probe = \"low\"").inputs, [row(1, 1), row(0, 0)]);
+    let found = guard(1, "interlock = \"high\"");
+    assert_eq!(found.inputs, [row(0, 0), row(1, 0)]);
+    assert!(found.has_interlock());
+    let general = ["high", "low", "low", "high", "low"];
+    let found = guard(4, &format!("probe = \"high\"\ngeneral = {general:?}"));
+    assert_eq!(found.inputs, [row(0b1111, 0b1100), row(0b0110, 0b0010)]);
+    let most = guard(
+        6,
+        "general = [\"low\", \"low\", \"low\", \"low\", \"low\", \"low\", \"low\", \"low\"]",
+    );
+    assert_eq!(most.inputs, [row(0b1_1110, 0b1_1110); 2]);
+}
+
+#[test]
+fn latch_has_its_edge_and_its_looks() {
+    assert_eq!(guard(1, "latch = \"rising\"").latch, Some(Latch { low: false, looks: 1 }));
+    let found = guard(1, "latch = \"falling\"\nlatch_looks = 16");
+    assert_eq!(found.latch, Some(Latch { low: true, looks: 16 }));
+}
+
+#[test]
+fn rows_of_inputs_make_the_round_four_ticks_or_longer() {
+    let short = "[machine.guard]\nwatchdog_ms = 0\nenable_ms = 0\ndebounce_us = 0";
+    assert_eq!(guard(1, &format!("latch = \"rising\"\n{short}")).round, 2);
+    assert_eq!(guard(1, &format!("probe = \"low\"\n{short}")).round, 4);
+    assert_eq!(guard(1, "probe = \"low\"").round, guard(1, "").round);
+}
+
+#[test]
+fn mistake_is_refused_at_its_place() {
+    for (axes, keys, says, at) in [
+        (1, "probe = \"open\"", "unknown variant `open`", (3, 9)),
+        (1, "door = \"low\"", "unknown field `door`", (3, 1)),
+        (1, "general = [\"low\"]", "1 general inputs: a machine of 1 axis has at most 0", (3, 11)),
+        (
+            3,
+            "general = [\"low\", \"low\", \"low\", \"low\", \"high\"]",
+            "5 general inputs: a machine of 3 axes has at most 4",
+            (3, 11),
+        ),
+        (1, "latch_looks = 2", "latch_looks without latch", (3, 15)),
+        (1, "latch = \"rising\"\nlatch_looks = 0", "latch_looks = 0: it is from 1 to 16", (4, 15)),
+        (1, "latch = \"rising\"\nlatch_looks = 17", "latch_looks = 17: it is from", (4, 15)),
+    ] {
+        let error = read(axes, keys).unwrap_err();
+        assert!(error.message.contains(says), "{keys}: {error}");
+        assert_eq!(error.line_column(), Some(at), "{keys}");
+    }
+    let nine = format!("general = [{}]", ["\"low\""; 9].join(", "));
+    let error = read(8, &nine).unwrap_err();
+    assert!(error.message.contains("9 general inputs: a machine of 8 axes has at most 8"));
+}

@@ -1,0 +1,110 @@
+//! Requests outside of the sequence of writes: reads, OPEN and STOP. An answer is matched to its
+//! request by number and address; a request without an answer is sent again.
+
+use crate::frame::{Answer, Body};
+use crate::registers::MOST_AXES;
+use crate::window::Full;
+
+/// Greatest number of unanswered reads.
+const READS: usize = MOST_AXES as usize;
+
+#[derive(Debug, Clone, Copy)]
+struct Single {
+    address: u8,
+    /// The word of a write; `None` for a read.
+    word: Option<u32>,
+    sequence: u8,
+    asked: Option<u32>,
+}
+
+impl Single {
+    const fn writes(&self, register: u8) -> bool {
+        self.word.is_some() && self.address == register
+    }
+}
+
+/// Up to eight registers that are being read, one OPEN and one STOP.
+#[derive(Debug, Clone, Default)]
+pub struct Singles {
+    places: [Option<Single>; READS + 2],
+    sequence: u8,
+}
+
+impl Singles {
+    /// Reads a register. If it is being read already, no second read is added.
+    ///
+    /// # Errors
+    /// [`Full`] if eight registers are being read.
+    pub fn read(&mut self, address: u8) -> Result<(), Full> {
+        let reads = self.places.iter().flatten().filter(|single| single.word.is_none());
+        if reads.clone().any(|single| single.address == address) {
+            return Ok(());
+        }
+        if reads.count() == READS {
+            return Err(Full);
+        }
+        self.add(address, None);
+        Ok(())
+    }
+
+    /// Sends OPEN or STOP, once more if it was sent and not answered.
+    pub fn write(&mut self, register: u8, word: u32) {
+        self.withdraw(register);
+        self.add(register, Some(word));
+    }
+
+    /// Whether an OPEN or STOP has no answer yet.
+    pub fn writing(&self, register: u8) -> bool {
+        self.places.iter().flatten().any(|single| single.writes(register))
+    }
+
+    /// Forgets an OPEN or STOP.
+    pub fn withdraw(&mut self, register: u8) {
+        for place in &mut self.places {
+            place.take_if(|single| single.writes(register));
+        }
+    }
+
+    fn add(&mut self, address: u8, word: Option<u32>) {
+        if let Some(place) = self.places.iter_mut().find(|place| place.is_none()) {
+            *place = Some(Single { address, word, sequence: self.sequence, asked: None });
+            self.sequence = self.sequence.wrapping_add(1);
+        }
+    }
+
+    /// Whether an answer is outstanding.
+    pub fn waiting(&self) -> bool {
+        self.places.iter().any(Option::is_some)
+    }
+
+    /// The number and the body of the request to be sent at the time `now`, ms; writes come first.
+    /// A request without an answer is sent again after `resend` ms.
+    pub fn transmit(&mut self, now: u32, resend: u32) -> Option<(u8, Body)> {
+        let due = |single: &&mut Single| {
+            single.asked.is_none_or(|asked| now.wrapping_sub(asked) >= resend)
+        };
+        let due = self.places.iter_mut().flatten().filter(due);
+        let single = due.min_by_key(|single| single.word.is_none())?;
+        single.asked = Some(now);
+        let address = single.address;
+        let body = match single.word {
+            Some(word) => Body::Write { address, word },
+            None => Body::Read { address },
+        };
+        Some((single.sequence, body))
+    }
+
+    /// Whether this answer belongs to one of these requests, which it completes.
+    pub fn answer(&mut self, answer: &Answer) -> bool {
+        let own = |place: &&mut Option<Single>| {
+            place.is_some_and(|single| {
+                let same = match single.word {
+                    Some(_) => answer.is_write_of(single.address),
+                    None => answer.is_read_of(single.address),
+                };
+                single.asked.is_some() && same && single.sequence == answer.sequence
+            })
+        };
+        self.places.iter_mut().find(own).map(Option::take).is_some()
+    }
+}
