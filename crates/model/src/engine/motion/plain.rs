@@ -2,8 +2,9 @@
 //! axis only repeats its additions, and advances the counters that run during that time.
 //!
 //! All other events (an accepted word, a load, the call of a stop, a change of a debounced switch,
-//! the hit of a seek, an edge of the latch, an axis that comes to rest) are executed by [`Motion::clock`]. Every condition here must be
-//! conservative: a skipped clock must have no other effect.
+//! the hit of a seek, an edge of the latch, an axis that comes to rest) are executed by
+//! [`Motion::clock`]. Every condition here must be conservative: a skipped clock must have no other
+//! effect.
 
 use super::axis_model::AxisModel;
 use super::guard::Stop;
