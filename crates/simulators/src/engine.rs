@@ -9,6 +9,7 @@ pub mod run;
 use crate::Commands;
 use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put, SeekSource};
 use carrystep_core::{Command, Program, Segment};
+use std::collections::VecDeque;
 use std::fmt;
 
 /// An engine that is simulated in Rust, clock by clock.
@@ -110,6 +111,9 @@ pub enum Event {
     WordError(u8),
 }
 
+/// Most words that a host tells in advance: a segment of each of eight axes.
+const TOLD: usize = 64;
+
 /// Events, in the order of their cycles.
 pub type Events = Vec<(u64, Event)>;
 
@@ -118,6 +122,10 @@ pub type Events = Vec<(u64, Event)>;
 pub struct EngineHost<'a> {
     acts: Box<dyn Iterator<Item = Act> + 'a>,
     current: Option<Act>,
+    /// Actions after the current one that were read ahead.
+    later: VecDeque<Act>,
+    /// The words that are told in advance.
+    told: Vec<Put>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
     /// Whether the watchdog is restarted in every cycle.
@@ -158,16 +166,19 @@ impl<'a> EngineHost<'a> {
 
     fn doing(
         guard: &Guard,
-        mut acts: Box<dyn Iterator<Item = Act> + 'a>,
+        acts: Box<dyn Iterator<Item = Act> + 'a>,
         events: Events,
         awake: bool,
     ) -> Self {
+        let mut acts: Box<dyn Iterator<Item = Act> + 'a> = Box::new(acts.fuse());
         let current = acts.next();
         let events = events.into_iter().peekable();
         let around = EngineInputs { enable: true, ..EngineInputs::default() };
         let mut host = Self {
             acts,
             current,
+            later: VecDeque::new(),
+            told: Vec::new(),
             events,
             cycle: 0,
             awake,
@@ -241,10 +252,33 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) => !fault,
         };
         if done {
-            self.current = self.acts.next();
+            self.go_on();
         }
         self.cycle += 1;
         self.happen();
+    }
+
+    /// Continues with the next action.
+    fn go_on(&mut self) {
+        self.current = self.later.pop_front().or_else(|| self.acts.next());
+    }
+
+    /// The word that is offered and those that follow it, up to the next other action; none if the
+    /// host offers none.
+    pub fn offered(&mut self) -> &[Put] {
+        self.told.clear();
+        let mut act = self.current.filter(|_| !self.fault);
+        while let Some(Act::Put(put)) = act {
+            self.told.push(Put { word: put.word ^ self.word_error, ..put });
+            if self.told.len() == TOLD {
+                break;
+            }
+            if self.told.len() > self.later.len() {
+                self.later.extend(self.acts.next());
+            }
+            act = self.later.get(self.told.len() - 1).copied();
+        }
+        &self.told
     }
 
     /// Simulates one cycle of a core under this host, and returns its inputs and outputs.
@@ -275,10 +309,18 @@ impl<'a> EngineHost<'a> {
     /// Number of cycles in which the host's inputs stay the same, as long as the outputs make it
     /// wait and no new fault occurs.
     pub fn patience(&mut self, outputs: &EngineOutputs) -> u64 {
+        match self.current {
+            Some(Act::Put(_)) if outputs.put_ready => 0,
+            _ => self.patience_but_for_words(outputs),
+        }
+    }
+
+    /// As [`EngineHost::patience`], where words are accepted meanwhile.
+    pub fn patience_but_for_words(&mut self, outputs: &EngineOutputs) -> u64 {
         let fault = outputs.fault.is_some();
         let blocked = match self.current {
             Some(Act::Wait(clocks)) => clocks.saturating_sub(1).into(),
-            Some(Act::Put(_)) if fault || outputs.put_ready => 0,
+            Some(Act::Put(_)) if fault => 0,
             Some(Act::Start(_)) if fault || outputs.start_ready => 0,
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
@@ -303,6 +345,11 @@ impl<'a> EngineHost<'a> {
             *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
         }
         self.cycle += cycles;
+    }
+
+    /// Continues after this many of the [`offered`](EngineHost::offered) words.
+    pub fn accepted(&mut self, words: usize) {
+        (0..words).for_each(|_| self.go_on());
     }
 
     /// Whether no command is left.

@@ -24,6 +24,7 @@ mod reset;
 mod seek;
 mod strobe;
 mod switches;
+mod words;
 
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};

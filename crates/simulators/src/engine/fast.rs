@@ -30,11 +30,16 @@ impl Fed<'_> {
         let told = EngineOutputs { room: None, ..quiet };
         listener.outputs(self.core.cycle(), &told);
         let rests = self.host.is_done() && (outputs.idle || outputs.halted);
-        let patience =
-            self.host.patience(&outputs).min(if rests { most_at_rest.min(most) } else { most });
-        let cycles = if patience > 0 { self.core.leap(&inputs, patience, listener) } else { 0 };
+        let most = if rests { most_at_rest.min(most) } else { most };
+        let patience = self.host.patience_but_for_words(&outputs).min(most);
+        let (cycles, words) = if patience > 0 {
+            self.core.leap_taking(&inputs, self.host.offered(), patience, listener)
+        } else {
+            (0, 0)
+        };
         if cycles > 0 {
             self.host.wait(cycles);
+            self.host.accepted(words);
         } else {
             self.host.advance(&outputs);
             self.core.clock(&inputs, listener);

@@ -1,0 +1,68 @@
+//! Access for the fast model: the words of segments that the engine takes while every axis only
+//! repeats its additions.
+//!
+//! A word only fills a register that nothing reads before the commit of its segment. The strobe
+//! after a commit moves the segment into the queue, and [`Motion::clock`] executes it:
+//!
+//! ```text
+//! tick    |       n       |      n + 1    |      n + 2    |
+//! word    | x 5 . y 5     | x 6 . y 6     | commits       |   the clocks before the last strobe
+//! strobe  _______________/^______________/^______________/^   may be skipped
+//! ```
+
+use super::Motion;
+use carrystep_core::engine::{COMMIT, MAX_AXES, PUT_BEAT, Put, QUEUE, TIME_SLOT_CLOCKS};
+
+impl Motion {
+    /// Of the first `most` clocks, the number that pass before the first event that a word causes,
+    /// and the number of words that are taken in them. `words` are offered one after the other, each
+    /// from the clock after the one that took the word before. If not `takes`, to take a word is an
+    /// event itself. All these clocks must be plain but for words.
+    pub(crate) fn taking(&self, words: &[Put], takes: bool, most: u64) -> (u64, usize) {
+        if self.stop.fault.is_some() {
+            return (most, 0);
+        }
+        let per_tick = u64::from(self.clocks_per_tick());
+        // The clock of the tick in which these clocks begin.
+        let begin = u64::from(self.clock);
+        let mut next_words = [0; MAX_AXES];
+        for (next, axis_model) in next_words.iter_mut().zip(&self.axis_models) {
+            *next = axis_model.next_word;
+        }
+        let (mut end, mut from) = (most, 0);
+        for (taken, put) in words.iter().enumerate() {
+            let axis = usize::from(put.axis);
+            let Some(axis_model) = self.axis_models.get(axis) else {
+                return (end.min(from), taken);
+            };
+            if axis_model.queue.len() >= QUEUE {
+                return (end, taken);
+            }
+            let beat = u64::from(u32::from(put.axis) * TIME_SLOT_CLOCKS + PUT_BEAT);
+            let at = from + (beat + per_tick - (begin + from) % per_tick) % per_tick;
+            if at >= end {
+                return (end, taken);
+            }
+            // The first word ends the rest of the engine.
+            if !takes || self.rest > 0 || put.word != next_words[axis] {
+                return (at, taken);
+            }
+            next_words[axis] += 1;
+            if put.word == COMMIT {
+                next_words[axis] = 0;
+                end = end.min(at + per_tick - 1 - (begin + at) % per_tick);
+            }
+            from = at + 1;
+        }
+        // What the host does after the last of these words is not known here.
+        (if words.is_empty() { end } else { end.min(from) }, words.len())
+    }
+
+    /// Takes words that [`Motion::taking`] counts.
+    pub(crate) fn take(&mut self, words: &[Put]) {
+        for put in words {
+            let follows = self.put(*put);
+            debug_assert!(follows, "{put:?} is not the next word of its axis");
+        }
+    }
+}
