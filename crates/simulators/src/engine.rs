@@ -7,7 +7,9 @@ pub mod replay;
 pub mod run;
 
 use crate::Commands;
-use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put, SeekSource};
+use carrystep_core::engine::{
+    COMMIT, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put, SEGMENT_WORDS, SeekSource,
+};
 use carrystep_core::{Command, Program, Segment};
 use std::collections::VecDeque;
 use std::fmt;
@@ -111,8 +113,8 @@ pub enum Event {
     WordError(u8),
 }
 
-/// Most words that a host tells in advance: a segment of each of eight axes.
-const TOLD: usize = 64;
+/// Most words that a host tells in advance: a segment of each axis.
+const TOLD: usize = MAX_AXES * (SEGMENT_WORDS as usize + 1);
 
 /// Events, in the order of their cycles.
 pub type Events = Vec<(u64, Event)>;
@@ -263,12 +265,17 @@ impl<'a> EngineHost<'a> {
         self.current = self.later.pop_front().or_else(|| self.acts.next());
     }
 
-    /// The word that is offered and those that follow it, up to the next other action; none if the
-    /// host offers none.
+    /// The word that is offered and those that follow it, up to the next other action or the end of
+    /// the segments that are sent side by side; none if the host offers none.
     pub fn offered(&mut self) -> &[Put] {
         self.told.clear();
         let mut act = self.current.filter(|_| !self.fault);
+        let mut ends = false;
         while let Some(Act::Put(put)) = act {
+            if ends && put.word != COMMIT {
+                break;
+            }
+            ends = put.word == COMMIT;
             self.told.push(Put { word: put.word ^ self.word_error, ..put });
             if self.told.len() == TOLD {
                 break;

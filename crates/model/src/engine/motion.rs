@@ -139,7 +139,10 @@ impl Motion {
                 .time_slot_at(PUT_BEAT)
                 .filter(|axis| *axis == put_axis)
                 .map(|axis| self.axis_models[axis].room()),
-            started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
+            // Without an armed start there is no decision, and no need for the tick.
+            started: strobe
+                && self.armed.is_some()
+                && matches!(self.decision(&self.ticked()), Decision::Go(_)),
         }
     }
 
