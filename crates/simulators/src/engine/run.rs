@@ -7,6 +7,7 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineOutputs};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
+use std::sync::atomic::AtomicU64;
 
 /// Index of the position in what is kept of an axis.
 const POSITION: usize = 2;
@@ -20,6 +21,9 @@ pub struct EngineJob<'a> {
     pub program: &'a dyn Commands,
     /// The run fails after this number of cycles.
     pub max_clocks: u64,
+    /// What the commands that have been read add to this number, if they are planned while they are
+    /// run. Only the fast level has such runs.
+    pub more_clocks: Option<&'a AtomicU64>,
     /// Flags that end the run early.
     pub halt: Halt<'a>,
     /// Receives the progress of the run.
@@ -54,7 +58,7 @@ impl<'a> EngineJob<'a> {
             .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let max_clocks = (ticks + warm + 10 * program.segments() + 100) * clocks + 4 * pins;
-        Self { build, program, max_clocks, halt: &[], how_far: None }
+        Self { build, program, max_clocks, more_clocks: None, halt: &[], how_far: None }
     }
 
     pub(super) fn host(&self) -> EngineHost<'_> {
