@@ -113,12 +113,12 @@ module carrystep_adder (
     input  wire  [31:0] put,
     // The axis runs: beat 6 subtracts one from its remaining ticks.
     input  wire         counts,
-    // The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
-    // `counts`.
+    // In beat 5: the axis is at rest, and beat 6 adds one to its discarded steps. Never asserted
+    // with `counts`.
     input  wire         lost,
-    // Beat 7 adds one to the position.
+    // In beat 6: beat 7 adds one to the position.
     input  wire         up,
-    // Beat 7 subtracts one from the position.
+    // In beat 6: beat 7 subtracts one from the position.
     input  wire         down,
     // The sums that replace P are zero.
     input  wire         wipe,
@@ -305,17 +305,17 @@ module carrystep_control (
     // The address of the word to read.
     input  wire   [2:0] read_address,
     // The word at the address of the cycle before.
-    output wire  [23:0] read_data,
+    output wire  [20:0] read_data,
     // The address of the word to write.
     input  wire   [2:0] write_address,
     // The write enable of each bit.
-    input  wire  [23:0] write_bits,
+    input  wire  [20:0] write_bits,
     // The new values of the bits that are written.
-    input  wire  [23:0] write_data
+    input  wire  [20:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [23:0] words [0:7];
-    reg [23:0] value; // a block RAM gives no value before its first clock
+    (* no_rw_check, ram_style = "block" *) reg [20:0] words [0:7];
+    reg [20:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -398,14 +398,10 @@ module carrystep_queue (
     input  wire         turned,
     // V < 0.
     input  wire         back,
-    // In beat 12: P + V crosses a step, if the axis moves.
-    input  wire         crosses,
     // In beat 12: the next tick's words of the axis are those of its own hit.
     input  wire         meets,
-    // The low bits of the position, from the pulser.
-    input  wire   [2:0] pulses,
-    // The low bits of the discarded steps, from the pulser.
-    input  wire   [2:0] losses,
+    // In beat 12: what is kept in `counts` until the next time slot of the axis.
+    input  wire   [6:0] next_counts,
     // The slot of the running segment.
     output wire   [2:0] live,
     // The slot that the host writes.
@@ -436,47 +432,30 @@ module carrystep_queue (
     output wire         too_fast,
     // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     output wire         dry,
-    // From beat 5: a step forward is added to the position.
-    output wire         up,
-    // From beat 5: a step backward is subtracted from the position.
-    output wire         down,
-    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
-    output wire         lost,
     // The words of this tick are those of the axis' own hit.
     output wire         met,
-    // Carries since the last clear less counted steps, modulo 16.
-    output wire   [3:0] on_way
+    // `next_counts` of the time slot before of this axis, at first 0.
+    output wire   [6:0] counts
 );
     localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
     localparam [2:0] ZERO = 3'd0;
-    localparam [23:0] NO = 24'd0;
-    localparam [23:0] RUNNING_BIT = 24'd64;
-    localparam [23:0] UNFIT_BIT = 24'd128;
-    localparam [23:0] BACK_BIT = 24'd16384;
-    localparam [23:0] KNOWN_BIT = 24'd32768;
-    localparam [23:0] ALL = 24'hffffff;
-    localparam [23:0] MET_BIT = 24'h80000;
-    localparam [3:0] NONE_ON_WAY = 4'd0;
-    localparam [3:0] ONE_MORE = 4'd1;
-    localparam [3:0] TWO_MORE = 4'd2;
-    localparam [3:0] ONE_LESS = 4'd15;
-    localparam [3:0] TWO_LESS = 4'd14;
+    localparam [20:0] NO = 21'd0;
+    localparam [20:0] RUNNING_BIT = 21'd64;
+    localparam [20:0] UNFIT_BIT = 21'd128;
+    localparam [20:0] BACK_BIT = 21'd256;
+    localparam [20:0] KNOWN_BIT = 21'd512;
+    localparam [20:0] ALL = 21'h1fffff;
+    localparam [20:0] MET_BIT = 21'd8192;
     localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
     localparam [3:0] AT_3 = 4'd3;
-    localparam [3:0] AT_8 = 4'd8;
-    localparam [3:0] AT_11 = 4'd11;
-    localparam [4:0] AT_16 = 5'd16;
-    localparam [4:0] AT_20 = 5'd20;
+    localparam [3:0] AT_10 = 4'd10;
+    localparam [3:0] AT_14 = 4'd14;
 
     reg filled = 1'b0;
     reg took = 1'b0;
     reg wrong = 1'b0;
-    reg forward = 1'b0;
-    reg backward = 1'b0;
-    reg gone = 1'b0;
     reg [2:0] live_now;
     reg over;
     reg lasts_write_data;
@@ -484,21 +463,17 @@ module carrystep_queue (
     reg [2:0] next_live;
     reg [2:0] next_newest;
     reg [2:0] next_due;
-    reg [23:0] next_running;
-    reg [23:0] next_unfit;
-    reg [23:0] next_known;
-    reg [23:0] next_back;
-    reg [2:0] next_seen;
-    reg [2:0] next_lost;
-    reg [23:0] next_met;
-    reg [3:0] gain;
-    reg [3:0] next_on_way;
-    reg [23:0] control_write_bits;
+    reg [20:0] next_running;
+    reg [20:0] next_unfit;
+    reg [20:0] next_known;
+    reg [20:0] next_back;
+    reg [20:0] next_met;
+    reg [20:0] control_write_bits;
 
-    wire [23:0] control_read_data;
+    wire [20:0] control_read_data;
     wire lasts_read_data;
 
-    wire [23:0] word = control_read_data;
+    wire [20:0] word = control_read_data;
     wire [2:0] old_live = word[2:0];
     wire [2:0] newest = word[5:3];
     wire [2:0] fresh_now = newest + ONE;
@@ -506,15 +481,11 @@ module carrystep_queue (
     wire fits = runs & !word[7];
     wire none = newest == live_now;
     wire last_one = lasts_read_data != 1'b0;
-    wire ramps = ramp & word[15];
+    wire ramps = ramp & word[9];
     wire follows = ended & !last_one & !none & !ramp;
     wire stays = moves & !over;
-    wire [2:0] missing = pulses - word[10:8];
-    wire [2:0] unseen = losses ^ word[13:11];
-    wire [2:0] due = word[18:16];
+    wire [2:0] due = word[12:10];
     wire fits_in = put_word == due;
-    wire ahead = moves & crosses & !back;
-    wire behind = moves & crosses & back;
 
     assign live = live_now;
     assign fresh = fresh_now;
@@ -525,17 +496,14 @@ module carrystep_queue (
     assign running = runs;
     assign sound = fits;
     assign slows = ramps;
-    assign upward = word[14];
-    assign steady = ramp & !word[15];
+    assign upward = word[8];
+    assign steady = ramp & !word[9];
     assign moves = fits & !least;
     assign goes_on = stays;
     assign too_fast = runs & (word[7] | least);
     assign dry = moves & ended & !last_one & none & !ramp;
-    assign up = forward;
-    assign down = backward;
-    assign lost = gone;
-    assign met = word[19];
-    assign on_way = word[23:20];
+    assign met = word[13];
+    assign counts = word[20:14];
 
     always @(*) begin
         live_now = old_live;
@@ -611,24 +579,8 @@ module carrystep_queue (
 
     always @(*) begin
         next_back = NO;
-        if ((ramps & word[14]) | (!ramps & back)) begin
+        if ((ramps & word[8]) | (!ramps & back)) begin
             next_back = BACK_BIT;
-        end
-    end
-
-    always @(*) begin
-        next_seen = word[10:8];
-        if (forward) begin
-            next_seen = word[10:8] + ONE;
-        end else if (backward) begin
-            next_seen = word[10:8] + MINUS_ONE;
-        end
-    end
-
-    always @(*) begin
-        next_lost = word[13:11];
-        if (gone) begin
-            next_lost = word[13:11] + ONE;
         end
     end
 
@@ -636,6 +588,113 @@ module carrystep_queue (
         next_met = NO;
         if (meets) begin
             next_met = MET_BIT;
+        end
+    end
+
+    always @(*) begin
+        control_write_bits = NO;
+        if (beat[12]) begin
+            control_write_bits = ALL;
+        end
+    end
+
+    carrystep_control control (
+        .clock(clock),
+        .read_address(axis_next),
+        .read_data(control_read_data),
+        .write_address(axis),
+        .write_bits(control_write_bits),
+        .write_data({18'b0, next_live} | ({18'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({18'b0, next_due} << AT_10) | next_met | ({14'b0, next_counts} << AT_14))
+    );
+
+    carrystep_lasts lasts (
+        .clock(clock),
+        .read_address(({3'b0, axis} << AT_3) | {3'b0, live_now}),
+        .read_data(lasts_read_data),
+        .write_address(({3'b0, axis} << AT_3) | {3'b0, fresh_now}),
+        .write_bits(lasts_write_bits),
+        .write_data(lasts_write_data)
+    );
+
+    always @(posedge clock) begin
+        wrong <= take & !fits_in;
+        if (beat[0]) begin
+            took <= 1'b0;
+        end
+        if (take & fits_in) begin
+            took <= 1'b1;
+        end
+        filled <= fresh_now == live_now;
+    end
+endmodule
+
+// Counts pulses and discarded steps in memory, and the steps that are on their way.
+module carrystep_step_counts (
+    // The clock.
+    input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The axis runs in this tick.
+    input  wire         running,
+    // In beat 12: the axis runs and its V is in range.
+    input  wire         moves,
+    // In beat 12: P + V crosses a step, if the axis moves.
+    input  wire         crosses,
+    // In beat 12: V < 0.
+    input  wire         back,
+    // No step is on its way any more.
+    input  wire         clear,
+    // The low bits of the position, from the pulser of the axis.
+    input  wire   [2:0] pulses,
+    // The low bits of the discarded steps, from the pulser of the axis.
+    input  wire   [2:0] losses,
+    // The word that the memory returns. In beat 6 it is the position.
+    input  wire  [31:0] word,
+    // `next_counts` of the time slot before of this axis, at first 0.
+    input  wire   [6:0] counts,
+    // In beat 12: what is kept until the next time slot of the axis.
+    output wire   [6:0] next_counts,
+    // In beat 6: a step forward is added to the position.
+    output wire         up,
+    // In beat 6: a step backward is subtracted from the position.
+    output wire         down,
+    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
+    output wire         lost,
+    // Carries since the last clear less counted steps, modulo 16.
+    output wire   [3:0] on_way
+);
+    localparam [2:0] ONE = 3'd1;
+    localparam [3:0] NONE_ON_WAY = 4'd0;
+    localparam [3:0] ONE_MORE = 4'd1;
+    localparam [3:0] TWO_MORE = 4'd2;
+    localparam [3:0] ONE_LESS = 4'd15;
+    localparam [3:0] TWO_LESS = 4'd14;
+    localparam [2:0] AT_3 = 3'd3;
+
+    reg forward = 1'b0;
+    reg backward = 1'b0;
+    reg gone = 1'b0;
+    reg [2:0] next_lost;
+    reg [3:0] gain;
+    reg [3:0] next_on_way;
+
+    wire [2:0] missing = pulses - word[2:0];
+    wire more = (missing != 3'd0) & !missing[2];
+    wire less = missing[2];
+    wire [2:0] unseen = losses ^ counts[2:0];
+    wire ahead = moves & crosses & !back;
+    wire behind = moves & crosses & back;
+
+    assign next_counts = {4'b0, next_lost} | ({3'b0, next_on_way} << AT_3);
+    assign up = more;
+    assign down = less;
+    assign lost = gone;
+    assign on_way = counts[6:3];
+
+    always @(*) begin
+        next_lost = counts[2:0];
+        if (gone) begin
+            next_lost = counts[2:0] + ONE;
         end
     end
 
@@ -668,51 +727,20 @@ module carrystep_queue (
     end
 
     always @(*) begin
-        next_on_way = word[23:20] + gain;
+        next_on_way = counts[6:3] + gain;
         if (clear) begin
             next_on_way = NONE_ON_WAY;
         end
     end
 
-    always @(*) begin
-        control_write_bits = NO;
-        if (beat[12]) begin
-            control_write_bits = ALL;
-        end
-    end
-
-    carrystep_control control (
-        .clock(clock),
-        .read_address(axis_next),
-        .read_data(control_read_data),
-        .write_address(axis),
-        .write_bits(control_write_bits),
-        .write_data({21'b0, next_live} | ({21'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({21'b0, next_seen} << AT_8) | ({21'b0, next_lost} << AT_11) | ({21'b0, next_due} << AT_16) | next_met | ({20'b0, next_on_way} << AT_20))
-    );
-
-    carrystep_lasts lasts (
-        .clock(clock),
-        .read_address(({3'b0, axis} << AT_3) | {3'b0, live_now}),
-        .read_data(lasts_read_data),
-        .write_address(({3'b0, axis} << AT_3) | {3'b0, fresh_now}),
-        .write_bits(lasts_write_bits),
-        .write_data(lasts_write_data)
-    );
-
     always @(posedge clock) begin
+        if (beat[6]) begin
+            forward <= more;
+            backward <= less;
+        end
         if (beat[4]) begin
-            forward <= (missing != 3'd0) & !missing[2];
-            backward <= missing[2];
-            gone <= (unseen != 3'd0) & !runs;
+            gone <= (unseen != 3'd0) & !running;
         end
-        wrong <= take & !fits_in;
-        if (beat[0]) begin
-            took <= 1'b0;
-        end
-        if (take & fits_in) begin
-            took <= 1'b1;
-        end
-        filled <= fresh_now == live_now;
     end
 endmodule
 
@@ -2744,11 +2772,13 @@ module carrystep_engine #(
     wire queue_goes_on;
     wire queue_too_fast;
     wire queue_dry;
-    wire queue_up;
-    wire queue_down;
-    wire queue_lost;
     wire queue_met;
-    wire [3:0] queue_on_way;
+    wire [6:0] queue_counts;
+    wire [6:0] step_counts_next_counts;
+    wire step_counts_up;
+    wire step_counts_down;
+    wire step_counts_lost;
+    wire [3:0] step_counts_on_way;
     wire [31:0] store_word;
     wire event_wheel_strobe;
     wire event_wheel_phase_start;
@@ -3005,9 +3035,9 @@ module carrystep_engine #(
         .word(store_word),
         .put(put_data),
         .counts(queue_running),
-        .lost(queue_lost),
-        .up(queue_up),
-        .down(queue_down),
+        .lost(step_counts_lost),
+        .up(step_counts_up),
+        .down(step_counts_down),
         .wipe(stops_clearing),
         .forgets(resets_stage_2),
         .sum(adder_sum),
@@ -3039,10 +3069,8 @@ module carrystep_engine #(
         .least(adder_least),
         .turned(adder_turned),
         .back(adder_back),
-        .crosses(adder_crosses),
         .meets(readout_meets),
-        .pulses(counts[2:0]),
-        .losses(counts[5:3]),
+        .next_counts(step_counts_next_counts),
         .live(queue_live),
         .fresh(queue_fresh),
         .misplaced(queue_misplaced),
@@ -3058,11 +3086,27 @@ module carrystep_engine #(
         .goes_on(queue_goes_on),
         .too_fast(queue_too_fast),
         .dry(queue_dry),
-        .up(queue_up),
-        .down(queue_down),
-        .lost(queue_lost),
         .met(queue_met),
-        .on_way(queue_on_way)
+        .counts(queue_counts)
+    );
+
+    carrystep_step_counts step_counts (
+        .clock(clock),
+        .beat(time_slot_beat),
+        .running(queue_running),
+        .moves(queue_moves),
+        .crosses(adder_crosses),
+        .back(adder_back),
+        .clear(stops_clearing),
+        .pulses(counts[2:0]),
+        .losses(counts[5:3]),
+        .word(store_word),
+        .counts(queue_counts),
+        .next_counts(step_counts_next_counts),
+        .up(step_counts_up),
+        .down(step_counts_down),
+        .lost(step_counts_lost),
+        .on_way(step_counts_on_way)
     );
 
     carrystep_store #(
@@ -3200,7 +3244,7 @@ module carrystep_engine #(
         .live(queue_live),
         .running(queue_running),
         .room(queue_room),
-        .on_way(queue_on_way),
+        .on_way(step_counts_on_way),
         .valid(readout_valid),
         .page(readout_page),
         .item(readout_item),

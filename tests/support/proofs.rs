@@ -33,6 +33,7 @@ mod seek_control;
 mod sequencer;
 mod shaper;
 mod solver;
+mod step_counts;
 mod stops;
 mod supervisor;
 mod switches;
@@ -137,6 +138,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         stops::proof(engine),
         supervisor::proof(engine),
         queue::proof(engine),
+        step_counts::proof(engine),
         readout::proof(engine),
         switches::proof(engine),
         seek_control::proof(engine),

@@ -55,6 +55,7 @@ pub mod readout;
 pub mod resets;
 pub mod seek_control;
 mod sim;
+pub mod step_counts;
 pub mod stops;
 pub mod store;
 pub mod supervisor;
@@ -72,6 +73,7 @@ use queue::Queue;
 use readout::Readout;
 use resets::Resets;
 use seek_control::SeekControl;
+use step_counts::StepCounts;
 use stops::Stops;
 use store::Store;
 use supervisor::Supervisor;
@@ -209,6 +211,7 @@ pub struct Engine<const N: usize> {
     time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
+    step_counts: StepCounts,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
     switches: Switches<N>,

@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 37] = [
+const PURPOSES: [(&str, &str); 38] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -53,6 +53,10 @@ const PURPOSES: [(&str, &str); 37] = [
     (
         "carrystep_queue",
         "The segment queue of each axis: which segment runs, and which segments wait.",
+    ),
+    (
+        "carrystep_step_counts",
+        "Counts pulses and discarded steps in memory, and the steps that are on their way.",
     ),
     (
         "carrystep_segments",

@@ -46,22 +46,6 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },
-    Bug { breaks: "promise_6_discarded_are_written_off", text: "& !runs;", becomes: ";" },
-    Bug {
-        breaks: "promise_6_none_written_off_twice",
-        text: "next_lost = word[13:11] + ONE",
-        becomes: "next_lost = word[13:11]",
-    },
-    Bug {
-        breaks: "promise_7_told_as_pulsed",
-        text: "backward <= missing[2];",
-        becomes: "backward <= 1'b0;",
-    },
-    Bug {
-        breaks: "promise_7_never_far_behind",
-        text: "(missing != 3'd0) & !missing[2];",
-        becomes: "1'b0;",
-    },
     Bug { breaks: "promise_10_dry_is_told", text: "& none & !ramp;", becomes: "& none;" },
     Bug {
         breaks: "promise_10_dry_is_told",
@@ -83,23 +67,16 @@ const BUGS: &[Bug] = &[
         text: "if (beat[12]) begin",
         becomes: "if (beat[11]) begin",
     },
-    Bug { breaks: "promise_15_on_way", text: "gain = TWO_LESS;", becomes: "gain = ONE_LESS;" },
     Bug {
-        breaks: "promise_15_on_way",
-        text: "behind = moves & crosses & back;",
-        becomes: "behind = moves & back;",
-    },
-    Bug {
-        breaks: "promise_15_on_way",
-        text: "next_on_way = NONE_ON_WAY;",
-        becomes: "next_on_way = ONE_MORE;",
+        breaks: "promise_15_counts_are_kept",
+        text: "<< AT_14)",
+        becomes: "<< AT_10)",
     },
     Bug {
         breaks: "promise_15_met_in_the_tick_before",
         text: "next_met = MET_BIT;",
         becomes: "next_met = NO;",
     },
-    Bug { breaks: "promise_13_inactive", text: "forward = 1'b0;", becomes: "forward = 1'b1;" },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {

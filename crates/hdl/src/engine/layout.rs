@@ -73,7 +73,8 @@ indices! {
     BEAT_LOAD_P_LOW = BEAT_READ_P_LOW + 1;
     /// The remaining ticks are loaded into operand A, and -1 or 0 into operand B.
     BEAT_LOAD_TICKS = BEAT_READ_TICKS + 1;
-    /// The position is loaded into operand A, and -1 or 0 into operand B.
+    /// The position is loaded into operand A, and -1 or 0 into operand B. It is compared with the
+    /// position of the pulser.
     BEAT_LOAD_POSITION = BEAT_READ_POSITION + 1;
     /// J is loaded into operand B, high half.
     BEAT_LOAD_J_HIGH = BEAT_READ_J_HIGH + 1;
@@ -130,8 +131,8 @@ indices! {
     /// P + V is written, high half.
     BEAT_WRITE_P_HIGH = BEAT_SUM_P_HIGH + 1;
 
-    /// The queue compares the counts of the pulser with those in memory.
-    BEAT_COMPARE = 4;
+    /// The discarded steps of the pulser are compared with those that have been counted.
+    BEAT_COMPARE_DISCARDED = 4;
     /// A word of the host for this axis is accepted.
     BEAT_PUT = PUT_BEAT as usize;
 
@@ -167,21 +168,23 @@ indices! {
     CONTROL_RUNNING = 6;
     /// Control word: the next V does not fit in 64 bits.
     CONTROL_UNFIT = 7;
-    /// Control word: position modulo 8, 3 bits.
-    CONTROL_POSITION = 8;
-    /// Control word: discarded steps modulo 8, 3 bits.
-    CONTROL_DISCARDED = 11;
     /// Control word: the ramp began with V < 0.
-    CONTROL_BACK = 14;
+    CONTROL_BACK = 8;
     /// Control word: the ramp has begun.
-    CONTROL_KNOWN = 15;
-    /// The number of the word that the host must put next, 3 bits.
-    CONTROL_DUE = 16;
-    /// The words of this tick are those of the axis' own hit.
-    CONTROL_MET = 19;
-    /// Carries less counted steps, modulo 16, 4 bits.
-    CONTROL_ON_WAY = 20;
-    /// Sign of the difference between the pulser's count and the control word's.
+    CONTROL_KNOWN = 9;
+    /// Control word: the number of the word that the host must put next, 3 bits.
+    CONTROL_DUE = 10;
+    /// Control word: the words of this tick are those of the axis' own hit.
+    CONTROL_MET = 13;
+    /// Control word: what the step counts keep, 7 bits.
+    CONTROL_COUNTS = 14;
+    /// What the step counts keep: discarded steps modulo 8, 3 bits.
+    KEPT_DISCARDED = 0;
+    /// What the step counts keep: carries less counted steps, modulo 16, 4 bits.
+    KEPT_ON_WAY = 3;
+    /// Low bits of the position, in memory or as the pulser counts them, 3 bits.
+    POSITION_LOW = 0;
+    /// Sign of the difference between the pulser's count and the position in memory.
     MISSING_SIGN = 2;
 
     /// Word of a switch: number of consecutive samples that differ, 7 bits.

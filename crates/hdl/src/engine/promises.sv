@@ -126,8 +126,8 @@ module promises (
         was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
         was_cleared <= strobe & clearing;
         was_ending <= ending;
-        was_wrong <= take && mine && put_word != word[18:16];
-        was_right <= take && mine && put_word == word[18:16];
+        was_wrong <= take && mine && put_word != word[12:10];
+        was_right <= take && mine && put_word == word[12:10];
     end
     wire mine = axis == who & beat[12:0] != 0;
 
@@ -167,8 +167,8 @@ module promises (
 
     always_comb begin
         promise_15_words_of_the_axis_of_the_time_slot: assert (!state_valid || state_axis == axis && beat[12:0] != 0);
-        promise_15_a_snapshot_is_of_all_axes: assert (!(mine && takes && word_read[19]));
-        promise_15_a_tick_is_live_or_a_snapshot: assert (!state_valid || beat[7] || state_page != 0 || word_read[19] || swept);
+        promise_15_a_snapshot_is_of_all_axes: assert (!(mine && takes && word_read[13]));
+        promise_15_a_tick_is_live_or_a_snapshot: assert (!state_valid || beat[7] || state_page != 0 || word_read[13] || swept);
     end
 
     // ---- What the proofs of the modules assume about the engine.
@@ -185,7 +185,7 @@ module promises (
             || {begins_round, row, resetting} == {was_begins_round, was_row, was_resetting});
         assumed_by_seek_control: assert (!strobe || axis == 0);
         assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);
-        assumed_by_readout: assert (!(mine && word_read[19]) || found_before);
+        assumed_by_readout: assert (!(mine && word_read[13]) || found_before);
         assumed_by_readout_latch: assert ((!latches || latched) && (!comes || strobe));
     end
 
@@ -202,11 +202,11 @@ module promises (
     wire in_time_slot = turning & at < ALL_TIME_SLOTS;
     wire had_time_slot = turning & at >= TIME_SLOT_CLOCKS * ({5'd0, who} + 1);
 
-    wire [23:0] word;
-    memory_probe #("\\dut.queue.control.words", 3, 24) at_control (1'b0, 1'b1, who, word);
-    (* inside = "dut.queue.word" *) wire [23:0] word_read;
+    wire [20:0] word;
+    memory_probe #("\\dut.queue.control.words", 3, 21) at_control (1'b0, 1'b1, who, word);
+    (* inside = "dut.queue.word" *) wire [20:0] word_read;
     (* inside = "dut.queue.took" *) wire took;
-    wire committed = took && word_read[18:16] == 7;
+    wire committed = took && word_read[12:10] == 7;
     (* inside = "dut.event_wheel.tick.sub" *) wire [15:0] sub;
     (* inside = "dut.event_wheel.tick.phases" *) wire [3:0] phases;
     (* inside = "dut.time_slot.beats" *) wire [16:0] beats;
@@ -267,8 +267,8 @@ module promises (
             && (!resetting || was_resetting || at == 0));
         invariant_30: assert (!was_resetting || slowing == 0 && seeking == 0);
         invariant_26: assert (!(takes && found_before));
-        invariant_27: assert (!word[19] || (had_time_slot ? found_now : found_before));
-        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, drops, word[19]} && quiet);
+        invariant_27: assert (!word[13] || (had_time_slot ? found_now : found_before));
+        invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, drops, word[13]} && quiet);
     end
 `endif
 

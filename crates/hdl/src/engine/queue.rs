@@ -14,26 +14,22 @@
 //! last beat. Its fields, from the lowest bit:
 //!
 //! ```text
-//! bits     0-2    3-5      6         7       8-10             11-13             14     15      16-18
-//! field    live   newest   running   unfit   position mod 8   discarded mod 8   back   known   due
-//! bits     19     20-23
-//! field    met    on_way
+//! bits     0-2    3-5      6         7       8      9       10-12   13    14-20
+//! field    live   newest   running   unfit   back   known   due     met   counts
 //! ```
 //!
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
 //! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
 //! the host must put next: the words of a segment come in order, and word 7 commits it. `met` means
-//! that the axis has hit its own source, and that this tick outputs its state for that. `on_way` is
-//! the number of carries since the last clear less the steps that the position has counted since
-//! then.
+//! that the axis has hit its own source, and that this tick outputs its state for that. `counts`
+//! belongs to [`super::step_counts`]; the queue only keeps it.
 //!
-//! Cost: a memory of 8 words of 24 bits for the control words and one of 64 bits for the marks of
+//! Cost: a memory of 8 words of 21 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
 use super::layout::{
-    BEAT_COMPARE, BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_DISCARDED, CONTROL_DUE,
-    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_MET, CONTROL_NEWEST, CONTROL_ON_WAY, CONTROL_POSITION,
-    CONTROL_RUNNING, CONTROL_UNFIT, MISSING_SIGN,
+    BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_COUNTS, CONTROL_DUE, CONTROL_KNOWN, CONTROL_LIVE,
+    CONTROL_MET, CONTROL_NEWEST, CONTROL_RUNNING, CONTROL_UNFIT,
 };
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
@@ -78,14 +74,10 @@ pub struct Queue {
     pub turned: Input<Bit>,
     /// V < 0.
     pub back: Input<Bit>,
-    /// In beat 12: P + V crosses a step, if the axis moves.
-    pub crosses: Input<Bit>,
     /// In beat 12: the next tick's words of the axis are those of its own hit.
     pub meets: Input<Bit>,
-    /// The low bits of the position, from the pulser.
-    pub pulses: Input<Word<3>>,
-    /// The low bits of the discarded steps, from the pulser.
-    pub losses: Input<Word<3>>,
+    /// In beat 12: what is kept in `counts` until the next time slot of the axis.
+    pub next_counts: Input<Word<7>>,
     /// The slot of the running segment.
     pub live: Signal<Out, Word<3>>,
     /// The slot that the host writes.
@@ -116,19 +108,13 @@ pub struct Queue {
     pub too_fast: Signal<Out, Bit>,
     /// In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     pub dry: Signal<Out, Bit>,
-    /// From beat 5: a step forward is added to the position.
-    pub up: Signal<Out, Bit>,
-    /// From beat 5: a step backward is subtracted from the position.
-    pub down: Signal<Out, Bit>,
-    /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
-    pub lost: Signal<Out, Bit>,
     /// The words of this tick are those of the axis' own hit.
     pub met: Signal<Out, Bit>,
-    /// Carries since the last clear less counted steps, modulo 16.
-    pub on_way: Signal<Out, Word<4>>,
-    control: Memory<3, 24>,
+    /// `next_counts` of the time slot before of this axis, at first 0.
+    pub counts: Signal<Out, Word<7>>,
+    control: Memory<3, 21>,
     lasts: Memory<6, 1>,
-    word: Signal<Local, Word<24>>,
+    word: Signal<Local, Word<21>>,
     old_live: Signal<Local, Word<3>>,
     live_now: Signal<Local, Word<3>>,
     newest: Signal<Local, Word<3>>,
@@ -146,54 +132,35 @@ pub struct Queue {
     filled: Register<Bit>,       // `full`, a clock later, so that no long path begins at the memory
     took: Register<Bit>,         // the word that is due was accepted in this time slot
     wrong: Register<Bit>,        // `misplaced`
-    missing: Signal<Local, Word<3>>,
-    unseen: Signal<Local, Word<3>>,
-    forward: Register<Bit>,  // `up`
-    backward: Register<Bit>, // `down`
-    gone: Register<Bit>,     // `lost`
     next_live: Signal<Local, Word<3>>,
     next_newest: Signal<Local, Word<3>>,
-    next_running: Signal<Local, Word<24>>,
-    next_unfit: Signal<Local, Word<24>>,
-    next_known: Signal<Local, Word<24>>,
-    next_back: Signal<Local, Word<24>>,
+    next_running: Signal<Local, Word<21>>,
+    next_unfit: Signal<Local, Word<21>>,
+    next_known: Signal<Local, Word<21>>,
+    next_back: Signal<Local, Word<21>>,
     next_due: Signal<Local, Word<3>>,
-    next_seen: Signal<Local, Word<3>>,
-    next_lost: Signal<Local, Word<3>>,
-    next_met: Signal<Local, Word<24>>,
-    ahead: Signal<Local, Bit>,  // the tick contains a step forward
-    behind: Signal<Local, Bit>, // the tick contains a step backward
-    gain: Signal<Local, Word<4>>,
-    next_on_way: Signal<Local, Word<4>>,
+    next_met: Signal<Local, Word<21>>,
     one: Literal<3, 1>,
-    minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
-    no: Literal<24, 0>,
-    running_bit: Literal<24, { 1 << CONTROL_RUNNING }>,
-    unfit_bit: Literal<24, { 1 << CONTROL_UNFIT }>,
-    back_bit: Literal<24, { 1 << CONTROL_BACK }>,
-    known_bit: Literal<24, { 1 << CONTROL_KNOWN }>,
-    all: Literal<24, 0xff_ffff>,
-    met_bit: Literal<24, { 1 << CONTROL_MET }>,
-    none_on_way: Literal<4, 0>,
-    one_more: Literal<4, 1>,
-    two_more: Literal<4, 2>,
-    one_less: Literal<4, 15>,
-    two_less: Literal<4, 14>,
+    no: Literal<21, 0>,
+    running_bit: Literal<21, { 1 << CONTROL_RUNNING }>,
+    unfit_bit: Literal<21, { 1 << CONTROL_UNFIT }>,
+    back_bit: Literal<21, { 1 << CONTROL_BACK }>,
+    known_bit: Literal<21, { 1 << CONTROL_KNOWN }>,
+    all: Literal<21, 0x1f_ffff>,
+    met_bit: Literal<21, { 1 << CONTROL_MET }>,
     commit: Literal<3, 7>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
     at_3: Literal<4, 3>,
-    at_8: Literal<4, 8>,
-    at_11: Literal<4, 11>,
-    at_16: Literal<5, 16>,
-    at_20: Literal<5, 20>,
+    at_10: Literal<4, 10>,
+    at_14: Literal<4, 14>,
 }
 
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, filled, took, wrong, forward, backward, gone);
+        dff_setup!(self, clock, filled, took, wrong);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot.
@@ -229,17 +196,6 @@ impl Logic for Queue {
             & !self.last_one.val()
             & self.none.val()
             & !self.ramp.val();
-
-        // Pulses and discarded steps are transferred to memory one per tick. The difference of the
-        // low bits shows which are not transferred yet.
-        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(CONTROL_POSITION);
-        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(CONTROL_DISCARDED);
-        if self.beat.val().get_bit(BEAT_COMPARE) {
-            self.forward.d.next =
-                self.missing.val().any() & !self.missing.val().get_bit(MISSING_SIGN);
-            self.backward.d.next = self.missing.val().get_bit(MISSING_SIGN);
-            self.gone.d.next = self.unseen.val().any() & !self.runs.val();
-        }
 
         // The host's words and its commit.
         self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
@@ -307,65 +263,21 @@ impl Logic for Queue {
         {
             self.next_back.next = self.back_bit.val();
         }
-        self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION);
-        if self.forward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION) + self.one.val();
-        } else if self.backward.q.val() {
-            self.next_seen.next =
-                self.word.val().get_bits::<3>(CONTROL_POSITION) + self.minus_one.val();
-        }
-        self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED);
-        if self.gone.q.val() {
-            self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
-        }
         self.next_met.next = self.no.val();
         if self.meets.val() {
             self.next_met.next = self.met_bit.val();
         }
-        self.ahead.next = self.moves.val() & self.crosses.val() & !self.back.val();
-        self.behind.next = self.moves.val() & self.crosses.val() & self.back.val();
-        self.gain.next = self.none_on_way.val();
-        if self.forward.q.val() {
-            self.gain.next = self.one_less.val();
-        }
-        if self.backward.q.val() {
-            self.gain.next = self.one_more.val();
-        }
-        if self.ahead.val() {
-            self.gain.next = self.one_more.val();
-            if self.forward.q.val() {
-                self.gain.next = self.none_on_way.val();
-            }
-            if self.backward.q.val() {
-                self.gain.next = self.two_more.val();
-            }
-        }
-        if self.behind.val() {
-            self.gain.next = self.one_less.val();
-            if self.forward.q.val() {
-                self.gain.next = self.two_less.val();
-            }
-            if self.backward.q.val() {
-                self.gain.next = self.none_on_way.val();
-            }
-        }
-        self.next_on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY) + self.gain.val();
-        if self.clear.val() {
-            self.next_on_way.next = self.none_on_way.val();
-        }
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
-        self.control.write_data.next = bit_cast::<24, 3>(self.next_live.val())
-            | (bit_cast::<24, 3>(self.next_newest.val()) << self.at_3.val())
+        self.control.write_data.next = bit_cast::<21, 3>(self.next_live.val())
+            | (bit_cast::<21, 3>(self.next_newest.val()) << self.at_3.val())
             | self.next_running.val()
             | self.next_unfit.val()
             | self.next_known.val()
             | self.next_back.val()
-            | (bit_cast::<24, 3>(self.next_seen.val()) << self.at_8.val())
-            | (bit_cast::<24, 3>(self.next_lost.val()) << self.at_11.val())
-            | (bit_cast::<24, 3>(self.next_due.val()) << self.at_16.val())
+            | (bit_cast::<21, 3>(self.next_due.val()) << self.at_10.val())
             | self.next_met.val()
-            | (bit_cast::<24, 4>(self.next_on_way.val()) << self.at_20.val());
+            | (bit_cast::<21, 7>(self.next_counts.val()) << self.at_14.val());
         self.control.write_bits.next = self.no.val();
         if self.beat.val().get_bit(BEAT_LAST) {
             self.control.write_bits.next = self.all.val();
@@ -382,11 +294,8 @@ impl Logic for Queue {
         self.slows.next = self.ramps.val();
         self.upward.next = self.word.val().get_bit(CONTROL_BACK);
         self.steady.next = self.ramp.val() & !self.word.val().get_bit(CONTROL_KNOWN);
-        self.up.next = self.forward.q.val();
-        self.down.next = self.backward.q.val();
-        self.lost.next = self.gone.q.val();
         self.met.next = self.word.val().get_bit(CONTROL_MET);
-        self.on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY);
+        self.counts.next = self.word.val().get_bits::<7>(CONTROL_COUNTS);
     }
 }
 

@@ -33,6 +33,7 @@ impl<const N: usize> Logic for Engine<N> {
             time_slot,
             adder,
             queue,
+            step_counts,
             store,
             event_wheel,
             switches,
@@ -165,18 +166,27 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.least.next = self.adder.least.val();
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
-        self.queue.crosses.next = self.adder.crosses.val();
         self.queue.meets.next = self.readout.meets.val();
-        self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
-        self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
+        self.queue.next_counts.next = self.step_counts.next_counts.val();
+
+        self.step_counts.beat.next = self.time_slot.beat.val();
+        self.step_counts.running.next = self.queue.running.val();
+        self.step_counts.moves.next = self.queue.moves.val();
+        self.step_counts.crosses.next = self.adder.crosses.val();
+        self.step_counts.back.next = self.adder.back.val();
+        self.step_counts.clear.next = self.stops.clearing.val();
+        self.step_counts.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
+        self.step_counts.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
+        self.step_counts.word.next = self.store.word.val();
+        self.step_counts.counts.next = self.queue.counts.val();
 
         self.adder.beat.next = self.time_slot.beat.val();
         self.adder.word.next = self.store.word.val();
         self.adder.put.next = self.put_data.val();
         self.adder.counts.next = self.queue.running.val();
-        self.adder.lost.next = self.queue.lost.val();
-        self.adder.up.next = self.queue.up.val();
-        self.adder.down.next = self.queue.down.val();
+        self.adder.lost.next = self.step_counts.lost.val();
+        self.adder.up.next = self.step_counts.up.val();
+        self.adder.down.next = self.step_counts.down.val();
         self.adder.wipe.next = self.stops.clearing.val();
         self.adder.forgets.next = self.resets.stage_2.val();
 
@@ -221,7 +231,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.readout.live.next = self.queue.live.val();
         self.readout.running.next = self.queue.running.val();
         self.readout.room.next = self.queue.room.val();
-        self.readout.on_way.next = self.queue.on_way.val();
+        self.readout.on_way.next = self.step_counts.on_way.val();
         self.state_valid.next = self.readout.valid.val();
         self.state_page.next = self.readout.page.val();
         self.state_axis.next = self.time_slot.axis.val();

@@ -5,8 +5,9 @@
 //! ```text
 //! beat     4        5                  6          7        10       11      12
 //! word     P low    left, discarded    position   switch   P high   ticks   status
+//!          |        |                  compares the position with the shaper
 //!          |        looks at the pin of the switch
-//!          compares position and discarded steps with the shaper
+//!          compares the discarded steps with the shaper
 //! ```
 
 mod counts;
@@ -20,7 +21,7 @@ use carrystep_core::engine::{
     AxisStatus, EngineInputs, EngineOutputs, SWITCH_LEVEL, SWITCH_STATE, StateItem, StatePage,
     StateWord, TIME_SLOT_CLOCKS,
 };
-use counts::{COMPARE_BEAT, Counts};
+use counts::Counts;
 
 /// The beat of a time slot in which the level of a switch is read, and the one in which it is
 /// output.
@@ -80,7 +81,7 @@ impl Readout {
         let (counts, state) = (self.counts[axis], motion.axis_state(axis));
         let page = self.page(motion, axis);
         let (item, word) = match beat {
-            COMPARE_BEAT => (StateItem::PLow, state.p as u32),
+            4 => (StateItem::PLow, state.p as u32),
             5 if page == StatePage::Seek => return None,
             5 => match state.left {
                 Some(left) => (StateItem::Left, left),
@@ -129,11 +130,9 @@ impl Readout {
     /// [`Readout::clock`].
     pub(crate) fn observe(&mut self, motion: &Motion, inputs: &EngineInputs) -> Option<Ending> {
         if let Some((axis, beat)) = motion.time_slot() {
+            let runs = motion.axis_state(axis).left.is_some();
+            self.counts[axis].compare(beat, motion.shaper(axis), runs);
             match beat {
-                COMPARE_BEAT => {
-                    let runs = motion.axis_state(axis).left.is_some();
-                    self.counts[axis].compare(motion.shaper(axis), runs);
-                }
                 LOOK_BEAT => {
                     self.level = motion.row().is_some_and(|row| motion.pin(inputs, axis, row));
                 }
