@@ -428,6 +428,8 @@ module carrystep_queue (
     output wire         moves,
     // In beat 12: the axis runs in the next tick too.
     output wire         goes_on,
+    // In beat 12: the next segment begins with the next tick.
+    output wire         advances,
     // In beat 12, fault: V is out of range.
     output wire         too_fast,
     // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
@@ -484,6 +486,7 @@ module carrystep_queue (
     wire ramps = ramp & word[9];
     wire follows = ended & !last_one & !none & !ramp;
     wire stays = moves & !over;
+    wire steps_on = moves & follows;
     wire [2:0] due = word[12:10];
     wire fits_in = put_word == due;
 
@@ -500,6 +503,7 @@ module carrystep_queue (
     assign steady = ramp & !word[9];
     assign moves = fits & !least;
     assign goes_on = stays;
+    assign advances = steps_on;
     assign too_fast = runs & (word[7] | least);
     assign dry = moves & ended & !last_one & none & !ramp;
     assign met = word[13];
@@ -535,7 +539,7 @@ module carrystep_queue (
 
     always @(*) begin
         next_live = live_now;
-        if (moves & follows) begin
+        if (steps_on) begin
             next_live = live_now + ONE;
         end
         if (empties) begin
@@ -1339,6 +1343,266 @@ module carrystep_event_wheel #(
             step_known <= 1'b0;
             when <= read[6:5] + ONE_TICK;
         end
+    end
+endmodule
+
+// Memory of the commits of axis 0: which outputs change, and their levels.
+module carrystep_output_words (
+    // The clock.
+    input  wire         clock,
+    // Reads a word in this cycle.
+    input  wire         read,
+    // The address of the word to read.
+    input  wire   [4:0] read_address,
+    // The word that was read last.
+    output wire  [15:0] read_data,
+    // Writes a word in this cycle.
+    input  wire         write,
+    // The address of the word to write.
+    input  wire   [4:0] write_address,
+    // The new word.
+    input  wire  [15:0] write_data
+);
+    wire unused = &{read_address[4:3], write_address[4:3]};
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
+    reg [15:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        if (read) value <= words[read_address[2:0]];
+        if (write) words[write_address[2:0]] <= write_data;
+    end
+endmodule
+
+// Memory of the commits of axis 0: the duty of the PWM.
+module carrystep_duty_words (
+    // The clock.
+    input  wire         clock,
+    // Reads a word in this cycle.
+    input  wire         read,
+    // The address of the word to read.
+    input  wire   [4:0] read_address,
+    // The word that was read last.
+    output wire  [12:0] read_data,
+    // Writes a word in this cycle.
+    input  wire         write,
+    // The address of the word to write.
+    input  wire   [4:0] write_address,
+    // The new word.
+    input  wire  [12:0] write_data
+);
+    wire unused = &{read_address[4:3], write_address[4:3]};
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = "block" *) reg [12:0] words [0:7];
+    reg [12:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        if (read) value <= words[read_address[2:0]];
+        if (write) words[write_address[2:0]] <= write_data;
+    end
+endmodule
+
+// The outputs, which change where a segment of axis 0 begins; and the new duties of the PWM.
+module carrystep_output_control #(
+    // The outputs at `outputs` that exist; a mask of 8 bits
+    parameter [31:0] OUTPUTS = 32'd0,
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The axis of the time slot, one-hot.
+    input  wire   [5:0] axis_one_hot,
+    // The engine accepts a word of the host in this clock, for the axis of the time slot.
+    input  wire         take,
+    // The number of that word.
+    input  wire   [2:0] put_word,
+    // That word.
+    input  wire  [31:0] put_data,
+    // The slot that the host writes.
+    input  wire   [2:0] fresh,
+    // The slot of the running segment.
+    input  wire   [2:0] live,
+    // The axis starts in this tick.
+    input  wire         starts,
+    // In beat 12: the next segment of the axis begins with the next tick.
+    input  wire         follows,
+    // All outputs are off from the next clock on.
+    input  wire         off,
+    // The pins; 1 is active.
+    output wire   [7:0] pins,
+    // At a strobe: the duty of the PWM changes.
+    output wire         sets_duty,
+    // The new duty, valid with `sets_duty`.
+    output wire  [11:0] duty,
+    // Fault: the commit accepted in the clock before had bits that it must not have.
+    output wire         stray
+);
+    localparam [7:0] EXIST = OUTPUTS[7:0];
+    localparam HAS_PWM = PWM_DIVIDER != 32'd0;
+    localparam [31:0] LACKS = ((OUTPUTS != 32'd0) | (PWM_DIVIDER != 32'd0)) ? ~(((OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0)) | 32'd1) : 32'd0;
+    localparam [31:0] HAS = (OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0);
+    localparam [2:0] COMMIT = 3'd7;
+    localparam [12:0] DUTY_VALID = 13'd4096;
+    localparam [12:0] NO_DUTY = 13'd0;
+    localparam [7:0] NO_LEVELS = 8'd0;
+
+    generate
+        if (OUTPUTS > 32'd255) begin : outputs_out_of_range
+            carrystep_error_outputs_out_of_range error ();
+        end
+    endgenerate
+
+    reg [7:0] levels = 8'd0;
+    reg [2:0] place = 3'd0;
+    reg follower = 1'b0;
+    reg begun = 1'b0;
+    reg due = 1'b0;
+    reg wrong = 1'b0;
+    reg [12:0] sets_bit;
+
+    wire [15:0] output_words_read_data;
+    wire [12:0] duty_words_read_data;
+
+    wire first = axis_one_hot[0];
+    wire commits = take & (put_word == COMMIT);
+    wire stores = commits & first;
+    wire [31:0] never = put_data & LACKS;
+    wire [31:0] of_others = put_data & HAS;
+    wire applies = first & beat[0];
+    wire [7:0] mask = output_words_read_data[7:0] & EXIST;
+    wire [7:0] new_levels = output_words_read_data[15:8];
+
+    assign pins = levels;
+    assign sets_duty = due & duty_words_read_data[12] & (HAS_PWM != 1'b0);
+    assign duty = duty_words_read_data[11:0];
+    assign stray = wrong;
+
+    always @(*) begin
+        sets_bit = NO_DUTY;
+        if (put_data[1]) begin
+            sets_bit = DUTY_VALID;
+        end
+    end
+
+    carrystep_output_words output_words (
+        .clock(clock),
+        .read(applies),
+        .read_address({2'b0, place}),
+        .read_data(output_words_read_data),
+        .write(stores),
+        .write_address({2'b0, fresh}),
+        .write_data(put_data[19:4])
+    );
+
+    carrystep_duty_words duty_words (
+        .clock(clock),
+        .read(applies),
+        .read_address({2'b0, place}),
+        .read_data(duty_words_read_data),
+        .write(stores),
+        .write_address({2'b0, fresh}),
+        .write_data({1'b0, put_data[31:20]} | sets_bit)
+    );
+
+    always @(posedge clock) begin
+        wrong <= commits & ((never != 32'd0) | (!first & (of_others != 32'd0)));
+        if (first & beat[12]) begin
+            place <= live;
+            begun <= starts | follower;
+            follower <= follows;
+        end
+        if (applies) begin
+            due <= begun;
+        end
+        if (applies & due) begin
+            levels <= (levels & ~mask) | (new_levels & mask);
+        end
+        if (off) begin
+            levels <= NO_LEVELS;
+        end
+    end
+endmodule
+
+// The PWM: its pin is active for the duty, a part of each period.
+module carrystep_pulse_width #(
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // The duty changes.
+    input  wire         set,
+    // The new duty, valid with `set`.
+    input  wire  [11:0] duty,
+    // The pin is off from the next clock on, and the duty is 0.
+    input  wire         off,
+    // The pin; 1 is active.
+    output wire         pin
+);
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [7:0] used_bits_8(input [7:0] greatest);
+        begin
+            used_bits_8 = greatest;
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 1);
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 2);
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 4);
+        end
+    endfunction
+    localparam [7:0] LAST = (PWM_DIVIDER != 32'd0) ? (PWM_DIVIDER[7:0] - 8'd1) : 8'd0;
+    localparam [7:0] DIVIDER_BITS = used_bits_8((PWM_DIVIDER != 32'd0) ? (PWM_DIVIDER[7:0] - 8'd1) : 8'd0);
+    localparam [11:0] STEPS = (PWM_DIVIDER != 32'd0) ? 12'd4095 : 12'd0;
+    localparam [7:0] ONE_CLOCK = 8'd1;
+    localparam [7:0] NO_CLOCK = 8'd0;
+    localparam [11:0] ONE_STEP = 12'd1;
+    localparam [11:0] NO_DUTY = 12'd0;
+
+    generate
+        if (PWM_DIVIDER > 32'd256) begin : pwm_divider_out_of_range
+            carrystep_error_pwm_divider_out_of_range error ();
+        end
+    endgenerate
+
+    reg [7:0] divided = 8'd0;
+    reg [11:0] count = 12'd0;
+    reg [11:0] width = 12'd0;
+    reg high = 1'b0;
+
+    wire over = divided == LAST;
+
+    assign pin = high;
+
+    always @(posedge clock) begin
+        divided <= (divided + ONE_CLOCK) & DIVIDER_BITS;
+        if (over) begin
+            divided <= NO_CLOCK;
+            count <= (count + ONE_STEP) & STEPS;
+        end
+        if (set) begin
+            width <= duty & STEPS;
+        end
+        if (off) begin
+            width <= NO_DUTY;
+        end
+        high <= (count < width) & !off;
     end
 endmodule
 
@@ -2568,6 +2832,13 @@ module carrystep_engine #(
     parameter [31:0] LATCH_LOW = 32'd0,
     // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0,
+    // The outputs at `outputs` that exist; a mask of 8 bits
+    parameter [31:0] OUTPUTS = 32'd0,
+    // Effect of a stop by ramps on outputs and PWM: 0 none, 1 all off; a freeze turns them off; 0
+    // or 1
+    parameter [31:0] OUTPUTS_OFF_AT_RAMPS = 32'd0,
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0,
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
@@ -2583,7 +2854,9 @@ module carrystep_engine #(
     // 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
     // segment.
     input  wire   [2:0] put_word,
-    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
+    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
+    // of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
+    // their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
     input  wire  [31:0] put_data,
     // The engine accepts an offered word in this clock.
     output wire         put_ready,
@@ -2664,6 +2937,10 @@ module carrystep_engine #(
     output wire   [5:0] step,
     // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The outputs, which change where a segment of axis 0 begins; 1 is active.
+    output wire   [7:0] outputs,
+    // The pin of the PWM; 1 is active.
+    output wire         pwm,
     // The motor drivers are to be powered.
     output wire         enabled,
     // All axes are at rest and no start is armed.
@@ -2709,8 +2986,12 @@ module carrystep_engine #(
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
+    localparam OFF_AT_RAMPS = OUTPUTS_OFF_AT_RAMPS[0];
 
     generate
+        if (OUTPUTS_OFF_AT_RAMPS > 32'd1) begin : outputs_off_at_ramps_out_of_range
+            carrystep_error_outputs_off_at_ramps_out_of_range error ();
+        end
         if (CLOCKS_PER_TICK < 32'd80) begin : clocks_per_tick_too_few_for_the_axes
             carrystep_error_clocks_per_tick_too_few_for_the_axes error ();
         end
@@ -2770,6 +3051,7 @@ module carrystep_engine #(
     wire queue_steady;
     wire queue_moves;
     wire queue_goes_on;
+    wire queue_advances;
     wire queue_too_fast;
     wire queue_dry;
     wire queue_met;
@@ -2784,6 +3066,11 @@ module carrystep_engine #(
     wire event_wheel_phase_start;
     wire [5:0] event_wheel_events;
     wire [5:0] event_wheel_backward;
+    wire [7:0] output_control_pins;
+    wire output_control_sets_duty;
+    wire [11:0] output_control_duty;
+    wire output_control_stray;
+    wire pulse_width_pin;
     wire switches_samples;
     wire switches_level;
     wire switches_earlier;
@@ -2867,6 +3154,7 @@ module carrystep_engine #(
     wire decides = strobe & waits & free;
     wire go = decides & !unfed & !held & !drops;
     wire rests = rest_2 & !waits & !pins_busy;
+    wire outputs_off = stops_frozen | (stops_fault & (OFF_AT_RAMPS != 1'b0)) | !supervisor_enabled;
 
     assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
@@ -2890,6 +3178,8 @@ module carrystep_engine #(
     assign dir[3] = pulser_3_dir;
     assign dir[4] = pulser_4_dir;
     assign dir[5] = pulser_5_dir;
+    assign outputs = output_control_pins;
+    assign pwm = pulse_width_pin;
     assign enabled = supervisor_enabled;
     assign idle = rests;
     assign fault = stops_fault;
@@ -3084,6 +3374,7 @@ module carrystep_engine #(
         .steady(queue_steady),
         .moves(queue_moves),
         .goes_on(queue_goes_on),
+        .advances(queue_advances),
         .too_fast(queue_too_fast),
         .dry(queue_dry),
         .met(queue_met),
@@ -3152,6 +3443,37 @@ module carrystep_engine #(
         .phase_start(event_wheel_phase_start),
         .events(event_wheel_events),
         .backward(event_wheel_backward)
+    );
+
+    carrystep_output_control #(
+        .OUTPUTS(OUTPUTS),
+        .PWM_DIVIDER(PWM_DIVIDER)
+    ) output_control (
+        .clock(clock),
+        .beat(time_slot_beat),
+        .axis_one_hot(time_slot_axis_one_hot),
+        .take(take),
+        .put_word(put_word),
+        .put_data(put_data),
+        .fresh(queue_fresh),
+        .live(queue_live),
+        .starts(going & masked),
+        .follows(queue_advances),
+        .off(outputs_off),
+        .pins(output_control_pins),
+        .sets_duty(output_control_sets_duty),
+        .duty(output_control_duty),
+        .stray(output_control_stray)
+    );
+
+    carrystep_pulse_width #(
+        .PWM_DIVIDER(PWM_DIVIDER)
+    ) pulse_width (
+        .clock(clock),
+        .set(output_control_sets_duty & strobe),
+        .duty(output_control_duty),
+        .off(outputs_off),
+        .pin(pulse_width_pin)
     );
 
     carrystep_switches #(
@@ -3266,7 +3588,7 @@ module carrystep_engine #(
         .dry(queue_dry),
         .late(late),
         .pressed(supervisor_pressed),
-        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed & !drops)),
+        .breaks((((put_valid & nobody) | broken | queue_misplaced | output_control_stray) & !stops_fault) | (decides & unfed & !drops)),
         .missed(supervisor_missed & !rest_2),
         .interlock(switches_interlock),
         .asked(stop),

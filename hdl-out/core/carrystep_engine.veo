@@ -51,6 +51,9 @@ carrystep_engine #(
     .LATCH_LOOKS(32'd0),
     .LATCH_LOW(32'd0),
     .ESTOP_LOW(32'd0),
+    .OUTPUTS(32'd0),
+    .OUTPUTS_OFF_AT_RAMPS(32'd0),
+    .PWM_DIVIDER(32'd0),
     .EVENT_MEMORY("block")
 ) engine (
     .clock(),             // input
@@ -90,6 +93,8 @@ carrystep_engine #(
     .room_valid(),        // output
     .step(),              // output [5:0]
     .dir(),               // output [5:0]
+    .outputs(),           // output [7:0]
+    .pwm(),               // output
     .enabled(),           // output
     .idle(),              // output
     .fault(),             // output

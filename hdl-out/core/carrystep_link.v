@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     eb02f71d2d60fe51
+// Build id     1e49a52af3711e30
 
 `default_nettype none
 
@@ -1158,7 +1158,7 @@ endmodule
 // Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h1e49a52af3711e30,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1211,7 +1211,7 @@ endmodule
 // What the host can read: constants of the build, and the last words of state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h1e49a52af3711e30,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1287,7 +1287,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h1e49a52af3711e30,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1

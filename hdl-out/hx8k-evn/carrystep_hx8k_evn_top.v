@@ -80,7 +80,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'he595423c8ed9e29d),
+        .BUILD_ID(64'h16fb43f7618461fb),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),
@@ -181,6 +181,9 @@ module carrystep_hx8k_evn_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -231,6 +234,8 @@ module carrystep_hx8k_evn_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

@@ -80,7 +80,7 @@ module carrystep_icebreaker_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'he1dd859898fd4f48),
+        .BUILD_ID(64'h1fdb85d94b010714),
         .CLOCK_HZ(32'h23c3460),
         .TICK_NS(32'd2560),
         .ROUND_TICKS(32'd16),
@@ -181,6 +181,9 @@ module carrystep_icebreaker_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -231,6 +234,8 @@ module carrystep_icebreaker_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

@@ -95,7 +95,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'h25cd676b41b40ad0),
+        .BUILD_ID(64'hff744204c82a3c7d),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -196,6 +196,9 @@ module carrystep_mojo_v3_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -246,6 +249,8 @@ module carrystep_mojo_v3_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

@@ -80,7 +80,7 @@ module carrystep_papilio_pro_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h5622c8cb144c041e),
+        .BUILD_ID(64'h4cb747e57b5491a5),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -181,6 +181,9 @@ module carrystep_papilio_pro_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -231,6 +234,8 @@ module carrystep_papilio_pro_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

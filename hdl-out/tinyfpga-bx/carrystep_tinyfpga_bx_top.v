@@ -81,7 +81,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h18cad639a156eb40),
+        .BUILD_ID(64'ha14149f019376e),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -182,6 +182,9 @@ module carrystep_tinyfpga_bx_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -232,6 +235,8 @@ module carrystep_tinyfpga_bx_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

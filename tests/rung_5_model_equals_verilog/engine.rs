@@ -49,6 +49,9 @@ struct Seen {
     hits: u64,
     /// Edges of the latch that it did not latch.
     further: u64,
+    /// Changes of outputs, and edges of the PWM.
+    switched: u64,
+    modulated: u64,
 }
 
 impl Seen {
@@ -61,6 +64,8 @@ impl Seen {
             self.together += u64::from(rising > 1);
             self.hits += u64::from(now.hits & !before.hits != 0);
             self.further += u64::from(now.latch_edges > before.latch_edges);
+            self.switched += u64::from(now.outputs != before.outputs);
+            self.modulated += u64::from(now.pwm != before.pwm);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
                 (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
@@ -72,8 +77,10 @@ impl Seen {
     }
 
     fn assert_everything(&self) {
-        let Self { clocks, edges, together, causes, ramped, cleared, hits, further } = *self;
-        let counts = [clocks, edges, together, ramped, cleared, hits, further];
+        let Self { clocks, edges, together, causes, ramped, cleared, hits, further, .. } = *self;
+        let Self { switched, modulated, .. } = *self;
+        let counts =
+            [clocks, edges, together, ramped, cleared, hits, further, switched, modulated];
         let all = [counts.as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
         let stops: u64 = causes.iter().sum();

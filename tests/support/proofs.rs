@@ -23,9 +23,11 @@ mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
+mod output_control;
 mod parallel_core;
 mod promises;
 mod pulser;
+mod pulse_width;
 mod queue;
 mod readout;
 mod resets;
@@ -144,6 +146,8 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         seek_control::proof(engine),
         edge_latch::proof(engine),
         resets::proof(engine),
+        output_control::proof(engine),
+        pulse_width::proof(engine),
         time_slot::proof(engine),
         event_wheel::proof(engine),
         adder::proof(engine),

@@ -15,6 +15,7 @@ use crate::tick::Ticks;
 
 mod build;
 mod cause;
+mod commit;
 mod error;
 mod figures;
 mod ports;
@@ -23,6 +24,7 @@ mod state;
 
 pub use build::{EngineBuild, Guard, InputRow, Latch, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
+pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 pub use ports::{ENGINE_PORTS, is_recorded, ports_of};
@@ -48,7 +50,7 @@ pub const QUEUE: usize = 7;
 /// Data words of a segment: ticks minus one, then V, A and J, each with its low half first.
 pub const SEGMENT_WORDS: u8 = 7;
 
-/// Number of the word that commits a segment to the queue; bit 0 of its data is `last`.
+/// Number of the word that commits a segment to the queue; its data is a [`Commit`].
 pub const COMMIT: u8 = 7;
 
 /// Greatest length of a round, in ticks. The guard samples limits and counts time in rounds.
@@ -193,6 +195,10 @@ pub struct EngineOutputs {
     pub step: u8,
     /// Levels of the DIR pins; bit i is axis i, 1 is backward.
     pub dir: u8,
+    /// Levels of the outputs that change with the motion; bit k is output k, 1 is active.
+    pub outputs: u8,
+    /// Level of the PWM's pin; true is active.
+    pub pwm: bool,
     /// Level of the ENABLE output: the drivers are to have power.
     pub enabled: bool,
     /// All axes have finished and no start is armed.

@@ -8,7 +8,7 @@ use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use carrystep_core::EngineBuild;
 use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, TimebaseError};
-use carrystep_core::engine::{Guard, MAX_AXES};
+use carrystep_core::engine::{Guard, MAX_AXES, Outputs};
 use carrystep_core::fixed::StartPhase;
 use carrystep_core::link::{BaudError, LineKind, Uart};
 use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
@@ -16,6 +16,7 @@ use guard::RawGuard;
 use home::{RawOrder, RawPlace};
 use inputs::RawInputs;
 use link::RawLink;
+use outputs::RawOutputs;
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
@@ -27,6 +28,7 @@ mod guard;
 mod home;
 mod inputs;
 mod link;
+mod outputs;
 mod stop;
 mod units;
 
@@ -45,6 +47,8 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// Settings of the engine's guard.
     pub guard: Guard,
+    /// The outputs that change with the motion.
+    pub outputs: Outputs,
     /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
     /// together.
     pub home_order: Vec<Vec<usize>>,
@@ -96,7 +100,8 @@ impl Machine {
     /// The engine of this machine, with the machine's number of axes.
     pub fn engine(&self) -> EngineBuild {
         let pins = self.axes.iter().map(|axis| axis.pins).collect();
-        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard: self.guard.clone() }
+        let guard = self.guard.clone();
+        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard, outputs: self.outputs }
     }
 
     /// Reads a machine file, which has a `[machine]` table.
@@ -176,6 +181,8 @@ pub(crate) struct RawMachine {
     #[serde(default)]
     inputs: RawInputs,
     #[serde(default)]
+    outputs: RawOutputs,
+    #[serde(default)]
     link: RawLink,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
@@ -224,7 +231,8 @@ impl RawMachine {
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
-        Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
+        let (outputs, phase) = (self.outputs.check(source)?, self.phase);
+        Ok(Machine { timebase, chosen_tick, phase, axes, guard, outputs, home_order, baud, spi })
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.

@@ -35,7 +35,7 @@
 //! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
-use crate::parameters::CLOCKS_PER_TICK;
+use crate::parameters::{CLOCKS_PER_TICK, OUTPUTS_OFF_AT_RAMPS};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::per_axis::PerAxis;
@@ -49,7 +49,9 @@ pub mod adder;
 pub mod edge_latch;
 pub mod event_wheel;
 pub mod layout;
+pub mod output_control;
 pub mod pulser;
+pub mod pulse_width;
 pub mod queue;
 pub mod readout;
 pub mod resets;
@@ -68,7 +70,9 @@ pub use sim::{AnyEngine, EngineSim, engine};
 use adder::Adder;
 use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
+use output_control::OutputControl;
 use pulser::Pulser;
+use pulse_width::PulseWidth;
 use queue::Queue;
 use readout::Readout;
 use resets::Resets;
@@ -95,7 +99,9 @@ pub struct Engine<const N: usize> {
     /// less 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7
     /// commits the segment.
     pub put_word: Input<Word<3>>,
-    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
+    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
+    /// of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
+    /// their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
     pub put_data: Input<Word<32>>,
     /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
@@ -176,6 +182,10 @@ pub struct Engine<const N: usize> {
     pub step: PerAxis<Signal<Out, Bit>, N>,
     /// The DIR pins; bit i is axis i; 1 is backward.
     pub dir: PerAxis<Signal<Out, Bit>, N>,
+    /// The outputs, which change where a segment of axis 0 begins; 1 is active.
+    pub outputs: Signal<Out, Word<8>>,
+    /// The pin of the PWM; 1 is active.
+    pub pwm: Signal<Out, Bit>,
     /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
     /// All axes are at rest and no start is armed.
@@ -214,6 +224,8 @@ pub struct Engine<const N: usize> {
     step_counts: StepCounts,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
+    output_control: OutputControl<N>,
+    pulse_width: PulseWidth,
     switches: Switches<N>,
     seek_control: SeekControl<N>,
     edge_latch: EdgeLatch,
@@ -242,6 +254,7 @@ pub struct Engine<const N: usize> {
     // The axis `put_axis` accepts a word in this clock if its queue has space.
     listens: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
+    outputs_off: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
     decides: Signal<Local, Bit>,
@@ -259,6 +272,8 @@ pub struct Engine<const N: usize> {
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
+    off_at_ramps: Parameter<1>,
+    outputs_off_at_ramps_out_of_range: ParameterRefusal,
     clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
@@ -272,10 +287,13 @@ impl<const N: usize> Engine<N> {
         }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
+        let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
         Ok(Self {
             time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop),
             event_wheel: EventWheel::new(&build.timebase),
+            output_control: OutputControl::new(&build.outputs),
+            pulse_width: PulseWidth::new(build.outputs.pwm_divider),
             switches: Switches::new(&build.guard),
             seek_control: SeekControl::new(),
             edge_latch: EdgeLatch::new(&build.guard),
@@ -283,6 +301,8 @@ impl<const N: usize> Engine<N> {
             supervisor: Supervisor::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
+            off_at_ramps: Parameter::of(&off_at_ramps.bits(0)),
+            outputs_off_at_ramps_out_of_range: ParameterRefusal::of(&off_at_ramps.is_outside(0, 1)),
             clocks_per_tick_too_few_for_the_axes: ParameterRefusal::of(
                 &clocks.whole().is_less(&Formula::number(least)),
             ),

@@ -7,7 +7,9 @@ pub mod replay;
 pub mod run;
 
 use crate::Commands;
-use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put, SeekSource};
+use carrystep_core::engine::{
+    COMMIT, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, Put, SeekSource,
+};
 use carrystep_core::{Command, Program, Segment};
 use std::fmt;
 
@@ -108,6 +110,12 @@ pub enum Event {
     /// The host numbers its words wrongly from this cycle on: the bits of this mask are inverted in
     /// the number of every word. 0 ends it.
     WordError(u8),
+    /// The host sets these bits of every commit of axis 0 from this cycle on, as far as the build
+    /// has outputs for them. 0 ends it.
+    Outputs(u32),
+    /// The host sets these bits of every commit from this cycle on, whatever the build has. 0 ends
+    /// it.
+    Stray(u32),
 }
 
 /// Events, in the order of their cycles.
@@ -128,6 +136,11 @@ pub struct EngineHost<'a> {
     around: EngineInputs,
     guard: Guard,
     word_error: u8,
+    /// The bits that a commit of axis 0 may have.
+    commit_bits: u32,
+    /// The bits that the host sets in a commit of axis 0, and in that of any axis.
+    outputs: u32,
+    stray: u32,
 }
 
 impl fmt::Debug for EngineHost<'_> {
@@ -142,22 +155,22 @@ impl fmt::Debug for EngineHost<'_> {
 impl EngineHost<'static> {
     /// A host that executes a program command by command. The drivers have power until an event
     /// removes it.
-    pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
+    pub fn new(build: &EngineBuild, program: &Program, events: &Events) -> Self {
         let acts: Vec<Act> = program.iter().flat_map(acts_of).collect();
-        Self::doing(guard, Box::new(acts.into_iter()), events.clone(), false)
+        Self::doing(build, Box::new(acts.into_iter()), events.clone(), false)
     }
 }
 
 impl<'a> EngineHost<'a> {
     /// A host that keeps the queues of planned moves full, and restarts the watchdog in every
     /// cycle.
-    pub fn feeding(guard: &Guard, program: &'a dyn Commands) -> Self {
+    pub fn feeding(build: &EngineBuild, program: &'a dyn Commands) -> Self {
         let acts = Box::new(feed::Acts::new(program.commands()));
-        Self::doing(guard, acts, Events::new(), true)
+        Self::doing(build, acts, Events::new(), true)
     }
 
     fn doing(
-        guard: &Guard,
+        build: &EngineBuild,
         mut acts: Box<dyn Iterator<Item = Act> + 'a>,
         events: Events,
         awake: bool,
@@ -173,8 +186,11 @@ impl<'a> EngineHost<'a> {
             awake,
             fault: false,
             around,
-            guard: guard.clone(),
+            guard: build.guard.clone(),
             word_error: 0,
+            commit_bits: build.outputs.commit_bits() & !Commit::LAST,
+            outputs: 0,
+            stray: 0,
         };
         host.happen();
         host
@@ -209,6 +225,8 @@ impl<'a> EngineHost<'a> {
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
                 Event::WordError(mask) => self.word_error = mask,
+                Event::Outputs(bits) => self.outputs = bits & self.commit_bits,
+                Event::Stray(bits) => self.stray = bits,
             }
         }
     }
@@ -218,7 +236,10 @@ impl<'a> EngineHost<'a> {
         let inputs = self.around.levels(&self.guard);
         match self.current {
             Some(Act::Put(put)) if !fault => {
-                let put = Put { word: put.word ^ self.word_error, ..put };
+                let outputs = if put.axis == 0 { self.outputs } else { 0 };
+                let bits = if put.word == COMMIT { outputs | self.stray } else { 0 };
+                let (word, data) = (put.word ^ self.word_error, put.data | bits);
+                let put = Put { word, data, ..put };
                 EngineInputs { put: Some(put), ..inputs }
             }
             Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },

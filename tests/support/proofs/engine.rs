@@ -22,8 +22,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_no_such_axis_is_told",
-        text: "((put_valid & nobody) | broken | queue_misplaced)",
-        becomes: "(broken | queue_misplaced)",
+        text: "((put_valid & nobody) | broken | queue_misplaced | output_control_stray)",
+        becomes: "(broken | queue_misplaced | output_control_stray)",
     },
     Bug {
         breaks: "promise_6_something_to_start",
@@ -52,8 +52,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_12_starts_who_is_asked_to",
-        text: ".starts(going & masked)",
-        becomes: ".starts(going)",
+        text: ".starts(going & masked),\n        .halted",
+        becomes: ".starts(going),\n        .halted",
     },
     Bug {
         breaks: "promise_19_a_hit_ramps_its_own_axis",
@@ -64,6 +64,11 @@ const BUGS: &[Bug] = &[
         breaks: "promise_12_a_limit_of_a_seek_stops_no_other",
         text: "switches_found & !seek_control_forgives",
         becomes: "switches_found",
+    },
+    Bug {
+        breaks: "promise_17_off_at_stops",
+        text: "outputs_off = stops_frozen |",
+        becomes: "outputs_off =",
     },
     Bug {
         breaks: "promise_6_words_in_order",

@@ -45,6 +45,11 @@ const BUGS: &[Bug] = &[
         becomes: "wrong <= !fits_in",
     },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
+    Bug {
+        breaks: "promise_6_the_next_begins",
+        text: "steps_on = moves & follows;",
+        becomes: "steps_on = follows;",
+    },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },
     Bug { breaks: "promise_10_dry_is_told", text: "& none & !ramp;", becomes: "& none;" },
     Bug {

@@ -3,8 +3,8 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins,
-    check_schedule,
+    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    Outputs, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
@@ -24,6 +24,8 @@ pub struct EngineBuild {
     pub pins: Vec<PinTiming>,
     /// Settings of the guard.
     pub guard: Guard,
+    /// The outputs that change with the motion.
+    pub outputs: Outputs,
 }
 
 /// Settings of the guard: what it watches, and how it stops the axes.
@@ -130,12 +132,13 @@ impl Guard {
 }
 
 impl EngineBuild {
-    /// An engine with these parameters and the smallest guard; every axis ramps down with `stop`,
+    /// An engine with these parameters and the smallest guard, without outputs; every axis ramps down with `stop`,
     /// 2^-64 step per tick^2.
     pub fn minimal(build: &Build, stop: u64) -> Self {
         let Build { timebase, phase, pins } = build;
         let guard = Guard::minimal(vec![stop; pins.len()]);
-        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard }
+        let outputs = Outputs::default();
+        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard, outputs }
     }
 
     /// Number of axes.
@@ -177,6 +180,9 @@ impl EngineBuild {
             && !(1..=MAX_LOOKS).contains(&looks)
         {
             return Err(EngineError::Looks(looks));
+        }
+        if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
+            return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
         }
         if guard.stop.len() != axes {
             return Err(EngineError::StopCount { axes, found: guard.stop.len() });
@@ -233,6 +239,8 @@ mod tests {
         assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
         let said = refusal(|build| build.guard.latch = Some(Latch { low: false, looks: 17 }));
         assert!(said.starts_with("a latch of 17 looks"), "{said}");
+        let said = refusal(|build| build.outputs.pwm_divider = 257);
+        assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
         assert!(
             refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
         );

@@ -13,7 +13,7 @@ pub const ENGINE_PORTS: &[Port] = &[
     input("put_valid", BIT, Peer::Host, "the host offers a word of a segment"),
     input("put_axis", AXIS, Peer::Host, "the axis of that word, and of `room`"),
     input("put_word", Width::Bits(3), Peer::Host, "the number of the word; 7 commits the segment"),
-    input("put_data", WORD, Peer::Host, "the word; in a commit, bit 0 is `last`"),
+    input("put_data", WORD, Peer::Host, "the word; 7: bit 0 is `last`, 31..1 outputs"),
     output("put_ready", BIT, Peer::Host, "the engine accepts an offered word in this clock"),
     input("start_valid", BIT, Peer::Host, "the host offers a start"),
     input("start_mask", Width::Axes, Peer::Host, "the axes to start on one tick"),
@@ -65,6 +65,8 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("room_valid", BIT, Peer::Host, "`room` is valid, once in a time slot of that axis"),
     output("step", Width::Axes, Peer::Pins, "the STEP pins"),
     output("dir", Width::Axes, Peer::Pins, "the DIR pins; 1 is backward"),
+    output("outputs", Width::Bits(8), Peer::Pins, "the outputs; 1 is active"),
+    output("pwm", BIT, Peer::Pins, "the pin of the PWM; 1 is active"),
     output("enabled", BIT, Peer::Pins, "the drivers are to have power"),
     output("idle", BIT, Peer::Host, "all axes are at rest and no start is armed"),
     output("fault", BIT, Peer::Host, "a stop is in force"),
@@ -150,12 +152,14 @@ impl EngineInputs {
 impl EngineOutputs {
     /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
     /// not valid in this cycle.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 26] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 28] {
         let Self {
             put_ready,
             start_ready,
             step,
             dir,
+            outputs,
+            pwm,
             enabled,
             idle,
             fault,
@@ -185,6 +189,8 @@ impl EngineOutputs {
             ("room_valid", Some(room.is_some().into())),
             ("step", Some(step.into())),
             ("dir", Some(dir.into())),
+            ("outputs", Some(outputs.into())),
+            ("pwm", Some(pwm.into())),
             ("enabled", Some(enabled.into())),
             ("idle", Some(idle.into())),
             ("fault", Some(fault.is_some().into())),

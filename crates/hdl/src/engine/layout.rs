@@ -222,6 +222,20 @@ indices! {
 
     /// Data of a commit: the segment is the last of its move.
     COMMIT_LAST = 0;
+    /// Data of a commit: the duty of the PWM changes.
+    COMMIT_SETS_DUTY = 1;
+    /// Data of a commit: the outputs that change and their levels, 16 bits.
+    COMMIT_MASK = 4;
+    /// Data of a commit: the duty, 12 bits.
+    COMMIT_DUTY = 20;
+    /// Word of outputs: those that change, 8 bits.
+    OUTPUT_MASK = 0;
+    /// Word of outputs: their levels, 8 bits.
+    OUTPUT_LEVELS = 8;
+    /// Word of a duty: the duty, 12 bits.
+    DUTY_STEPS = 0;
+    /// Word of a duty: the duty changes.
+    DUTY_VALID = 12;
     /// The ring of the start's mask: the axis of this time slot.
     MASK_OF_SLOT = 0;
     /// One bit per axis: the first axis.

@@ -1,4 +1,4 @@
-// Proves promises 5, 6, 8, 12, 13, 14 and 15 on the ports of the engine, and what the proofs of its
+// Proves promises 5, 6, 8, 12 to 15, 17 and 19 on the ports of the engine, and what the proofs of its
 // modules assume, without a bound on time.
 //
 //   parameters   AXES: number of axes
@@ -41,6 +41,8 @@ module promises (
 
     wire put_ready, start_ready, state_valid, refreshed, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started, latch_armed;
     wire [31:0] state;
+    wire [7:0] outputs;
+    wire pwm;
     wire [1:0] state_page;
     wire [`AXES-1:0] step, dir, culprits, seeking, hits;
     wire [2:0] state_axis, state_item, room;
@@ -82,6 +84,9 @@ module promises (
     (* inside = "dut.stops_clearing" *) wire clearing;
     (* inside = "dut.stops.breaks" *) wire breaks;
     (* inside = "dut.queue_misplaced" *) wire misplaced;
+    (* inside = "dut.output_control_stray" *) wire stray;
+    (* inside = "dut.output_control.off" *) wire outputs_off;
+    (* inside = "dut.pulse_width.off" *) wire pwm_off;
     (* inside = "dut.resets_ending" *) wire ending;
     (* inside = "dut.resets.first" *) wire stage_1;
     (* inside = "dut.resets_stage_2" *) wire stage_2;
@@ -123,7 +128,7 @@ module promises (
         latched <= strobe ? comes : latched;
         found_before <= strobe ? found_now : found_before;
         if (start) asked <= (start_mask >> who) & 1;
-        was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
+        was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced | stray) & !fault;
         was_cleared <= strobe & clearing;
         was_ending <= ending;
         was_wrong <= take && mine && put_word != word[12:10];
@@ -141,7 +146,7 @@ module promises (
         promise_6_words_in_order: assert ((!was_wrong || misplaced) && (!was_right || !misplaced));
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
-        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || put_valid && put_axis >= `AXES);
+        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || stray || put_valid && put_axis >= `AXES);
         promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault || was_dropped);
         promise_6_no_start_of_an_axis_at_its_hit: assert (!started || !drops);
         promise_6_something_to_start: assert (!(mine && starts) || !word[6] && word[5:3] != word[2:0]);
@@ -152,11 +157,13 @@ module promises (
         promise_12_own_requests: assert (requests == (phase_start ? events : 0) && requests_back == backward);
         promise_12_own_direction: assert (signs == (strobe ? events : 0) && signs_back == backward);
         promise_12_starts_who_is_asked_to: assert (!mine || starts == (going & asked));
+        promise_17_off_at_stops: assert ((!frozen && enabled || outputs_off) && (frozen || fault || !enabled || !outputs_off)
+            && pwm_off == outputs_off);
         promise_19_a_hit_ramps_its_own_axis: assert (ramp == (all_ramp | slows) && empties == (slows & !queue_goes_on));
         promise_12_a_limit_of_a_seek_stops_no_other: assert (limit == (limit_found & !forgives));
         promise_12_on_one_tick: assert (!started || strobe && armed);
 
-        promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
+        promise_13_inactive: assert (!first_clock || {step, dir, outputs, pwm, enabled, fault, halted, started, culprits} == 0 && idle);
 
         promise_13_reset_freezes: assert (!was_ending || frozen || was_cleared);
         promise_13_reset_of_an_engine_at_rest: assert (!resetting || halted && held_back == 0 && step == 0 && !armed);

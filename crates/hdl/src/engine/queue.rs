@@ -104,6 +104,8 @@ pub struct Queue {
     pub moves: Signal<Out, Bit>,
     /// In beat 12: the axis runs in the next tick too.
     pub goes_on: Signal<Out, Bit>,
+    /// In beat 12: the next segment begins with the next tick.
+    pub advances: Signal<Out, Bit>,
     /// In beat 12, fault: V is out of range.
     pub too_fast: Signal<Out, Bit>,
     /// In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
@@ -127,6 +129,7 @@ pub struct Queue {
     over: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
     stays: Signal<Local, Bit>,
+    steps_on: Signal<Local, Bit>, // `advances`
     due: Signal<Local, Word<3>>,
     fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
     filled: Register<Bit>,       // `full`, a clock later, so that no long path begins at the memory
@@ -189,6 +192,8 @@ impl Logic for Queue {
         }
         self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
+        self.steps_on.next = self.moves.val() & self.follows.val();
+        self.advances.next = self.steps_on.val();
         self.too_fast.next =
             self.runs.val() & (self.word.val().get_bit(CONTROL_UNFIT) | self.least.val());
         self.dry.next = self.moves.val()
@@ -224,7 +229,7 @@ impl Logic for Queue {
 
         // The control word for the next time slot of this axis.
         self.next_live.next = self.live_now.val();
-        if self.moves.val() & self.follows.val() {
+        if self.steps_on.val() {
             self.next_live.next = self.live_now.val() + self.one.val();
         }
         // Emptying the queue changes `live` only, so that the slot that the host writes stays the

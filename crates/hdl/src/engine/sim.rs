@@ -77,6 +77,8 @@ impl<const N: usize> AnyEngine for Engine<N> {
             start_ready: self.start_ready.val(),
             step: mask(&*self.step),
             dir: mask(&*self.dir),
+            outputs: self.outputs.val().value() as u8,
+            pwm: self.pwm.val(),
             enabled: self.enabled.val(),
             idle: self.idle.val(),
             fault: self.fault.val().then(|| (cause, self.culprits.val().value() as u8)),

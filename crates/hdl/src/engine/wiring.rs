@@ -36,6 +36,8 @@ impl<const N: usize> Logic for Engine<N> {
             step_counts,
             store,
             event_wheel,
+            output_control,
+            pulse_width,
             switches,
             seek_control,
             edge_latch,
@@ -213,6 +215,25 @@ impl<const N: usize> Logic for Engine<N> {
         self.event_wheel.phase_known.next = self.time_slot.beat.val().get_bit(BEAT_PHASE);
         self.event_wheel.q.next = self.adder.q.val();
 
+        self.outputs_off.next = self.stops.frozen.val()
+            | (self.stops.fault.val() & self.off_at_ramps.val().any())
+            | !self.supervisor.enabled.val();
+        self.output_control.beat.next = self.time_slot.beat.val();
+        self.output_control.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.output_control.take.next = self.take.val();
+        self.output_control.put_word.next = self.put_word.val();
+        self.output_control.put_data.next = self.put_data.val();
+        self.output_control.fresh.next = self.queue.fresh.val();
+        self.output_control.live.next = self.queue.live.val();
+        self.output_control.starts.next = self.going.q.val() & self.masked.val();
+        self.output_control.follows.next = self.queue.advances.val();
+        self.output_control.off.next = self.outputs_off.val();
+        self.pulse_width.set.next = self.output_control.sets_duty.val() & self.strobe.val();
+        self.pulse_width.duty.next = self.output_control.duty.val();
+        self.pulse_width.off.next = self.outputs_off.val();
+        self.outputs.next = self.output_control.pins.val();
+        self.pwm.next = self.pulse_width.pin.val();
+
         self.readout.strobe.next = self.strobe.val();
         self.readout.beat.next = self.time_slot.beat.val();
         self.readout.is_last.next = self.time_slot.is_last.val();
@@ -283,7 +304,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.stops.pressed.next = self.supervisor.pressed.val();
         self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
             | self.broken.val()
-            | self.queue.misplaced.val())
+            | self.queue.misplaced.val()
+            | self.output_control.stray.val())
             & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val() & !self.drops.q.val());
         self.stops.missed.next = self.supervisor.missed.val() & !self.rest_2.q.val();

@@ -19,6 +19,7 @@ mod guard;
 mod inspection;
 mod latch;
 mod observed;
+mod outputs;
 mod plain;
 mod reset;
 mod seek;
@@ -28,10 +29,11 @@ mod switches;
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use carrystep_core::engine::{COMMIT, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put};
 use guard::{Stop, Supervisor};
 use latch::LatchState;
 pub(crate) use observed::Ending;
+use outputs::OutputState;
 use reset::Reset;
 use seek::Seek;
 use std::sync::Arc;
@@ -49,6 +51,8 @@ pub struct Motion {
     stop: Stop,
     /// The word taken in the cycle before was not the next one of its segment.
     misplaced: bool,
+    /// The commit taken in the cycle before had bits that it must not have.
+    stray: bool,
     reset: Reset,
     supervisor: Supervisor,
     /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
@@ -61,6 +65,7 @@ pub struct Motion {
     interlock: bool,
     seek: Seek,
     latch: LatchState,
+    outputs: OutputState,
 }
 
 impl Motion {
@@ -80,6 +85,7 @@ impl Motion {
             armed: None,
             stop: Stop::default(),
             misplaced: false,
+            stray: false,
             reset: Reset::default(),
             supervisor: Supervisor::new(),
             rest: 2,
@@ -94,6 +100,7 @@ impl Motion {
             interlock: false,
             seek: Seek::default(),
             latch: LatchState::default(),
+            outputs: OutputState::default(),
         }
     }
 
@@ -121,6 +128,8 @@ impl Motion {
                 && self.supervisor.is_warm(guard),
             step: bits(&self.axis_models, |axis_model| axis_model.shaper.step),
             dir: bits(&self.axis_models, |axis_model| axis_model.shaper.dir),
+            outputs: self.outputs.levels,
+            pwm: self.outputs.pwm,
             enabled: self.supervisor.enabled,
             idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
             fault: self.stop.fault,
@@ -161,12 +170,14 @@ impl Motion {
             stop.call(Cause::EStop, 0, guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        if (nobody || inputs.broken || self.misplaced) && before.fault.is_none() {
+        if (nobody || inputs.broken || self.misplaced || self.stray) && before.fault.is_none() {
             stop.call(Cause::Protocol, 0, guard);
         }
         self.sample(inputs);
         let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
+        self.stray = taken.is_some_and(|put| self.has_stray_bits(put));
         self.misplaced = taken.is_some_and(|put| !self.put(put));
+        self.clock_outputs(strobe);
         // While the engine is at rest, a silent host calls no stop.
         let waits = self.rest == 2;
         if strobe {
@@ -259,13 +270,20 @@ impl Motion {
             return false;
         }
         if put.word == COMMIT {
-            axis_model.fresh = Some(Queued::of_words(axis_model.words, put.data & 1 == 1));
+            axis_model.fresh = Some(Queued::of_words(axis_model.words, Commit::of_word(put.data)));
             axis_model.next_word = 0;
         } else {
             axis_model.words[usize::from(put.word)] = put.data;
             axis_model.next_word += 1;
         }
         true
+    }
+
+    /// True for a commit with a bit that the build has no use for.
+    fn has_stray_bits(&self, put: Put) -> bool {
+        let outputs = self.build.outputs;
+        let bits = if put.axis == 0 { outputs.commit_bits() } else { Commit::LAST };
+        outputs.is_any() && put.word == COMMIT && put.data & !bits != 0
     }
 
     fn tick(&self) -> Tick<'_> {

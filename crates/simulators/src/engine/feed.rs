@@ -269,7 +269,7 @@ mod tests {
         assert_eq!(steps(&three, 1720), (vec![moved(1720); 6], None));
         // A host that waits for each command in turn is too late.
         let build = build();
-        let late = EngineHost::new(&build.guard, &begun, &Vec::new());
+        let late = EngineHost::new(&build, &begun, &Vec::new());
         let fault = Recording::of(&build, late, 1_000_000, &[], None)
             .outputs
             .last()

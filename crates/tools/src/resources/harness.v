@@ -4,7 +4,7 @@
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 59 + 6 * AXES;
-    localparam OUTPUTS = 64 + 5 * AXES;
+    localparam OUTPUTS = 73 + 5 * AXES;
 
     reg [INPUTS - 1:0] inputs = 0;
     always @(posedge clock) inputs <= {inputs[INPUTS - 2:0], in};
@@ -14,6 +14,8 @@ module budget_harness (input wire clock, input wire in, output reg out);
     wire [AXES - 1:0] step, dir, culprits, seeking, hits;
     wire [2:0] state_axis, state_item, room;
     wire [3:0] cause, latch_edges;
+    wire [7:0] levels;
+    wire pwm;
     wire room_valid, armed, ready, latch_armed, put_ready, start_ready, idle, fault, halted, started, enabled, state_valid, refreshed;
     carrystep_engine core (
         .clock(clock), .put_valid(inputs[0]), .put_axis(inputs[3:1]), .put_word(inputs[6:4]), .put_data(inputs[38:7]),
@@ -27,12 +29,13 @@ module budget_harness (input wire clock, input wire in, output reg out);
         .seeking(seeking), .hits(hits), .latch_armed(latch_armed), .latch_edges(latch_edges), .state_valid(state_valid), .state_page(state_page), .state_axis(state_axis),
         .state_item(state_item), .state(state), .refreshed(refreshed), .step(step), .dir(dir),
         .enabled(enabled), .idle(idle), .fault(fault), .halted(halted), .cause(cause), .culprits(culprits),
-        .started(started), .reset(1'b0), .resetting());
+        .started(started), .outputs(levels), .pwm(pwm), .reset(1'b0), .resetting());
 
     reg [OUTPUTS - 1:0] outputs = 0;
     always @(posedge clock) begin
         outputs <= inputs[46] ? {state, state_page, state_axis, state_item, step, dir, culprits, cause, put_ready, start_ready, idle, fault, halted,
-                                 started, enabled, state_valid, refreshed, room, room_valid, armed, ready, seeking, hits, latch_armed, latch_edges} : {outputs[OUTPUTS - 2:0], 1'b0};
+                                 started, enabled, state_valid, refreshed, room, room_valid, armed, ready, seeking, hits, latch_armed, latch_edges,
+                                 levels, pwm} : {outputs[OUTPUTS - 2:0], 1'b0};
         out <= outputs[OUTPUTS - 1];
     end
 endmodule

@@ -106,6 +106,8 @@ module {{ top }} (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

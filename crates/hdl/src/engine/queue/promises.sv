@@ -34,7 +34,7 @@ module promises (
     (* anyconst *) reg [2:0] who;
 
     wire [2:0] live, fresh, room;
-    wire misplaced, full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, met;
+    wire misplaced, full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, met, advances;
     wire [6:0] counts;
     `DUT dut (.*);
 
@@ -126,6 +126,7 @@ module promises (
         promise_6_room: assert (!mine || !in_time_slot || room == 7 - waiting);
         promise_6_empty: assert (!mine || !in_time_slot || empty == (waiting == 0));
         promise_6_runs_as_told: assert (!mine || !in_time_slot || {running, moves, too_fast} == {on, fine, on & !fine});
+        promise_6_the_next_begins: assert (!ends || advances == (fine & !ramp & follows));
         promise_6_goes_on: assert (!ends || goes_on == (fine & !rests));
 
         promise_10_dry_is_told: assert (!ends || dry == (fine & !ramp & ended & !mark & waiting == 0));

@@ -6,7 +6,7 @@ use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Guard, QUEUE, SEGMENT_WORDS, SWITCH_ROWS};
+use carrystep_core::engine::{Cause, Commit, Guard, QUEUE, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
 
 /// Number of slots of an axis: those of its queue, and that of the running segment.
@@ -20,15 +20,15 @@ pub(super) struct Queued {
     pub(super) v: i64,
     pub(super) a: i64,
     pub(super) j: i64,
-    pub(super) last: bool,
+    pub(super) commit: Commit,
 }
 
 impl Queued {
     /// Assembles the segment from its seven words, low half first.
-    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
+    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], commit: Commit) -> Self {
         let [left, v, v_high, a, a_high, j, j_high] = words;
         let long = |low: u32, high: u32| (u64::from(high) << 32 | u64::from(low)).cast_signed();
-        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), last }
+        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), commit }
     }
 }
 
@@ -49,6 +49,8 @@ pub(super) struct AxisModel {
     /// Number of segments that have left the queue, modulo [`SLOTS`]: the slot of the running
     /// segment, or of the last one that ran.
     pub(super) slot: u8,
+    /// The commit of the segment with which the axis begins this tick, if it changes outputs.
+    pub(super) begun: Option<Commit>,
     /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Queued>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
@@ -81,6 +83,7 @@ impl AxisModel {
             seek: AxisSeek::default(),
             queue: VecDeque::new(),
             slot: 0,
+            begun: None,
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
             next_word: 0,
@@ -99,6 +102,7 @@ impl AxisModel {
     /// Takes the first segment of the queue, if there is one, as the running segment.
     pub(super) fn load(&mut self) {
         self.running = self.queue.pop_front();
+        self.begun = self.running.map(|segment| segment.commit).filter(|commit| commit.changes_outputs());
         self.pass_slots(usize::from(self.running.is_some()));
     }
 
@@ -118,6 +122,7 @@ impl AxisModel {
         next.emitted = self.computed;
         next.computed = Stage::default();
         next.running = None;
+        next.begun = None;
         next.ramp = None;
         next.unfit = false;
         let mut found = None;
@@ -142,7 +147,7 @@ impl AxisModel {
 
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
     fn add(&self, next: &mut Self, segment: Queued, tick: Tick<'_>) -> Option<Cause> {
-        let Queued { left, v, a, j, last } = segment;
+        let Queued { left, v, a, j, commit } = segment;
         let segment = Queued { left: left.wrapping_sub(1), ..segment };
         let step = crosses(self.p, v)
             .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
@@ -168,7 +173,7 @@ impl AxisModel {
             next.unfit = unfit;
             return None;
         }
-        if last {
+        if commit.last {
             return None;
         }
         next.load();

@@ -1,0 +1,106 @@
+//! The last word of a segment, which commits it to the queue: whether the segment is the last of its
+//! move, and the outputs that change where it begins.
+//!
+//! ```text
+//! bits   0      1            3 2   11 .. 4   19 .. 12   31 .. 20
+//!        last   sets_duty    0     mask      levels     duty
+//! ```
+//!
+//! "Outputs" in docs/clock-by-clock.md says what the engine does with it.
+
+/// Greatest divider of the PWM.
+pub const MAX_PWM_DIVIDER: u32 = 256;
+
+/// Number of steps of a period of the PWM.
+pub const PWM_STEPS: u32 = 1 << 12;
+
+/// Bits of a commit that name outputs and give their levels.
+const OUTPUT_BITS: u32 = 0x000f_fff0;
+
+/// Bits of a commit that are about the PWM.
+const PWM_BITS: u32 = 0xfff0_0002;
+
+/// The outputs of an engine, which change where a segment begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Outputs {
+    /// The outputs that exist, one bit each.
+    pub exist: u8,
+    /// Clocks for each of the [`PWM_STEPS`] steps of a period of the PWM, 1 to
+    /// [`MAX_PWM_DIVIDER`]; 0 if the build has no PWM.
+    pub pwm_divider: u32,
+    /// Whether a stop by ramps turns all outputs off; a freeze always does.
+    pub off_at_ramps: bool,
+}
+
+impl Outputs {
+    /// The bits that the commit of a segment of axis 0 may have. Other axes have [`Commit::LAST`]
+    /// only.
+    pub const fn commit_bits(self) -> u32 {
+        let exist = self.exist as u32;
+        let pwm = if self.pwm_divider == 0 { 0 } else { PWM_BITS };
+        Commit::LAST | exist << 4 | exist << 12 | pwm
+    }
+
+    /// True if the build has an output or the PWM. Otherwise the engine ignores all bits of a commit
+    /// but [`Commit::LAST`].
+    pub const fn is_any(self) -> bool {
+        self.exist != 0 || self.pwm_divider != 0
+    }
+}
+
+/// The content of a commit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Commit {
+    /// The segment is the last of its move.
+    pub last: bool,
+    /// The outputs that change where the segment begins, one bit each.
+    pub mask: u8,
+    /// Their new levels; 1 is active.
+    pub levels: u8,
+    /// The new duty of the PWM, 0 to 4095 of [`PWM_STEPS`]; `None` if it stays.
+    pub duty: Option<u16>,
+}
+
+impl Commit {
+    /// Bit of the word: the segment is the last of its move.
+    pub const LAST: u32 = 1 << 0;
+
+    /// The commit of a segment that changes no output.
+    pub const fn of_motion(last: bool) -> Self {
+        Self { last, mask: 0, levels: 0, duty: None }
+    }
+
+    /// The word that commits the segment. Of the duty, only the lowest 12 bits count.
+    ///
+    /// ```
+    /// use carrystep_core::engine::Commit;
+    /// let commit = Commit { last: true, mask: 3, levels: 1, duty: Some(0x800) };
+    /// assert_eq!(commit.word(), 0x8000_1033);
+    /// assert_eq!(Commit::of_word(0x8000_1033), commit);
+    /// ```
+    pub const fn word(self) -> u32 {
+        let Self { last, mask, levels, duty } = self;
+        let duty = match duty {
+            Some(duty) => 1 << 1 | (duty as u32) << 20,
+            None => 0,
+        };
+        last as u32 | (mask as u32) << 4 | (levels as u32) << 12 | duty
+    }
+
+    /// The commit in such a word.
+    pub const fn of_word(word: u32) -> Self {
+        Self {
+            last: word & Self::LAST != 0,
+            mask: (word >> 4) as u8,
+            levels: (word >> 12) as u8,
+            duty: if word >> 1 & 1 == 1 { Some((word >> 20) as u16) } else { None },
+        }
+    }
+
+    /// True if an output or the duty of the PWM may change where the segment begins.
+    pub const fn changes_outputs(self) -> bool {
+        self.mask != 0 || self.duty.is_some()
+    }
+}
+
+const _: () = assert!(OUTPUT_BITS | PWM_BITS | Commit::LAST == !0xc, "two bits are left");
