@@ -305,17 +305,17 @@ module carrystep_control (
     // The address of the word to read.
     input  wire   [2:0] read_address,
     // The word at the address of the cycle before.
-    output wire  [20:0] read_data,
+    output wire  [30:0] read_data,
     // The address of the word to write.
     input  wire   [2:0] write_address,
     // The write enable of each bit.
-    input  wire  [20:0] write_bits,
+    input  wire  [30:0] write_bits,
     // The new values of the bits that are written.
-    input  wire  [20:0] write_data
+    input  wire  [30:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [20:0] words [0:7];
-    reg [20:0] value; // a block RAM gives no value before its first clock
+    (* no_rw_check, ram_style = "block" *) reg [30:0] words [0:7];
+    reg [30:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -335,16 +335,18 @@ module carrystep_lasts (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [5:0] read_address,
+    input  wire   [7:0] read_address,
     // The word at the address of the cycle before.
     output wire         read_data,
     // The address of the word to write.
-    input  wire   [5:0] write_address,
+    input  wire   [7:0] write_address,
     // The write enable of each bit.
     input  wire         write_bits,
     // The new values of the bits that are written.
     input  wire         write_data
 );
+    wire unused = &{read_address[7:6], write_address[7:6]};
+
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg words [0:63];
     reg value; // a block RAM gives no value before its first clock
@@ -357,8 +359,8 @@ module carrystep_lasts (
     end
 
     always @(posedge clock) begin
-        value <= words[read_address];
-        if (write_bits) words[write_address] <= write_data;
+        value <= words[read_address[5:0]];
+        if (write_bits) words[write_address[5:0]] <= write_data;
     end
 endmodule
 
@@ -385,9 +387,17 @@ module carrystep_queue (
     // The engine accepts the host's word in this clock.
     input  wire         take,
     // The number of that word.
-    input  wire   [2:0] put_word,
+    input  wire   [3:0] put_word,
+    // The lowest bits of that word: the slot of the last segment that a cut keeps.
+    input  wire   [4:0] put_slot,
     // The committed segment is the last of its move.
     input  wire         last,
+    // In this tick the queue examines the segment that was named for a cut.
+    input  wire         checks,
+    // In this tick the queue ends with the segment that was named, if one was.
+    input  wire         cuts,
+    // In this tick the queue forgets what was named.
+    input  wire         closes,
     // The running segment ends with this tick.
     input  wire         ended,
     // V + A does not fit in 64 bits.
@@ -403,15 +413,15 @@ module carrystep_queue (
     // In beat 12: what is kept in `counts` until the next time slot of the axis.
     input  wire   [6:0] next_counts,
     // The slot of the running segment.
-    output wire   [2:0] live,
+    output wire   [4:0] live,
     // The slot that the host writes.
-    output wire   [2:0] fresh,
+    output wire   [4:0] fresh,
     // Fault: the word accepted in the clock before was not the one that was due.
     output wire         misplaced,
     // From beat 1: no slot is free for the host.
     output wire         full,
-    // The number of segments for which the queue has space, 0 to 7.
-    output wire   [2:0] room,
+    // The number of segments for which the queue has space.
+    output wire   [4:0] room,
     // No segment waits.
     output wire         empty,
     // The axis runs in this tick.
@@ -434,85 +444,115 @@ module carrystep_queue (
     output wire         too_fast,
     // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     output wire         dry,
+    // In beat 12, while a cut is examined: the named segment neither waits nor runs after this
+    // tick, or a segment is partly written.
+    output wire         misses,
     // The words of this tick are those of the axis' own hit.
     output wire         met,
     // `next_counts` of the time slot before of this axis, at first 0.
     output wire   [6:0] counts
 );
+    localparam [4:0] SLOTS = 5'd7;
+    localparam [5:0] BEYOND = 6'd56;
+    localparam [4:0] ONE_SLOT = 5'd1;
+    localparam [4:0] NO_SLOT = 5'd0;
+    localparam [30:0] NAMED_BIT = 31'h40000000;
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] ZERO = 3'd0;
-    localparam [20:0] NO = 21'd0;
-    localparam [20:0] RUNNING_BIT = 21'd64;
-    localparam [20:0] UNFIT_BIT = 21'd128;
-    localparam [20:0] BACK_BIT = 21'd256;
-    localparam [20:0] KNOWN_BIT = 21'd512;
-    localparam [20:0] ALL = 21'h1fffff;
-    localparam [20:0] MET_BIT = 21'd8192;
+    localparam [30:0] NO = 31'd0;
+    localparam [30:0] RUNNING_BIT = 31'd1024;
+    localparam [30:0] UNFIT_BIT = 31'd2048;
+    localparam [30:0] BACK_BIT = 31'd4096;
+    localparam [30:0] KNOWN_BIT = 31'd8192;
+    localparam [30:0] ALL = 31'h7fffffff;
+    localparam [30:0] MET_BIT = 31'h20000;
     localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
     localparam [3:0] AT_3 = 4'd3;
-    localparam [3:0] AT_10 = 4'd10;
+    localparam [3:0] AT_5 = 4'd5;
     localparam [3:0] AT_14 = 4'd14;
+    localparam [4:0] AT_18 = 5'd18;
+    localparam [4:0] AT_25 = 5'd25;
 
     reg filled = 1'b0;
     reg took = 1'b0;
     reg wrong = 1'b0;
-    reg [2:0] live_now;
+    reg [4:0] newest;
+    reg [4:0] live_now;
     reg over;
     reg lasts_write_data;
     reg lasts_write_bits;
-    reg [2:0] next_live;
-    reg [2:0] next_newest;
+    reg [4:0] next_live;
+    reg [4:0] next_newest;
     reg [2:0] next_due;
-    reg [20:0] next_running;
-    reg [20:0] next_unfit;
-    reg [20:0] next_known;
-    reg [20:0] next_back;
-    reg [20:0] next_met;
-    reg [20:0] control_write_bits;
+    reg [30:0] next_running;
+    reg [30:0] next_unfit;
+    reg [30:0] next_known;
+    reg [30:0] next_back;
+    reg [30:0] next_met;
+    reg [4:0] next_target;
+    reg [30:0] next_named;
+    reg [30:0] control_write_bits;
 
-    wire [20:0] control_read_data;
+    wire [30:0] control_read_data;
     wire lasts_read_data;
 
-    wire [20:0] word = control_read_data;
-    wire [2:0] old_live = word[2:0];
-    wire [2:0] newest = word[5:3];
-    wire [2:0] fresh_now = newest + ONE;
-    wire runs = (word[6] | starts) & !halted;
-    wire fits = runs & !word[7];
+    wire [30:0] word = control_read_data;
+    wire [4:0] old_live = word[4:0] & SLOTS;
+    wire [4:0] target = word[29:25] & SLOTS;
+    wire ends_here = cuts & word[30];
+    wire [4:0] fresh_now = (newest + ONE_SLOT) & SLOTS;
+    wire [4:0] space = (live_now + ~newest) & SLOTS;
+    wire runs = (word[10] | starts) & !halted;
+    wire fits = runs & !word[11];
     wire none = newest == live_now;
     wire last_one = lasts_read_data != 1'b0;
-    wire ramps = ramp & word[9];
+    wire ramps = ramp & word[13];
     wire follows = ended & !last_one & !none & !ramp;
     wire stays = moves & !over;
     wire steps_on = moves & follows;
-    wire [2:0] due = word[12:10];
-    wire fits_in = put_word == due;
+    wire [4:0] distance = (target - live_now) & SLOTS;
+    wire [5:0] span = {1'b0, distance} + {1'b0, space};
+    wire is_live = distance == 5'd0;
+    wire waits = ((span & BEYOND) == 6'd0) & !is_live & !empties & !clear;
+    wire keeps = waits | (is_live & stays & !follows);
+    wire takes_word = take & !put_word[3];
+    wire names = take & put_word[3];
+    wire [2:0] due = word[16:14];
+    wire fits_in = put_word[2:0] == due;
 
     assign live = live_now;
     assign fresh = fresh_now;
     assign misplaced = wrong;
     assign full = filled;
-    assign room = live_now + ~newest;
+    assign room = space;
     assign empty = none;
     assign running = runs;
     assign sound = fits;
     assign slows = ramps;
-    assign upward = word[8];
-    assign steady = ramp & !word[9];
+    assign upward = word[12];
+    assign steady = ramp & !word[13];
     assign moves = fits & !least;
     assign goes_on = stays;
     assign advances = steps_on;
-    assign too_fast = runs & (word[7] | least);
+    assign too_fast = runs & (word[11] | least);
     assign dry = moves & ended & !last_one & none & !ramp;
-    assign met = word[13];
-    assign counts = word[20:14];
+    assign misses = checks & word[30] & (!keeps | (next_due != 3'd0));
+    assign met = word[17];
+    assign counts = word[24:18];
+
+    always @(*) begin
+        newest = word[9:5] & SLOTS;
+        if (ends_here) begin
+            newest = target;
+        end
+    end
 
     always @(*) begin
         live_now = old_live;
         if (starts) begin
-            live_now = old_live + ONE;
+            live_now = (old_live + ONE_SLOT) & SLOTS;
         end
     end
 
@@ -532,7 +572,7 @@ module carrystep_queue (
 
     always @(*) begin
         lasts_write_bits = UNSET;
-        if (take) begin
+        if (takes_word) begin
             lasts_write_bits = SET;
         end
     end
@@ -540,7 +580,7 @@ module carrystep_queue (
     always @(*) begin
         next_live = live_now;
         if (steps_on) begin
-            next_live = live_now + ONE;
+            next_live = (live_now + ONE_SLOT) & SLOTS;
         end
         if (empties) begin
             next_live = newest;
@@ -554,8 +594,8 @@ module carrystep_queue (
             next_due = due + ONE;
         end
         if (clear) begin
-            next_live = ZERO;
-            next_newest = ZERO;
+            next_live = NO_SLOT;
+            next_newest = NO_SLOT;
             next_due = ZERO;
         end
     end
@@ -583,7 +623,7 @@ module carrystep_queue (
 
     always @(*) begin
         next_back = NO;
-        if ((ramps & word[8]) | (!ramps & back)) begin
+        if ((ramps & word[12]) | (!ramps & back)) begin
             next_back = BACK_BIT;
         end
     end
@@ -592,6 +632,18 @@ module carrystep_queue (
         next_met = NO;
         if (meets) begin
             next_met = MET_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_target = target;
+        next_named = NO;
+        if (word[30] & !closes & !clear) begin
+            next_named = NAMED_BIT;
+        end
+        if (names) begin
+            next_target = put_slot & SLOTS;
+            next_named = NAMED_BIT;
         end
     end
 
@@ -608,24 +660,24 @@ module carrystep_queue (
         .read_data(control_read_data),
         .write_address(axis),
         .write_bits(control_write_bits),
-        .write_data({18'b0, next_live} | ({18'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({18'b0, next_due} << AT_10) | next_met | ({14'b0, next_counts} << AT_14))
+        .write_data({26'b0, next_live} | ({26'b0, next_newest} << AT_5) | next_running | next_unfit | next_known | next_back | ({28'b0, next_due} << AT_14) | next_met | ({24'b0, next_counts} << AT_18) | ({26'b0, next_target} << AT_25) | next_named)
     );
 
     carrystep_lasts lasts (
         .clock(clock),
-        .read_address(({3'b0, axis} << AT_3) | {3'b0, live_now}),
+        .read_address(({3'b0, live_now} << AT_3) | {5'b0, axis}),
         .read_data(lasts_read_data),
-        .write_address(({3'b0, axis} << AT_3) | {3'b0, fresh_now}),
+        .write_address(({3'b0, fresh_now} << AT_3) | {5'b0, axis}),
         .write_bits(lasts_write_bits),
         .write_data(lasts_write_data)
     );
 
     always @(posedge clock) begin
-        wrong <= take & !fits_in;
+        wrong <= takes_word & !fits_in;
         if (beat[0]) begin
             took <= 1'b0;
         end
-        if (take & fits_in) begin
+        if (takes_word & fits_in) begin
             took <= 1'b1;
         end
         filled <= fresh_now == live_now;
@@ -748,6 +800,70 @@ module carrystep_step_counts (
     end
 endmodule
 
+// The stages of a cut, which drops the segments behind a named one in several axes.
+module carrystep_cut_control (
+    // The clock.
+    input  wire         clock,
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The host requests a cut.
+    input  wire         request,
+    // In beat 12: the axis was named, and its segment neither waits nor runs after this tick.
+    input  wire         misses,
+    // A reset: no cut is requested.
+    input  wire         resetting,
+    // In this tick the time slots examine the named segments.
+    output wire         checks,
+    // In this tick the queues of the named axes end with the named segment.
+    output wire         cuts,
+    // In this tick the axes forget what was named.
+    output wire         closes,
+    // A cut was requested and is not decided yet.
+    output wire         busy,
+    // The last cut was refused.
+    output wire         refused
+);
+
+    reg asked = 1'b0;
+    reg checking = 1'b0;
+    reg closing = 1'b0;
+    reg missed = 1'b0;
+    reg denied = 1'b0;
+
+    assign checks = checking;
+    assign cuts = closing & !denied;
+    assign closes = closing;
+    assign busy = asked | checking;
+    assign refused = denied;
+
+    always @(posedge clock) begin
+        if (beat[12] & misses) begin
+            missed <= 1'b1;
+        end
+        if (strobe) begin
+            asked <= 1'b0;
+            checking <= asked;
+            closing <= checking;
+            missed <= 1'b0;
+            if (checking) begin
+                denied <= missed;
+            end
+        end
+        if (request) begin
+            asked <= 1'b1;
+        end
+        if (resetting) begin
+            asked <= 1'b0;
+            checking <= 1'b0;
+            if (strobe) begin
+                denied <= 1'b0;
+            end
+        end
+    end
+endmodule
+
 // Memory of the segments, also used as registers, and of an axis' state between moves.
 module carrystep_segments #(
     // Start value of P: 1 half a step, 0 zero; 0 or 1
@@ -763,17 +879,17 @@ module carrystep_segments #(
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [9:0] read_address,
+    input  wire  [10:0] read_address,
     // The word at the address of the cycle before.
     output wire  [31:0] read_data,
     // The address of the word to write.
-    input  wire   [9:0] write_address,
+    input  wire  [10:0] write_address,
     // The write enable of each bit.
     input  wire  [31:0] write_bits,
     // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
-    wire unused = &{read_address[9:9], write_address[9:9]};
+    wire unused = &{read_address[10:9], write_address[10:9]};
 
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
@@ -842,9 +958,9 @@ module carrystep_store #(
     // The axis of the time slot.
     input  wire   [2:0] axis,
     // The slot of the running segment of the axis.
-    input  wire   [2:0] live,
+    input  wire   [4:0] live,
     // The slot that the host writes.
-    input  wire   [2:0] fresh,
+    input  wire   [4:0] fresh,
     // The axis runs in this tick.
     input  wire         running,
     // The axis runs, and V is in range as far as is known.
@@ -877,17 +993,18 @@ module carrystep_store #(
     localparam [2:0] J_LOW = 3'd5;
     localparam [2:0] J_HIGH = 3'd6;
     localparam [2:0] KEPT = 3'd7;
-    localparam [2:0] P_LOW = 3'd0;
-    localparam [2:0] P_HIGH = 3'd1;
-    localparam [2:0] POSITION = 3'd2;
-    localparam [2:0] DISCARDED = 3'd3;
-    localparam [2:0] DOWN_LOW = 3'd4;
-    localparam [2:0] DOWN_HIGH = 3'd5;
-    localparam [2:0] UP_LOW = 3'd6;
-    localparam [2:0] UP_HIGH = 3'd7;
+    localparam [4:0] P_LOW = 5'd0;
+    localparam [4:0] P_HIGH = 5'd1;
+    localparam [4:0] POSITION = 5'd2;
+    localparam [4:0] DISCARDED = 5'd3;
+    localparam [4:0] DOWN_LOW = 5'd4;
+    localparam [4:0] DOWN_HIGH = 5'd5;
+    localparam [4:0] UP_LOW = 5'd6;
+    localparam [4:0] UP_HIGH = 5'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
-    localparam [9:0] TICK_ADDRESS = 10'd1023;
+    localparam [3:0] AT_9 = 4'd9;
+    localparam [10:0] TICK_ADDRESS = 11'd2047;
     localparam [31:0] START_HIGH = START_HALF[0] ? 32'h80000000 : 32'd0;
     localparam [31:0] NO = 32'd0;
     localparam [31:0] ALL = 32'hffffffff;
@@ -917,13 +1034,13 @@ module carrystep_store #(
     endgenerate
 
     reg counted = 1'b0;
-    reg [2:0] read_slot;
+    reg [4:0] read_slot;
     reg [2:0] read_word;
-    reg [9:0] segments_read_address;
-    reg [2:0] write_slot;
+    reg [10:0] segments_read_address;
+    reg [4:0] write_slot;
     reg [2:0] write_word;
     reg writes;
-    reg [9:0] segments_write_address;
+    reg [10:0] segments_write_address;
     reg [31:0] segments_write_data;
     reg [31:0] segments_write_bits;
 
@@ -985,7 +1102,7 @@ module carrystep_store #(
     end
 
     always @(*) begin
-        segments_read_address = ({7'b0, axis} << AT_6) | ({7'b0, read_slot} << AT_3) | {7'b0, read_word};
+        segments_read_address = ({9'b0, read_slot[4:3]} << AT_9) | ({8'b0, axis} << AT_6) | ({8'b0, read_slot[2:0]} << AT_3) | {8'b0, read_word};
         if (beat[10] | beat[12]) begin
             segments_read_address = TICK_ADDRESS;
         end
@@ -1036,7 +1153,7 @@ module carrystep_store #(
             write_slot = P_HIGH;
             writes = moves | wipe;
         end
-        segments_write_address = ({7'b0, axis} << AT_6) | ({7'b0, write_slot} << AT_3) | {7'b0, write_word};
+        segments_write_address = ({9'b0, write_slot[4:3]} << AT_9) | ({8'b0, axis} << AT_6) | ({8'b0, write_slot[2:0]} << AT_3) | {8'b0, write_word};
         if (counted) begin
             segments_write_address = TICK_ADDRESS;
             writes = 1'b1;
@@ -1434,13 +1551,13 @@ module carrystep_output_control #(
     // The engine accepts a word of the host in this clock, for the axis of the time slot.
     input  wire         take,
     // The number of that word.
-    input  wire   [2:0] put_word,
+    input  wire   [3:0] put_word,
     // That word.
     input  wire  [31:0] put_data,
     // The slot that the host writes.
-    input  wire   [2:0] fresh,
+    input  wire   [4:0] fresh,
     // The slot of the running segment.
-    input  wire   [2:0] live,
+    input  wire   [4:0] live,
     // The axis starts in this tick.
     input  wire         starts,
     // In beat 12: the next segment of the axis begins with the next tick.
@@ -1460,7 +1577,7 @@ module carrystep_output_control #(
     localparam HAS_PWM = PWM_DIVIDER != 32'd0;
     localparam [31:0] LACKS = ((OUTPUTS != 32'd0) | (PWM_DIVIDER != 32'd0)) ? ~(((OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0)) | 32'd1) : 32'd0;
     localparam [31:0] HAS = (OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0);
-    localparam [2:0] COMMIT = 3'd7;
+    localparam [3:0] COMMIT = 4'd7;
     localparam [12:0] DUTY_VALID = 13'd4096;
     localparam [12:0] NO_DUTY = 13'd0;
     localparam [7:0] NO_LEVELS = 8'd0;
@@ -1472,7 +1589,7 @@ module carrystep_output_control #(
     endgenerate
 
     reg [7:0] levels = 8'd0;
-    reg [2:0] place = 3'd0;
+    reg [4:0] place = 5'd0;
     reg follower = 1'b0;
     reg begun = 1'b0;
     reg due = 1'b0;
@@ -1506,20 +1623,20 @@ module carrystep_output_control #(
     carrystep_output_words output_words (
         .clock(clock),
         .read(applies),
-        .read_address({2'b0, place}),
+        .read_address(place),
         .read_data(output_words_read_data),
         .write(stores),
-        .write_address({2'b0, fresh}),
+        .write_address(fresh),
         .write_data(put_data[19:4])
     );
 
     carrystep_duty_words duty_words (
         .clock(clock),
         .read(applies),
-        .read_address({2'b0, place}),
+        .read_address(place),
         .read_data(duty_words_read_data),
         .write(stores),
-        .write_address({2'b0, fresh}),
+        .write_address(fresh),
         .write_data({1'b0, put_data[31:20]} | sets_bit)
     );
 
@@ -2098,11 +2215,11 @@ module carrystep_readout (
     // The word that the memory returns.
     input  wire  [31:0] word,
     // The slot of the running segment.
-    input  wire   [2:0] live,
+    input  wire   [4:0] live,
     // The axis runs in this tick.
     input  wire         running,
     // The number of segments for which the queue has space.
-    input  wire   [2:0] room,
+    input  wire   [4:0] room,
     // Carries less counted steps, modulo 16.
     input  wire   [3:0] on_way,
     // A word of the state of the axis of this time slot is output.
@@ -2119,6 +2236,7 @@ module carrystep_readout (
     // tick that the latch does not need.
     output wire         meets
 );
+    localparam [4:0] SLOTS = 5'd7;
     localparam [31:0] HIGH_HALF = 32'hffff0000;
     localparam [15:0] NO_STATUS = 16'd0;
     localparam [15:0] RUNNING_BIT = 16'd32;
@@ -2151,8 +2269,8 @@ module carrystep_readout (
     wire ticks_left = beat[5];
     wire p_or_position = beat[4] | beat[10] | beat[6];
     wire odd = (ticks_left & running) | beat[10] | beat[11] | beat[12];
-    wire [2:0] waiting = ~room;
-    wire [15:0] status = {13'b0, live} | running_now | ({13'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
+    wire [4:0] waiting = ~room & SLOTS;
+    wire [15:0] status = {11'b0, live} | running_now | ({11'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
 
     assign valid = (ticks_left & (!captured | latches)) | of_switch | p_or_position | beat[11] | beat[12];
     assign state = (word & HIGH_HALF) | {16'b0, low};
@@ -2852,8 +2970,9 @@ module carrystep_engine #(
     input  wire   [2:0] put_axis,
     // The number of the word. The words of a segment come in order: 0 is its duration in ticks less
     // 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
-    // segment.
-    input  wire   [2:0] put_word,
+    // segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the last segment
+    // that the next cut keeps.
+    input  wire   [3:0] put_word,
     // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
     // of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
     // their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
@@ -2867,6 +2986,13 @@ module carrystep_engine #(
     input  wire   [5:0] start_mask,
     // The engine accepts an offered start in this clock.
     output wire         start_ready,
+    // The host requests a cut in all axes for which it has offered a word 8; asserted for one
+    // clock.
+    input  wire         cut,
+    // A cut was requested and is not decided yet.
+    output wire         cut_busy,
+    // The last cut was refused: nothing was dropped.
+    output wire         cut_refused,
     // Clears a stop. The host holds it until `fault` falls.
     input  wire         clear,
     // Stops the engine and returns it to its state at configuration; the positions stay. It is
@@ -2982,7 +3108,7 @@ module carrystep_engine #(
     localparam [5:0] ONE_AXIS_3 = 6'd8;
     localparam [5:0] ONE_AXIS_4 = 6'd16;
     localparam [5:0] ONE_AXIS_5 = 6'd32;
-    localparam [2:0] COMMIT = 3'd7;
+    localparam [3:0] COMMIT = 4'd7;
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
@@ -3038,11 +3164,11 @@ module carrystep_engine #(
     wire adder_still;
     wire adder_least;
     wire [3:0] adder_q;
-    wire [2:0] queue_live;
-    wire [2:0] queue_fresh;
+    wire [4:0] queue_live;
+    wire [4:0] queue_fresh;
     wire queue_misplaced;
     wire queue_full;
-    wire [2:0] queue_room;
+    wire [4:0] queue_room;
     wire queue_empty;
     wire queue_running;
     wire queue_sound;
@@ -3054,6 +3180,7 @@ module carrystep_engine #(
     wire queue_advances;
     wire queue_too_fast;
     wire queue_dry;
+    wire queue_misses;
     wire queue_met;
     wire [6:0] queue_counts;
     wire [6:0] step_counts_next_counts;
@@ -3061,6 +3188,11 @@ module carrystep_engine #(
     wire step_counts_down;
     wire step_counts_lost;
     wire [3:0] step_counts_on_way;
+    wire cut_control_checks;
+    wire cut_control_cuts;
+    wire cut_control_closes;
+    wire cut_control_busy;
+    wire cut_control_refused;
     wire [31:0] store_word;
     wire event_wheel_strobe;
     wire event_wheel_phase_start;
@@ -3147,7 +3279,9 @@ module carrystep_engine #(
     wire strobe = event_wheel_strobe;
     wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
-    wire listens = time_slot_beat[7] & (time_slot_axis == put_axis);
+    wire is_own = time_slot_axis == put_axis;
+    wire listens = time_slot_beat[7] & is_own;
+    wire names = put_word[3];
     wire take = put_valid & put_ready & !nobody;
     wire may_start = enable & supervisor_warm;
     wire free = !stops_fault & !stops_finds;
@@ -3156,15 +3290,17 @@ module carrystep_engine #(
     wire rests = rest_2 & !waits & !pins_busy;
     wire outputs_off = stops_frozen | (stops_fault & (OFF_AT_RAMPS != 1'b0)) | !supervisor_enabled;
 
-    assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
+    assign put_ready = !stops_fault & (nobody | (listens & !names & !queue_full) | (time_slot_beat[12] & is_own & names & !cut_control_checks));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
+    assign cut_busy = cut_control_busy;
+    assign cut_refused = cut_control_refused;
     assign state_valid = readout_valid;
     assign state_page = readout_page;
     assign state_axis = time_slot_axis;
     assign state_item = readout_item;
     assign state = readout_state;
     assign refreshed = readout_refreshed;
-    assign room = queue_room;
+    assign room = queue_room[2:0];
     assign room_valid = listens;
     assign step[0] = pulser_0_step;
     assign step[1] = pulser_1_step;
@@ -3353,7 +3489,11 @@ module carrystep_engine #(
         .empties(seek_control_slows & !queue_goes_on),
         .take(take),
         .put_word(put_word),
+        .put_slot(put_data[4:0]),
         .last(put_data[0]),
+        .checks(cut_control_checks),
+        .cuts(cut_control_cuts),
+        .closes(cut_control_closes),
         .ended(adder_ended),
         .overflow(adder_overflow),
         .least(adder_least),
@@ -3377,6 +3517,7 @@ module carrystep_engine #(
         .advances(queue_advances),
         .too_fast(queue_too_fast),
         .dry(queue_dry),
+        .misses(queue_misses),
         .met(queue_met),
         .counts(queue_counts)
     );
@@ -3398,6 +3539,20 @@ module carrystep_engine #(
         .down(step_counts_down),
         .lost(step_counts_lost),
         .on_way(step_counts_on_way)
+    );
+
+    carrystep_cut_control cut_control (
+        .clock(clock),
+        .strobe(strobe),
+        .beat(time_slot_beat),
+        .request(cut),
+        .misses(queue_misses),
+        .resetting(resets_resetting),
+        .checks(cut_control_checks),
+        .cuts(cut_control_cuts),
+        .closes(cut_control_closes),
+        .busy(cut_control_busy),
+        .refused(cut_control_refused)
     );
 
     carrystep_store #(
@@ -3762,10 +3917,10 @@ module carrystep_engine #(
     always @(posedge clock) begin
         taken <= taken & !time_slot_beat[9];
         if (take) begin
-            taken <= put_word != COMMIT;
+            taken <= (put_word != COMMIT) & !names;
         end
         if (time_slot_beat[7]) begin
-            taken_word <= put_word;
+            taken_word <= put_word[2:0];
         end
         if (strobe) begin
             going <= go;
@@ -3794,7 +3949,7 @@ module carrystep_engine #(
             rest_1 <= !active;
             rest_2 <= !active & rest_1;
         end
-        if (take) begin
+        if (take & !names) begin
             rest_1 <= 1'b0;
             rest_2 <= 1'b0;
         end

@@ -59,12 +59,15 @@ carrystep_engine #(
     .clock(),             // input
     .put_valid(),         // input
     .put_axis(),          // input [2:0]
-    .put_word(),          // input [2:0]
+    .put_word(),          // input [3:0]
     .put_data(),          // input [31:0]
     .put_ready(),         // output
     .start_valid(),       // input
     .start_mask(),        // input [5:0]
     .start_ready(),       // output
+    .cut(),               // input
+    .cut_busy(),          // output
+    .cut_refused(),       // output
     .clear(),             // input
     .reset(),             // input
     .stop(),              // input

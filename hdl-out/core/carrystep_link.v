@@ -1314,7 +1314,7 @@ module carrystep_link #(
     // The axis of the offered word. Also the axis whose free queue space the link reads.
     output wire   [2:0] put_axis,
     // The number of the offered word in its segment; 7 commits the segment.
-    output wire   [2:0] put_word,
+    output wire   [3:0] put_word,
     // The offered word.
     output wire  [31:0] put_data,
     // The engine accepts the offered word in this clock.
@@ -1410,7 +1410,7 @@ module carrystep_link #(
     assign answer = processor_a;
     assign put_valid = processor_put_valid;
     assign put_axis = processor_a[2:0];
-    assign put_word = processor_put_word;
+    assign put_word = {1'b0, processor_put_word};
     assign put_data = processor_put_data;
     assign start_valid = processor_start_valid;
     assign start_mask = processor_a[5:0];

@@ -19,7 +19,7 @@ carrystep_link #(
     .answer_take(),       // input
     .put_valid(),         // output
     .put_axis(),          // output [2:0]
-    .put_word(),          // output [2:0]
+    .put_word(),          // output [3:0]
     .put_data(),          // output [31:0]
     .put_ready(),         // input
     .room(),              // input [2:0]

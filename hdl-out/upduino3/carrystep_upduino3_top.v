@@ -30,7 +30,7 @@ module carrystep_upduino3_top (
     wire answer_take;
     wire put_valid;
     wire [2:0] put_axis;
-    wire [2:0] put_word;
+    wire [3:0] put_word;
     wire [31:0] put_data;
     wire put_ready;
     wire [2:0] room;
@@ -232,6 +232,9 @@ module carrystep_upduino3_top (
         .limit_max(6'd0),
         .inputs_0(6'd0),
         .inputs_1(6'd0),
+        .cut(1'd0),
+        .cut_busy(),
+        .cut_refused(),
         .step(step),
         .dir(dir),
         .enabled(enabled),

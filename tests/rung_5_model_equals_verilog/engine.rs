@@ -52,6 +52,9 @@ struct Seen {
     /// Changes of outputs, and edges of the PWM.
     switched: u64,
     modulated: u64,
+    /// Cuts that were executed, and those that were refused.
+    cuts: u64,
+    refused: u64,
 }
 
 impl Seen {
@@ -66,6 +69,9 @@ impl Seen {
             self.further += u64::from(now.latch_edges > before.latch_edges);
             self.switched += u64::from(now.outputs != before.outputs);
             self.modulated += u64::from(now.pwm != before.pwm);
+            let decided = before.cut_busy && !now.cut_busy;
+            self.cuts += u64::from(decided && !now.cut_refused);
+            self.refused += u64::from(decided && now.cut_refused);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
                 (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
@@ -78,9 +84,9 @@ impl Seen {
 
     fn assert_everything(&self) {
         let Self { clocks, edges, together, causes, ramped, cleared, hits, further, .. } = *self;
-        let Self { switched, modulated, .. } = *self;
-        let counts =
-            [clocks, edges, together, ramped, cleared, hits, further, switched, modulated];
+        let Self { switched, modulated, cuts, refused, .. } = *self;
+        let moved = [clocks, edges, together, ramped, cleared, hits, further];
+        let counts = [moved.as_slice(), &[switched, modulated, cuts, refused]].concat();
         let all = [counts.as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
         let stops: u64 = causes.iter().sum();

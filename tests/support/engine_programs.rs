@@ -202,9 +202,26 @@ fn outputs() -> impl Strategy<Value = Events> {
     prop::collection::vec(change, 0..12)
 }
 
+/// The host names slots in some axes, which may be any, and requests a cut.
+fn cuts(axes: usize) -> impl Strategy<Value = Events> {
+    let slots = prop_oneof![
+        3 => (0_u8..32).prop_map(move |slot| vec![slot; axes]),
+        1 => prop::collection::vec(0_u8..32, axes),
+    ];
+    let mask = prop_oneof![2 => Just(all(axes)), 3 => (0..axes).prop_map(|axis| 1 << axis), 1 => 0..=all(axes)];
+    let later = prop_oneof![4 => 600_u64..2500, 1 => 0_u64..600];
+    (0_u64..60_000, slots, mask, later).prop_map(|(at, slots, mask, later)| {
+        let named = (0..).zip(slots).filter(|(axis, _)| mask >> axis & 1 == 1);
+        let mut events: Events =
+            named.map(|(axis, slot)| (at, Event::Name(axis, slot))).collect();
+        events.push((at + later, Event::Cut));
+        events
+    })
+}
+
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes)];
+    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 4 => cuts(axes)];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life(), outputs()).prop_map(|(episodes, life, outputs)| {
         let mut events = episodes.concat();

@@ -18,6 +18,7 @@
 mod adder;
 mod axis;
 pub(crate) mod builds;
+mod cut_control;
 mod edge;
 mod edge_latch;
 mod engine;
@@ -146,6 +147,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         seek_control::proof(engine),
         edge_latch::proof(engine),
         resets::proof(engine),
+        cut_control::proof(engine),
         output_control::proof(engine),
         pulse_width::proof(engine),
         time_slot::proof(engine),

@@ -53,6 +53,10 @@ pub const SEGMENT_WORDS: u8 = 7;
 /// Number of the word that commits a segment to the queue; its data is a [`Commit`].
 pub const COMMIT: u8 = 7;
 
+/// Number of a word that belongs to no segment: its data is the slot of the last segment that the
+/// next cut keeps in the queue of its axis.
+pub const CUT_WORD: u8 = 8;
+
 /// Greatest length of a round, in ticks. The guard samples limits and counts time in rounds.
 pub const MAX_ROUND: u32 = 1024;
 
@@ -114,7 +118,7 @@ pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
 pub struct Put {
     /// Number of the axis.
     pub axis: u8,
-    /// Number of the word, 0 to 6, or [`COMMIT`].
+    /// Number of the word, 0 to 6, or [`COMMIT`], or [`CUT_WORD`].
     pub word: u8,
     /// Value of the word.
     pub data: u32,
@@ -129,6 +133,8 @@ pub struct EngineInputs {
     pub room_of: u8,
     /// Mask of the axes whose start is offered, held until the engine accepts it.
     pub start: Option<u8>,
+    /// The host requests a cut in all axes for which it has put a [`CUT_WORD`].
+    pub cut: bool,
     /// Resume after a stop.
     pub clear: bool,
     /// Stop the engine and return it to its state at configuration.
@@ -191,6 +197,10 @@ pub struct EngineOutputs {
     pub put_ready: bool,
     /// The engine accepts an offered start in this cycle.
     pub start_ready: bool,
+    /// A cut was requested and is not decided yet.
+    pub cut_busy: bool,
+    /// The last cut was refused.
+    pub cut_refused: bool,
     /// Levels of the STEP pins; bit i is axis i.
     pub step: u8,
     /// Levels of the DIR pins; bit i is axis i, 1 is backward.

@@ -42,10 +42,11 @@ use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{CAUSE_BITS, least_clocks};
+use carrystep_core::engine::{CAUSE_BITS, QUEUE, least_clocks};
 use rust_hdl::prelude::*;
 
 pub mod adder;
+pub mod cut_control;
 pub mod edge_latch;
 pub mod event_wheel;
 pub mod layout;
@@ -68,6 +69,7 @@ mod wiring;
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
+use cut_control::CutControl;
 use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
 use output_control::OutputControl;
@@ -97,8 +99,9 @@ pub struct Engine<const N: usize> {
     pub put_axis: Input<Word<3>>,
     /// The number of the word. The words of a segment come in order: 0 is its duration in ticks
     /// less 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7
-    /// commits the segment.
-    pub put_word: Input<Word<3>>,
+    /// commits the segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the last
+    /// segment that the next cut keeps.
+    pub put_word: Input<Word<4>>,
     /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
     /// of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
     /// their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
@@ -112,6 +115,12 @@ pub struct Engine<const N: usize> {
     pub start_mask: Input<Word<N>>,
     /// The engine accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
+    /// The host requests a cut in all axes for which it has offered a word 8; asserted for one clock.
+    pub cut: Input<Bit>,
+    /// A cut was requested and is not decided yet.
+    pub cut_busy: Signal<Out, Bit>,
+    /// The last cut was refused: nothing was dropped.
+    pub cut_refused: Signal<Out, Bit>,
     /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
     /// Stops the engine and returns it to its state at configuration; the positions stay. It is
@@ -222,6 +231,7 @@ pub struct Engine<const N: usize> {
     adder: Adder,
     queue: Queue,
     step_counts: StepCounts,
+    cut_control: CutControl,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
     output_control: OutputControl<N>,
@@ -253,7 +263,9 @@ pub struct Engine<const N: usize> {
     nobody: Signal<Local, Bit>,
     // The axis `put_axis` accepts a word in this clock if its queue has space.
     listens: Signal<Local, Bit>,
+    is_own: Signal<Local, Bit>, // the time slot is that of the axis `put_axis`
     take: Signal<Local, Bit>,
+    names: Signal<Local, Bit>, // the offered word names the slot of a cut
     outputs_off: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
@@ -268,7 +280,7 @@ pub struct Engine<const N: usize> {
     none: Literal<6, 0>,
     no_axes: Literal<N, 0>,
     one_axis: PerAxis<Parameter<N>, N>,
-    commit: Literal<3, 7>,
+    commit: Literal<4, 7>,
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
@@ -288,11 +300,14 @@ impl<const N: usize> Engine<N> {
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
+        let slots = QUEUE + 1;
         Ok(Self {
             time_slot: TimeSlot::new(),
-            store: Store::new(build.phase, &build.guard.stop),
+            store: Store::new(build.phase, &build.guard.stop, slots),
+            queue: Queue::new(slots),
+            readout: Readout::new(slots),
             event_wheel: EventWheel::new(&build.timebase),
-            output_control: OutputControl::new(&build.outputs),
+            output_control: OutputControl::new(&build.outputs, slots),
             pulse_width: PulseWidth::new(build.outputs.pwm_divider),
             switches: Switches::new(&build.guard),
             seek_control: SeekControl::new(),

@@ -25,7 +25,7 @@
 use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::Input;
-use crate::primitives::word::Word;
+use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::CAUSE_BITS;
 use carrystep_core::link::registers::{self, BUILD_HIGH, BUILD_LOW, WATCHDOG_TICKS};
@@ -62,7 +62,7 @@ pub struct Link<const N: usize> {
     /// The axis of the offered word. Also the axis whose free queue space the link reads.
     pub put_axis: Signal<Out, Word<3>>,
     /// The number of the offered word in its segment; 7 commits the segment.
-    pub put_word: Signal<Out, Word<3>>,
+    pub put_word: Signal<Out, Word<4>>,
     /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
     /// The engine accepts the offered word in this clock.
@@ -182,7 +182,7 @@ impl<const N: usize> Logic for Link<N> {
 
         self.put_valid.next = self.processor.put_valid.val();
         self.put_axis.next = self.processor.a.val().get_bits::<3>(0);
-        self.put_word.next = self.processor.put_word.val();
+        self.put_word.next = bit_cast::<4, 3>(self.processor.put_word.val());
         self.put_data.next = self.processor.put_data.val();
         self.processor.put_ready.next = self.put_ready.val();
         self.processor.room.next = self.room.val();

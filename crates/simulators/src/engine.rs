@@ -8,7 +8,7 @@ pub mod run;
 
 use crate::Commands;
 use carrystep_core::engine::{
-    COMMIT, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, Put, SeekSource,
+    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, Put, SeekSource,
 };
 use carrystep_core::{Command, Program, Segment};
 use std::fmt;
@@ -110,6 +110,10 @@ pub enum Event {
     /// The host numbers its words wrongly from this cycle on: the bits of this mask are inverted in
     /// the number of every word. 0 ends it.
     WordError(u8),
+    /// The host names the slot of a cut for an axis, before it goes on with its commands.
+    Name(u8, u8),
+    /// The host requests a cut in this cycle.
+    Cut,
     /// The host sets these bits of every commit of axis 0 from this cycle on, as far as the build
     /// has outputs for them. 0 ends it.
     Outputs(u32),
@@ -126,6 +130,8 @@ pub type Events = Vec<(u64, Event)>;
 pub struct EngineHost<'a> {
     acts: Box<dyn Iterator<Item = Act> + 'a>,
     current: Option<Act>,
+    /// Actions that an event has interrupted, the last one first.
+    interrupted: Vec<Option<Act>>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
     /// Whether the watchdog is restarted in every cycle.
@@ -181,6 +187,7 @@ impl<'a> EngineHost<'a> {
         let mut host = Self {
             acts,
             current,
+            interrupted: Vec::new(),
             events,
             cycle: 0,
             awake,
@@ -205,6 +212,7 @@ impl<'a> EngineHost<'a> {
             seek: None,
             latch_arm: false,
             snapshot: false,
+            cut: false,
             ..self.around
         };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
@@ -225,6 +233,12 @@ impl<'a> EngineHost<'a> {
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
                 Event::WordError(mask) => self.word_error = mask,
+                Event::Name(axis, slot) => {
+                    let put = Put { axis, word: CUT_WORD, data: slot.into() };
+                    let interrupted = self.current.replace(Act::Put(put));
+                    self.interrupted.push(interrupted);
+                }
+                Event::Cut => self.around.cut = true,
                 Event::Outputs(bits) => self.outputs = bits & self.commit_bits,
                 Event::Stray(bits) => self.stray = bits,
             }
@@ -262,7 +276,10 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) => !fault,
         };
         if done {
-            self.current = self.acts.next();
+            self.current = match self.interrupted.pop() {
+                Some(act) => act,
+                None => self.acts.next(),
+            };
         }
         self.cycle += 1;
         self.happen();
@@ -304,9 +321,9 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, .. } = self.around;
+        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, cut, .. } = self.around;
         let lasting = kick == self.awake
-            && !(broken || latch_arm || snapshot)
+            && !(broken || latch_arm || snapshot || cut)
             && seek_source.is_none()
             && seek.is_none();
         // The cycle before an event must be simulated by `advance`.
@@ -328,6 +345,6 @@ impl<'a> EngineHost<'a> {
 
     /// Whether no command is left.
     pub fn is_done(&mut self) -> bool {
-        self.current.is_none() && self.events.peek().is_none()
+        self.current.is_none() && self.interrupted.is_empty() && self.events.peek().is_none()
     }
 }

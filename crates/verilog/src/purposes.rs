@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 42] = [
+const PURPOSES: [(&str, &str); 43] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -57,6 +57,10 @@ const PURPOSES: [(&str, &str); 42] = [
     (
         "carrystep_step_counts",
         "Counts pulses and discarded steps in memory, and the steps that are on their way.",
+    ),
+    (
+        "carrystep_cut_control",
+        "The stages of a cut, which drops the segments behind a named one in several axes.",
     ),
     (
         "carrystep_segments",

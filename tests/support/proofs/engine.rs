@@ -12,8 +12,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_taken_in_its_time_slot",
-        text: "time_slot_beat[7] & (time_slot_axis",
-        becomes: "time_slot_beat[6] & (time_slot_axis",
+        text: "listens = time_slot_beat[7]",
+        becomes: "listens = time_slot_beat[6]",
     },
     Bug {
         breaks: "promise_6_nothing_taken_in_a_fault",
@@ -66,14 +66,19 @@ const BUGS: &[Bug] = &[
         becomes: "switches_found",
     },
     Bug {
+        breaks: "promise_18_none_named_while_one_is_examined",
+        text: "& names & !cut_control_checks",
+        becomes: "& names",
+    },
+    Bug {
         breaks: "promise_17_off_at_stops",
         text: "outputs_off = stops_frozen |",
         becomes: "outputs_off =",
     },
     Bug {
         breaks: "promise_6_words_in_order",
-        text: ".put_word(put_word),\n        .last",
-        becomes: ".put_word(time_slot_axis),\n        .last",
+        text: ".put_word(put_word),\n        .put_slot",
+        becomes: ".put_word({1'b0, time_slot_axis}),\n        .put_slot",
     },
     Bug {
         breaks: "promise_13_reset_freezes",

@@ -6,8 +6,8 @@ use super::{Bug, Case, Promises, Proof};
 const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_5_halted_runs_nothing",
-        text: "(word[6] | starts) & !halted",
-        becomes: "(word[6] | starts)",
+        text: "(word[10] | starts) & !halted",
+        becomes: "(word[10] | starts)",
     },
     Bug {
         breaks: "promise_6_in_order",
@@ -21,8 +21,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_room",
-        text: "room = live_now + ~newest;",
-        becomes: "room = live_now - newest;",
+        text: "(live_now + ~newest)",
+        becomes: "(live_now - newest)",
     },
     Bug {
         breaks: "promise_6_empty",
@@ -41,10 +41,10 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_misplaced_is_taken",
-        text: "wrong <= take & !fits_in",
+        text: "wrong <= takes_word & !fits_in",
         becomes: "wrong <= !fits_in",
     },
-    Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
+    Bug { breaks: "promise_6_runs_as_told", text: "(word[11] | least)", becomes: "word[11]" },
     Bug {
         breaks: "promise_6_the_next_begins",
         text: "steps_on = moves & follows;",
@@ -73,9 +73,29 @@ const BUGS: &[Bug] = &[
         becomes: "if (beat[11]) begin",
     },
     Bug {
+        breaks: "promise_18_refused_unless_kept",
+        text: "| (is_live & stays & !follows)",
+        becomes: "| (is_live & stays)",
+    },
+    Bug {
+        breaks: "promise_18_refused_unless_kept",
+        text: "(span & BEYOND) == 6'd0",
+        becomes: "1'b1",
+    },
+    Bug {
+        breaks: "promise_18_drops_from_the_end",
+        text: "(!keeps | (next_due != 3'd0))",
+        becomes: "(next_due != 3'd0)",
+    },
+    Bug {
+        breaks: "promise_18_room_behind_the_named",
+        text: "newest = target;",
+        becomes: "newest = newest;",
+    },
+    Bug {
         breaks: "promise_15_counts_are_kept",
-        text: "<< AT_14)",
-        becomes: "<< AT_10)",
+        text: "<< AT_18)",
+        becomes: "<< AT_14)",
     },
     Bug {
         breaks: "promise_15_met_in_the_tick_before",

@@ -160,24 +160,38 @@ indices! {
     /// Bit 32 of the sum in `wide`.
     WIDE_TOP = 33;
 
-    /// Control word: slot of the running segment, 3 bits.
+    /// Control word: slot of the running segment, 5 bits.
     CONTROL_LIVE = 0;
-    /// Control word: slot of the newest segment, 3 bits.
-    CONTROL_NEWEST = 3;
+    /// Control word: slot of the newest segment, 5 bits.
+    CONTROL_NEWEST = 5;
     /// Control word: the axis runs.
-    CONTROL_RUNNING = 6;
+    CONTROL_RUNNING = 10;
     /// Control word: the next V does not fit in 64 bits.
-    CONTROL_UNFIT = 7;
+    CONTROL_UNFIT = 11;
     /// Control word: the ramp began with V < 0.
-    CONTROL_BACK = 8;
+    CONTROL_BACK = 12;
     /// Control word: the ramp has begun.
-    CONTROL_KNOWN = 9;
+    CONTROL_KNOWN = 13;
     /// Control word: the number of the word that the host must put next, 3 bits.
-    CONTROL_DUE = 10;
+    CONTROL_DUE = 14;
     /// Control word: the words of this tick are those of the axis' own hit.
-    CONTROL_MET = 13;
+    CONTROL_MET = 17;
     /// Control word: what the step counts keep, 7 bits.
-    CONTROL_COUNTS = 14;
+    CONTROL_COUNTS = 18;
+    /// Control word: slot of the last segment that the next cut keeps, 5 bits.
+    CONTROL_TARGET = 25;
+    /// Control word: the axis takes part in the next cut.
+    CONTROL_NAMED = 30;
+    /// Number of a word of the host: the number in its segment, 3 bits.
+    PUT_NUMBER = 0;
+    /// Number of a word of the host: it is no word of a segment and names the slot of a cut.
+    PUT_NAMES = 3;
+    /// Word of the host that names a slot, 5 bits.
+    PUT_SLOT = 0;
+    /// Slot: its lowest part in an address of the segments' memory, 3 bits.
+    SLOT_LOW = 0;
+    /// Slot: its highest part in such an address, 2 bits.
+    SLOT_HIGH = 3;
     /// What the step counts keep: discarded steps modulo 8, 3 bits.
     KEPT_DISCARDED = 0;
     /// What the step counts keep: carries less counted steps, modulo 16, 4 bits.
@@ -256,7 +270,7 @@ pub const WORD_A_HIGH: u64 = 4;
 pub const WORD_J_LOW: u64 = 5;
 /// Word of a segment: J, high half.
 pub const WORD_J_HIGH: u64 = 6;
-/// Word of each slot that no segment uses. These eight words hold the state of the axis.
+/// Word of each slot that no segment uses. Those of the slots 0 to 7 hold the state of the axis.
 pub const WORD_STATE: u64 = COMMIT as u64;
 
 /// Slot of [`WORD_STATE`]: P, low half.
@@ -276,9 +290,10 @@ pub const SLOT_UP_LOW: u64 = 6;
 /// Slot of [`WORD_STATE`]: s, high half.
 pub const SLOT_UP_HIGH: u64 = 7;
 
-/// Address of the number of the tick. With up to seven axes the memory has 512 words, and the lower
-/// nine bits are an address of the axis 7, which does not exist.
-pub const TICK_ADDRESS: u64 = 0x3ff;
+/// Address of the number of the tick. Only as many of its lowest bits count as an address has. With
+/// up to seven axes and eight slots these are nine, and the address is one of the axis 7, which does
+/// not exist. With more slots it is that of word 7 in the last slot, which no axis uses.
+pub const TICK_ADDRESS: u64 = 0x7ff;
 
 /// Address of a word of the state of an axis.
 pub const fn state_address(axis: usize, slot: u64) -> usize {

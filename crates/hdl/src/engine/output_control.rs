@@ -49,13 +49,13 @@ pub struct OutputControl<const N: usize> {
     /// The engine accepts a word of the host in this clock, for the axis of the time slot.
     pub take: Input<Bit>,
     /// The number of that word.
-    pub put_word: Input<Word<3>>,
+    pub put_word: Input<Word<4>>,
     /// That word.
     pub put_data: Input<Word<32>>,
     /// The slot that the host writes.
-    pub fresh: Input<Word<3>>,
+    pub fresh: Input<Word<5>>,
     /// The slot of the running segment.
-    pub live: Input<Word<3>>,
+    pub live: Input<Word<5>>,
     /// The axis starts in this tick.
     pub starts: Input<Bit>,
     /// In beat 12: the next segment of the axis begins with the next tick.
@@ -73,7 +73,7 @@ pub struct OutputControl<const N: usize> {
     output_words: HeldMemory<5, 16>,
     duty_words: HeldMemory<5, 13>,
     levels: Register<Word<8>>, // `pins`
-    place: Register<Word<3>>,  // the slot of the segment that axis 0 ran last
+    place: Register<Word<5>>,  // the slot of the segment that axis 0 ran last
     follower: Register<Bit>,   // it begins with this tick, after another segment
     begun: Register<Bit>,      // it has begun with this tick
     due: Register<Bit>,        // the word in the memories' output is to be applied
@@ -91,7 +91,7 @@ pub struct OutputControl<const N: usize> {
     has_pwm: Parameter<1>,
     lacks: Parameter<32>, // the bits that no commit may have
     has: Parameter<32>,   // the bits that only a commit of axis 0 may have
-    commit: Literal<3, 7>,
+    commit: Literal<4, 7>,
     duty_valid: Literal<13, { 1 << DUTY_VALID }>,
     no_duty: Literal<13, 0>,
     no_levels: Literal<8, 0>,
@@ -99,8 +99,9 @@ pub struct OutputControl<const N: usize> {
 }
 
 impl<const N: usize> OutputControl<N> {
-    /// Makes the outputs of this build. The caller has checked it.
-    pub fn new(build: &Outputs) -> Self {
+    /// Makes the outputs of this build, whose axes have this number of slots. The caller has checked
+    /// it.
+    pub fn new(build: &Outputs, slots: usize) -> Self {
         let exist = OUTPUTS.of::<32>(build.exist);
         let divider = PWM_DIVIDER.of::<32>(build.pwm_divider);
         let has_pwm = divider.whole().is_not(&Formula::number(0));
@@ -110,8 +111,8 @@ impl<const N: usize> OutputControl<N> {
         let is_any = exist.whole().is_not(&number(0)) | has_pwm.clone();
         let lacks = (!(has.clone() | number(1))).where_or(&is_any, number(0));
         Self {
-            output_words: HeldMemory::of_few(3),
-            duty_words: HeldMemory::of_few(3),
+            output_words: HeldMemory::of_few(slots.ilog2() as usize),
+            duty_words: HeldMemory::of_few(slots.ilog2() as usize),
             exist: Parameter::of(&exist.bits(0)),
             has_pwm: Parameter::of(&has_pwm),
             lacks: Parameter::of(&lacks),
@@ -133,14 +134,14 @@ impl<const N: usize> Logic for OutputControl<N> {
         self.commits.next = self.take.val() & (self.put_word.val() == self.commit.val());
         self.stores.next = self.commits.val() & self.first.val();
         self.output_words.write.next = self.stores.val();
-        self.output_words.write_address.next = bit_cast::<5, 3>(self.fresh.val());
+        self.output_words.write_address.next = self.fresh.val();
         self.output_words.write_data.next = self.put_data.val().get_bits::<16>(COMMIT_MASK);
         self.sets_bit.next = self.no_duty.val();
         if self.put_data.val().get_bit(COMMIT_SETS_DUTY) {
             self.sets_bit.next = self.duty_valid.val();
         }
         self.duty_words.write.next = self.stores.val();
-        self.duty_words.write_address.next = bit_cast::<5, 3>(self.fresh.val());
+        self.duty_words.write_address.next = self.fresh.val();
         self.duty_words.write_data.next =
             bit_cast::<13, 12>(self.put_data.val().get_bits::<12>(COMMIT_DUTY))
                 | self.sets_bit.val();
@@ -157,9 +158,9 @@ impl<const N: usize> Logic for OutputControl<N> {
         }
         self.applies.next = self.first.val() & self.beat.val().get_bit(BEAT_FIRST);
         self.output_words.read.next = self.applies.val();
-        self.output_words.read_address.next = bit_cast::<5, 3>(self.place.q.val());
+        self.output_words.read_address.next = self.place.q.val();
         self.duty_words.read.next = self.applies.val();
-        self.duty_words.read_address.next = bit_cast::<5, 3>(self.place.q.val());
+        self.duty_words.read_address.next = self.place.q.val();
         if self.applies.val() {
             self.due.d.next = self.begun.q.val();
         }
@@ -193,6 +194,6 @@ mod tests {
     #[test]
     fn output_control_synthesizes() {
         let build = Outputs { exist: 0x35, pwm_divider: 7, off_at_ramps: true };
-        assert_synthesizes(OutputControl::<6>::new(&build), "carrystep_output_control");
+        assert_synthesizes(OutputControl::<6>::new(&build, 8), "carrystep_output_control");
     }
 }

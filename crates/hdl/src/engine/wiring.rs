@@ -15,7 +15,7 @@
 use super::Engine;
 use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
-    MASK_OF_SLOT,
+    MASK_OF_SLOT, PUT_NAMES, PUT_NUMBER, PUT_SLOT, SLOT_LOW,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -34,6 +34,7 @@ impl<const N: usize> Logic for Engine<N> {
             adder,
             queue,
             step_counts,
+            cut_control,
             store,
             event_wheel,
             output_control,
@@ -52,19 +53,26 @@ impl<const N: usize> Logic for Engine<N> {
 
         // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.listens.next = self.time_slot.beat.val().get_bit(BEAT_PUT)
-            & (self.time_slot.axis.val() == self.put_axis.val());
+        self.is_own.next = self.time_slot.axis.val() == self.put_axis.val();
+        self.listens.next = self.time_slot.beat.val().get_bit(BEAT_PUT) & self.is_own.val();
+        self.names.next = self.put_word.val().get_bit(PUT_NAMES);
         self.put_ready.next = !self.stops.fault.val()
-            & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
-        self.room.next = self.queue.room.val();
+            & (self.nobody.val()
+                | (self.listens.val() & !self.names.val() & !self.queue.full.val())
+                | (self.time_slot.beat.val().get_bit(BEAT_LAST)
+                    & self.is_own.val()
+                    & self.names.val()
+                    & !self.cut_control.checks.val()));
+        self.room.next = self.queue.room.val().get_bits::<3>(SLOT_LOW);
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
         self.taken.d.next = self.taken.q.val() & !self.time_slot.beat.val().get_bit(BEAT_WRITE_PUT);
         if self.take.val() {
-            self.taken.d.next = self.put_word.val() != self.commit.val();
+            self.taken.d.next =
+                (self.put_word.val() != self.commit.val()) & !self.names.val();
         }
         if self.time_slot.beat.val().get_bit(BEAT_PUT) {
-            self.taken_word.d.next = self.put_word.val();
+            self.taken_word.d.next = self.put_word.val().get_bits::<3>(PUT_NUMBER);
         }
 
         // A start is armed at a strobe. It takes effect at the first later strobe at which every
@@ -111,7 +119,7 @@ impl<const N: usize> Logic for Engine<N> {
             self.rest_1.d.next = !self.active.q.val();
             self.rest_2.d.next = !self.active.q.val() & self.rest_1.q.val();
         }
-        if self.take.val() {
+        if self.take.val() & !self.names.val() {
             self.rest_1.d.next = false;
             self.rest_2.d.next = false;
         }
@@ -162,6 +170,10 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.put_word.next = self.put_word.val();
+        self.queue.put_slot.next = self.put_data.val().get_bits::<5>(PUT_SLOT);
+        self.queue.checks.next = self.cut_control.checks.val();
+        self.queue.cuts.next = self.cut_control.cuts.val();
+        self.queue.closes.next = self.cut_control.closes.val();
         self.queue.last.next = self.put_data.val().get_bit(COMMIT_LAST);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
@@ -170,6 +182,14 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.back.next = self.adder.back.val();
         self.queue.meets.next = self.readout.meets.val();
         self.queue.next_counts.next = self.step_counts.next_counts.val();
+
+        self.cut_control.strobe.next = self.strobe.val();
+        self.cut_control.beat.next = self.time_slot.beat.val();
+        self.cut_control.request.next = self.cut.val();
+        self.cut_control.misses.next = self.queue.misses.val();
+        self.cut_control.resetting.next = self.resets.resetting.val();
+        self.cut_busy.next = self.cut_control.busy.val();
+        self.cut_refused.next = self.cut_control.refused.val();
 
         self.step_counts.beat.next = self.time_slot.beat.val();
         self.step_counts.running.next = self.queue.running.val();

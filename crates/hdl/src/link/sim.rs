@@ -81,7 +81,7 @@ impl<const N: usize> AnyLink for Link<N> {
         self.latch_edges.next = Word::from(u64::from(engine.latch_edges));
         settle(self);
         let [axis, word] =
-            [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
+            [self.put_axis.val().value(), self.put_word.val().value()].map(|place| place as u8);
         let data = self.put_data.val().value() as u32;
         LinkOutputs {
             tx: true,

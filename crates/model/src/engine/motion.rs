@@ -15,6 +15,7 @@
 //! the pin one clock after that.
 
 mod axis_model;
+mod cut;
 mod guard;
 mod inspection;
 mod latch;
@@ -27,9 +28,10 @@ mod strobe;
 mod switches;
 
 use crate::parts::shaper;
-use axis_model::{AxisModel, Queued, Tick};
+use axis_model::{AxisModel, Queued, SLOTS, Tick};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{COMMIT, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use carrystep_core::engine::{COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use cut::Cut;
 use guard::{Stop, Supervisor};
 use latch::LatchState;
 pub(crate) use observed::Ending;
@@ -38,6 +40,7 @@ use reset::Reset;
 use seek::Seek;
 use std::sync::Arc;
 use strobe::Decision;
+use switches::LAST_BEAT;
 
 /// The state of the motion. [`Motion::outputs`] and [`Motion::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,6 +69,7 @@ pub struct Motion {
     seek: Seek,
     latch: LatchState,
     outputs: OutputState,
+    cut: Cut,
 }
 
 impl Motion {
@@ -101,6 +105,7 @@ impl Motion {
             seek: Seek::default(),
             latch: LatchState::default(),
             outputs: OutputState::default(),
+            cut: Cut::default(),
         }
     }
 
@@ -119,8 +124,11 @@ impl Motion {
         let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
         let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
+        let names = inputs.put.is_some_and(|put| put.word & CUT_WORD != 0);
         EngineOutputs {
-            put_ready: free && self.takes(put_axis),
+            put_ready: free && self.takes(put_axis, names),
+            cut_busy: self.cut.is_busy(),
+            cut_refused: self.cut.refused,
             start_ready: free
                 && strobe
                 && self.armed.is_none()
@@ -199,6 +207,7 @@ impl Motion {
         self.watch_interlock();
         self.clock_seek(inputs, strobe);
         self.latch.clock(guard, inputs, strobe);
+        self.clock_cut(inputs, strobe);
         self.supervisor.clock(guard, inputs, strobe, outputs.idle);
         self.stop = stop;
         if strobe && before.clearing {
@@ -248,12 +257,17 @@ impl Motion {
         bits(&self.axis_models, |axis_model| axis_model.shaper.overrun)
     }
 
-    /// True if a word for this axis is accepted in this clock. The axis accepts it in its time slot
-    /// if its queue has room. A word for an axis that does not exist is accepted at once (and is a
+    /// True if a word for this axis is accepted in this clock. The axis accepts a word of a segment in
+    /// its time slot if its queue has room, and one that `names` the slot of a cut at the end of its
+    /// time slot unless a cut is examined. A word for an axis that does not exist is accepted at once (and is a
     /// protocol fault).
-    fn takes(&self, axis: usize) -> bool {
+    fn takes(&self, axis: usize, names: bool) -> bool {
         self.axis_models.get(axis).is_none_or(|axis_model| {
-            self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+            if names {
+                self.time_slot_at(LAST_BEAT) == Some(axis) && !self.cut.checks
+            } else {
+                self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+            }
         })
     }
 
@@ -265,6 +279,10 @@ impl Motion {
     /// Takes a word. Returns false if it is not the next word of its axis' segment.
     fn put(&mut self, put: Put) -> bool {
         let axis_model = &mut self.axis_models[usize::from(put.axis)];
+        if put.word & CUT_WORD != 0 {
+            axis_model.named = Some((put.data % SLOTS as u32) as u8);
+            return true;
+        }
         self.rest = 0;
         if put.word != axis_model.next_word {
             return false;

@@ -10,7 +10,7 @@ use carrystep_core::engine::{Cause, Commit, Guard, QUEUE, SEGMENT_WORDS, SWITCH_
 use std::collections::VecDeque;
 
 /// Number of slots of an axis: those of its queue, and that of the running segment.
-const SLOTS: usize = QUEUE + 1;
+pub(super) const SLOTS: usize = QUEUE + 1;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,6 +56,8 @@ pub(super) struct AxisModel {
     pub(super) words: [u32; SEGMENT_WORDS as usize],
     /// Number of the word of that segment that must come next.
     pub(super) next_word: u8,
+    /// The slot that the host has named for a cut.
+    pub(super) named: Option<u8>,
     /// The switches of this axis, one of each row.
     pub(super) switches: [Switch; SWITCH_ROWS as usize],
     pub(super) computed: Stage,
@@ -87,6 +89,7 @@ impl AxisModel {
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
             next_word: 0,
+            named: None,
             switches: Default::default(),
             computed: Stage::default(),
             emitted: Stage::default(),

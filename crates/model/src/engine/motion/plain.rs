@@ -9,12 +9,12 @@
 use super::axis_model::AxisModel;
 use super::guard::Stop;
 use super::seek::AxisSeek;
-use super::switches::{INTERLOCK_ROW, SAMPLE_BEAT, Switch};
+use super::switches::{INTERLOCK_ROW, LAST_BEAT, SAMPLE_BEAT, Switch};
 use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
 use carrystep_core::engine::{
-    EngineInputs, LimitWiring, PUT_BEAT, QUEUE, SWITCH_ROWS, TIME_SLOT_CLOCKS,
+    CUT_WORD, EngineInputs, LimitWiring, PUT_BEAT, QUEUE, SWITCH_ROWS, TIME_SLOT_CLOCKS,
 };
 
 /// Strobes before the first event, and ticks before the first tick with an event that comes before
@@ -91,6 +91,7 @@ impl Motion {
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
         self.time_slots
             && !(inputs.reset || self.reset.ending || self.misplaced || self.stray)
+            && !(inputs.cut || self.cut.is_busy())
             && self.outputs_are_steady()
             && (fault || !(inputs.stop || inputs.broken || nobody))
             && inputs.seek.is_none()
@@ -108,11 +109,13 @@ impl Motion {
     /// Clocks before the clock in which the offered word is accepted.
     fn clocks_to_put(&self, inputs: &EngineInputs) -> u64 {
         let Some(put) = inputs.put.filter(|_| self.stop.fault.is_none()) else { return u64::MAX };
-        if self.axis_models[usize::from(put.axis)].queue.len() >= QUEUE {
+        let names = put.word & CUT_WORD != 0;
+        if !names && self.axis_models[usize::from(put.axis)].queue.len() >= QUEUE {
             return u64::MAX;
         }
+        let beat = if names { LAST_BEAT } else { PUT_BEAT };
         let (beat, per_tick) =
-            (u32::from(put.axis) * TIME_SLOT_CLOCKS + PUT_BEAT, self.clocks_per_tick());
+            (u32::from(put.axis) * TIME_SLOT_CLOCKS + beat, self.clocks_per_tick());
         ((beat + per_tick - self.clock) % per_tick).into()
     }
 
