@@ -102,7 +102,7 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         5 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask | 1), Event::Inputs1(0))),
         3 => Just((Event::Latch(true), Event::Latch(false))),
         2 => Just((Event::LatchArm, Event::LatchArm)),
-        3 => Just((Event::Stop(true), Event::Stop(false))),
+        6 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
         4 => (1..=all(axes)).prop_map(|mask| (Event::Seek(mask), Event::Seek(0))),
         2 => (source(axes), source(axes))
@@ -221,7 +221,7 @@ fn cuts(axes: usize) -> impl Strategy<Value = Events> {
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 4 => cuts(axes)];
+    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 2 => cuts(axes)];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life(), outputs()).prop_map(|(episodes, life, outputs)| {
         let mut events = episodes.concat();

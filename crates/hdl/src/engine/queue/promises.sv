@@ -6,7 +6,8 @@
 //                time_slot/promises.sv). The inputs for starts and stops do not change within a time
 //                slot; a word is taken only in beat 7 and if there is room; an axis starts only if
 //                a segment waits. A slot is named only in beat 12, and not while a
-//                cut is examined (engine/promises.sv). A cut follows the time slot that has examined
+//                cut is examined; a queue is emptied only where its axis does not run on
+//                (engine/promises.sv). A cut follows the time slot that has examined
 //                it and has missed nothing (cut_control/promises.sv).
 //
 // All statements are about one axis, `who`; the solver may choose any. This file numbers the
@@ -69,6 +70,7 @@ module promises (
         assume (was_beat[11:0] == 0 || {checks, cuts, closes} == {was_checks, was_cuts, was_closes});
         assume (!clear || halted);
         assume (!cuts || closes && !checks);
+        assume (!(beat[12] && empties && goes_on));
     end
 
     // ---- The numbers of segments of `who` that have been committed and begun, and for each of the
