@@ -212,8 +212,7 @@ fn cuts(axes: usize) -> impl Strategy<Value = Events> {
     let later = prop_oneof![4 => 600_u64..2500, 1 => 0_u64..600];
     (0_u64..60_000, slots, mask, later).prop_map(|(at, slots, mask, later)| {
         let named = (0..).zip(slots).filter(|(axis, _)| mask >> axis & 1 == 1);
-        let mut events: Events =
-            named.map(|(axis, slot)| (at, Event::Name(axis, slot))).collect();
+        let mut events: Events = named.map(|(axis, slot)| (at, Event::Name(axis, slot))).collect();
         events.push((at + later, Event::Cut));
         events
     })

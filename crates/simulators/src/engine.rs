@@ -321,7 +321,8 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, cut, .. } = self.around;
+        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, cut, .. } =
+            self.around;
         let lasting = kick == self.awake
             && !(broken || latch_arm || snapshot || cut)
             && seek_source.is_none()

@@ -5,21 +5,13 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::EngineBuild;
 
 const BUGS: &[Bug] = &[
-    Bug {
-        breaks: "promise_17_only_where_named",
-        text: "levels & ~mask",
-        becomes: "levels & mask",
-    },
+    Bug { breaks: "promise_17_only_where_named", text: "levels & ~mask", becomes: "levels & mask" },
     Bug {
         breaks: "promise_17_levels_of_the_commit",
         text: "begun <= starts | follower;",
         becomes: "begun <= starts;",
     },
-    Bug {
-        breaks: "promise_17_off",
-        text: "if (off) begin",
-        becomes: "if (off & !applies) begin",
-    },
+    Bug { breaks: "promise_17_off", text: "if (off) begin", becomes: "if (off & !applies) begin" },
     Bug {
         breaks: "promise_17_duty_of_the_commit",
         text: "due <= begun;",

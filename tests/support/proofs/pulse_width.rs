@@ -5,11 +5,7 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::EngineBuild;
 
 const BUGS: &[Bug] = &[
-    Bug {
-        breaks: "promise_17_pin_for_the_duty",
-        text: "count < width",
-        becomes: "count <= width",
-    },
+    Bug { breaks: "promise_17_pin_for_the_duty", text: "count < width", becomes: "count <= width" },
     Bug {
         breaks: "promise_17_pin_for_the_duty",
         text: "divided == LAST",
@@ -35,7 +31,9 @@ pub(super) fn proof(_: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "pulse_width",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/pulse_width/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/pulse_width/promises.sv"),
+        },
         cases: builds.map(case).into(),
         depth: 1,
         reach: 30,

@@ -19,11 +19,7 @@ const BUGS: &[Bug] = &[
         text: "if (empties) begin",
         becomes: "if (empties & starts) begin",
     },
-    Bug {
-        breaks: "promise_6_room",
-        text: "(live_now + ~newest)",
-        becomes: "(live_now - newest)",
-    },
+    Bug { breaks: "promise_6_room", text: "(live_now + ~newest)", becomes: "(live_now - newest)" },
     Bug {
         breaks: "promise_6_empty",
         text: "none = newest == live_now",
@@ -92,11 +88,7 @@ const BUGS: &[Bug] = &[
         text: "newest = target;",
         becomes: "newest = newest;",
     },
-    Bug {
-        breaks: "promise_15_counts_are_kept",
-        text: "<< AT_18)",
-        becomes: "<< AT_14)",
-    },
+    Bug { breaks: "promise_15_counts_are_kept", text: "<< AT_18)", becomes: "<< AT_14)" },
     Bug {
         breaks: "promise_15_met_in_the_tick_before",
         text: "next_met = MET_BIT;",

@@ -10,11 +10,7 @@ const BUGS: &[Bug] = &[
         text: "next_lost = counts[2:0] + ONE",
         becomes: "next_lost = counts[2:0]",
     },
-    Bug {
-        breaks: "promise_7_told_as_pulsed",
-        text: "less = missing[2];",
-        becomes: "less = 1'b0;",
-    },
+    Bug { breaks: "promise_7_told_as_pulsed", text: "less = missing[2];", becomes: "less = 1'b0;" },
     Bug {
         breaks: "promise_7_never_far_behind",
         text: "(missing != 3'd0) & !missing[2];",

@@ -135,8 +135,8 @@ pub struct Queue {
     live_now: Signal<Local, Word<5>>,
     newest: Signal<Local, Word<5>>,
     target: Signal<Local, Word<5>>,
-    ends_here: Signal<Local, Bit>, // this queue is cut in this tick
-    space: Signal<Local, Word<5>>, // `room`
+    ends_here: Signal<Local, Bit>,    // this queue is cut in this tick
+    space: Signal<Local, Word<5>>,    // `room`
     distance: Signal<Local, Word<5>>, // from the running slot to the named one
     span: Signal<Local, Word<6>>,
     is_live: Signal<Local, Bit>,
@@ -169,8 +169,8 @@ pub struct Queue {
     next_met: Signal<Local, Word<31>>,
     next_target: Signal<Local, Word<5>>,
     next_named: Signal<Local, Word<31>>,
-    slots: Parameter<5>,           // the greatest number of a slot
-    beyond: Parameter<6>,          // the bits above it
+    slots: Parameter<5>,  // the greatest number of a slot
+    beyond: Parameter<6>, // the bits above it
     one_slot: Literal<5, 1>,
     no_slot: Literal<5, 0>,
     named_bit: Literal<31, { 1 << CONTROL_NAMED }>,
@@ -257,8 +257,7 @@ impl Logic for Queue {
         // The segment that was named for a cut. It waits if its distance from the running one is at
         // most the number of waiting segments, which is the complement of the space.
         self.distance.next = (self.target.val() - self.live_now.val()) & self.slots.val();
-        self.span.next =
-            bit_cast::<6, 5>(self.distance.val()) + bit_cast::<6, 5>(self.space.val());
+        self.span.next = bit_cast::<6, 5>(self.distance.val()) + bit_cast::<6, 5>(self.space.val());
         self.is_live.next = !self.distance.val().any();
         self.waits.next = !(self.span.val() & self.beyond.val()).any()
             & !self.is_live.val()

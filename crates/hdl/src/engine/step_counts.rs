@@ -72,9 +72,9 @@ pub struct StepCounts {
     unseen: Signal<Local, Word<3>>,
     more: Signal<Local, Bit>,
     less: Signal<Local, Bit>,
-    forward: Register<Bit>,  // `up`, after beat 6
-    backward: Register<Bit>, // `down`, after beat 6
-    gone: Register<Bit>,     // `lost`
+    forward: Register<Bit>,     // `up`, after beat 6
+    backward: Register<Bit>,    // `down`, after beat 6
+    gone: Register<Bit>,        // `lost`
     ahead: Signal<Local, Bit>,  // the tick contains a step forward
     behind: Signal<Local, Bit>, // the tick contains a step backward
     gain: Signal<Local, Word<4>>,
@@ -110,8 +110,7 @@ impl Logic for StepCounts {
         // What is kept for the next time slot of this axis.
         self.next_lost.next = self.counts.val().get_bits::<3>(KEPT_DISCARDED);
         if self.gone.q.val() {
-            self.next_lost.next =
-                self.counts.val().get_bits::<3>(KEPT_DISCARDED) + self.one.val();
+            self.next_lost.next = self.counts.val().get_bits::<3>(KEPT_DISCARDED) + self.one.val();
         }
         self.ahead.next = self.moves.val() & self.crosses.val() & !self.back.val();
         self.behind.next = self.moves.val() & self.crosses.val() & self.back.val();

@@ -27,9 +27,9 @@ use super::layout::{
     BEAT_READ_TICKS, BEAT_READ_V_HIGH, BEAT_READ_V_LOW, BEAT_SUM_TICK, BEAT_WRITE_A_HIGH,
     BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW, BEAT_WRITE_POSITION, BEAT_WRITE_PUT,
     BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW, SLOT_DISCARDED, SLOT_DOWN_HIGH,
-    SLOT_DOWN_LOW, SLOT_HIGH, SLOT_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION, SLOT_UP_HIGH, SLOT_UP_LOW, TICK_ADDRESS,
-    WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE, WORD_TICKS, WORD_V_HIGH,
-    WORD_V_LOW, state_address,
+    SLOT_DOWN_LOW, SLOT_HIGH, SLOT_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION, SLOT_UP_HIGH,
+    SLOT_UP_LOW, TICK_ADDRESS, WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE,
+    WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
 };
 use crate::parameters::{START_HALF, STOP_ACCEL};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
@@ -211,10 +211,12 @@ impl Logic for Store {
         if self.beat.val().get_bit(BEAT_READ_P_HIGH) {
             self.read_slot.next = self.p_high.val();
         }
-        self.segments.read_address.next = (bit_cast::<11, 2>(self.read_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
-            | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
-            | (bit_cast::<11, 3>(self.read_slot.val().get_bits::<3>(SLOT_LOW)) << self.at_3.val())
-            | bit_cast::<11, 3>(self.read_word.val());
+        self.segments.read_address.next =
+            (bit_cast::<11, 2>(self.read_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
+                | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
+                | (bit_cast::<11, 3>(self.read_slot.val().get_bits::<3>(SLOT_LOW))
+                    << self.at_3.val())
+                | bit_cast::<11, 3>(self.read_word.val());
         if self.beat.val().get_bit(BEAT_READ_TICK) | self.beat.val().get_bit(BEAT_READ_TICK_AGAIN) {
             self.segments.read_address.next = self.tick_address.val();
         }
@@ -265,10 +267,12 @@ impl Logic for Store {
             self.write_slot.next = self.p_high.val();
             self.writes.next = self.moves.val() | self.wipe.val();
         }
-        self.segments.write_address.next = (bit_cast::<11, 2>(self.write_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
-            | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
-            | (bit_cast::<11, 3>(self.write_slot.val().get_bits::<3>(SLOT_LOW)) << self.at_3.val())
-            | bit_cast::<11, 3>(self.write_word.val());
+        self.segments.write_address.next =
+            (bit_cast::<11, 2>(self.write_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
+                | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
+                | (bit_cast::<11, 3>(self.write_slot.val().get_bits::<3>(SLOT_LOW))
+                    << self.at_3.val())
+                | bit_cast::<11, 3>(self.write_word.val());
         // The tail of the last time slot, which no other one overlaps.
         self.counted.d.next =
             self.beat.val().get_bit(BEAT_SUM_TICK) & !self.beat.val().get_bit(BEAT_OVER_SUM_TICK);

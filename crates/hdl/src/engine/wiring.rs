@@ -68,8 +68,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
         self.taken.d.next = self.taken.q.val() & !self.time_slot.beat.val().get_bit(BEAT_WRITE_PUT);
         if self.take.val() {
-            self.taken.d.next =
-                (self.put_word.val() != self.commit.val()) & !self.names.val();
+            self.taken.d.next = (self.put_word.val() != self.commit.val()) & !self.names.val();
         }
         if self.time_slot.beat.val().get_bit(BEAT_PUT) {
             self.taken_word.d.next = self.put_word.val().get_bits::<3>(PUT_NUMBER);

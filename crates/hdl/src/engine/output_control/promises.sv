@@ -15,10 +15,10 @@ module promises (
     input wire [16:0] beat,
     input wire [`AXES-1:0] axis_one_hot,
     input wire take,
-    input wire [2:0] put_word,
+    input wire [3:0] put_word,
     input wire [31:0] put_data,
-    input wire [2:0] fresh,
-    input wire [2:0] live,
+    input wire [4:0] fresh,
+    input wire [4:0] live,
     input wire starts,
     input wire follows,
     input wire off
@@ -57,9 +57,9 @@ module promises (
     reg [255:0] kept = 0;
     reg [31:0] now = 0, next = 0;
     reg follower = 0, has_begun = 0, due = 0;
-    wire [31:0] of_live = kept[{live, 5'd0} +: 32];
+    wire [31:0] of_live = kept[{live[2:0], 5'd0} +: 32];
     always @(posedge clock) begin
-        if (commit & first) kept[{fresh, 5'd0} +: 32] <= put_data & 32'hfffffff2;
+        if (commit & first) kept[{fresh[2:0], 5'd0} +: 32] <= put_data & 32'hfffffff2;
         if (ends) begin
             now <= of_live;
             has_begun <= starts | follower;
@@ -95,7 +95,7 @@ module promises (
 
     // ---- The invariants that make the promises inductive.
 
-    (* inside = "dut.place" *) wire [2:0] place;
+    (* inside = "dut.place" *) wire [4:0] place;
     (* inside = "dut.begun" *) wire dut_begun;
     (* inside = "dut.due" *) wire dut_due;
     (* inside = "dut.follower" *) wire dut_follower;
@@ -122,7 +122,7 @@ module promises (
         invariant_1: assert (is_kept || HAS == 0);
         invariant_2: assert ({dut_begun, dut_due, dut_follower} == {has_begun, due, follower} || HAS == 0);
         invariant_3: assert (before_all || HAS == 0 || output_word == next[19:4] && duty_word == {next[1], next[31:20]});
-        invariant_4: assert (!between || now == kept[{place, 5'd0} +: 32]);
+        invariant_4: assert (!between || now == kept[{place[2:0], 5'd0} +: 32]);
         invariant_5: assert (!before_all || {now, next, kept, has_begun, due, follower, place, between} == 0);
         invariant_6: assert ((pins & ~EXIST) == 0);
     end

@@ -105,7 +105,8 @@ impl AxisModel {
     /// Takes the first segment of the queue, if there is one, as the running segment.
     pub(super) fn load(&mut self) {
         self.running = self.queue.pop_front();
-        self.begun = self.running.map(|segment| segment.commit).filter(|commit| commit.changes_outputs());
+        self.begun =
+            self.running.map(|segment| segment.commit).filter(|commit| commit.changes_outputs());
         self.pass_slots(usize::from(self.running.is_some()));
     }
 

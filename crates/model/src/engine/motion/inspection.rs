@@ -20,8 +20,11 @@ impl Motion {
         let of_axis_model = |axis_model: &AxisModel| {
             let all = || axis_model.running.iter().chain(&axis_model.queue);
             let begun = armed || axis_model.running.is_some();
-            let ended =
-                if armed { all().next_back()?.commit.last } else { all().any(|segment| segment.commit.last) };
+            let ended = if armed {
+                all().next_back()?.commit.last
+            } else {
+                all().any(|segment| segment.commit.last)
+            };
             if !begun || ended {
                 return None;
             }

@@ -32,7 +32,9 @@ impl OutputState {
     /// commit of the segment with which axis 0 has begun this tick, if it changes outputs.
     fn clock(&mut self, build: Outputs, off: bool, at: Place, begun: Option<Commit>) {
         let before = *self;
-        if at == Place::First && let Some(Commit { mask, levels, .. }) = before.emitted {
+        if at == Place::First
+            && let Some(Commit { mask, levels, .. }) = before.emitted
+        {
             let mask = mask & build.exist;
             self.levels = (before.levels & !mask) | (levels & mask);
         }
