@@ -3055,8 +3055,8 @@ module carrystep_engine #(
     output wire  [31:0] state,
     // All live words of this tick have been output; asserted for one clock.
     output wire         refreshed,
-    // The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
-    output wire   [2:0] room,
+    // The number of segments for which the queue of the axis `put_axis` has space.
+    output wire   [4:0] room,
     // `room` is valid in this clock, once in the time slot of that axis.
     output wire         room_valid,
     // The STEP pins; bit i is axis i. A rising edge is a step.
@@ -3300,7 +3300,7 @@ module carrystep_engine #(
     assign state_item = readout_item;
     assign state = readout_state;
     assign refreshed = readout_refreshed;
-    assign room = queue_room[2:0];
+    assign room = queue_room;
     assign room_valid = listens;
     assign step[0] = pulser_0_step;
     assign step[1] = pulser_1_step;

@@ -92,7 +92,7 @@ carrystep_engine #(
     .state_item(),        // output [2:0]
     .state(),             // output [31:0]
     .refreshed(),         // output
-    .room(),              // output [2:0]
+    .room(),              // output [4:0]
     .room_valid(),        // output
     .step(),              // output [5:0]
     .dir(),               // output [5:0]

@@ -5,7 +5,7 @@
 // in carrystep_link.v describe the ports. An output that is not used stays empty; each input needs
 // a value. This file is generated: change the generator instead.
 carrystep_link #(
-    .BUILD_ID(64'h1e49a52af3711e30),
+    .BUILD_ID(64'he4ab743aaa08bc9c),
     .CLOCK_HZ(32'h4c4b400),
     .TICK_NS(32'd1000),
     .ROUND_TICKS(32'd32),
@@ -22,11 +22,14 @@ carrystep_link #(
     .put_word(),          // output [3:0]
     .put_data(),          // output [31:0]
     .put_ready(),         // input
-    .room(),              // input [2:0]
+    .room(),              // input [4:0]
     .room_valid(),        // input
     .start_valid(),       // output
     .start_mask(),        // output [5:0]
     .start_ready(),       // input
+    .cut(),               // output
+    .cut_busy(),          // input
+    .cut_refused(),       // input
     .clear(),             // output
     .stop(),              // output
     .broken(),            // output

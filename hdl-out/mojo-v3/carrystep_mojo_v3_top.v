@@ -33,11 +33,14 @@ module carrystep_mojo_v3_top (
     wire [3:0] put_word;
     wire [31:0] put_data;
     wire put_ready;
-    wire [2:0] room;
+    wire [4:0] room;
     wire room_valid;
     wire start_valid;
     wire [5:0] start_mask;
     wire start_ready;
+    wire cut;
+    wire cut_busy;
+    wire cut_refused;
     wire clear;
     wire stop;
     wire broken;
@@ -95,7 +98,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'hff744204c82a3c7d),
+        .BUILD_ID(64'hb5f6f13745c843a5),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -116,6 +119,9 @@ module carrystep_mojo_v3_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -211,6 +217,9 @@ module carrystep_mojo_v3_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -246,9 +255,6 @@ module carrystep_mojo_v3_top (
         .limit_max(6'd0),
         .inputs_0(6'd0),
         .inputs_1(6'd0),
-        .cut(1'd0),
-        .cut_busy(),
-        .cut_refused(),
         .step(step),
         .dir(dir),
         .enabled(enabled),

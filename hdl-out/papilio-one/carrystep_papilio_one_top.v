@@ -31,11 +31,14 @@ module carrystep_papilio_one_top (
     wire [3:0] put_word;
     wire [31:0] put_data;
     wire put_ready;
-    wire [2:0] room;
+    wire [4:0] room;
     wire room_valid;
     wire start_valid;
     wire [5:0] start_mask;
     wire start_ready;
+    wire cut;
+    wire cut_busy;
+    wire cut_refused;
     wire clear;
     wire stop;
     wire broken;
@@ -79,7 +82,7 @@ module carrystep_papilio_one_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'ha14149f019376e),
+        .BUILD_ID(64'h4e6fc1ccd0dcef12),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -100,6 +103,9 @@ module carrystep_papilio_one_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -195,6 +201,9 @@ module carrystep_papilio_one_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -230,9 +239,6 @@ module carrystep_papilio_one_top (
         .limit_max(6'd0),
         .inputs_0(6'd0),
         .inputs_1(6'd0),
-        .cut(1'd0),
-        .cut_busy(),
-        .cut_refused(),
         .step(step),
         .dir(dir),
         .enabled(enabled),

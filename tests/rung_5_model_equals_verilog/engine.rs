@@ -1,7 +1,7 @@
 //! The exported engine in Icarus and in Verilator is the engine's model, every output in every
 //! clock.
 
-use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE};
+use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE_DEPTHS};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -249,7 +249,7 @@ fn golden_program(cases: &[&Case]) -> Program {
     };
     let start = Command::Start { mask: (1 << cases.len()) - 1 };
     let rows = segments.iter().map(Vec::len).max().unwrap_or(0);
-    [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
+    [part(0..QUEUE_DEPTHS[0]), vec![start], part(QUEUE_DEPTHS[0]..rows)].concat()
 }
 
 /// The edges of an axis as tick, phase and direction.

@@ -5,7 +5,7 @@
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
 use carrystep_core::engine::{
-    Guard, InputRow, Latch, LimitWiring, MAX_AXES, Outputs, QUEUE, SWITCH_ROWS, SeekSource,
+    Guard, InputRow, Latch, LimitWiring, MAX_AXES, Outputs, QUEUE_DEPTHS, SWITCH_ROWS, SeekSource,
 };
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use carrystep_simulators::engine::{Event, Events};
@@ -178,7 +178,7 @@ pub fn queued_first(mut program: Program) -> Program {
     program.retain(|command| !matches!(command, Command::Start { .. }));
     let segments =
         program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
-    program.insert(segments.min(QUEUE * AXES), Command::Start { mask: all(AXES) });
+    program.insert(segments.min(QUEUE_DEPTHS[0] * AXES), Command::Start { mask: all(AXES) });
     program
 }
 
@@ -249,7 +249,8 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
 
 /// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
 /// them are too slow for a step in every other tick. Ramps take ten to some hundred ticks. The
-/// guard's rounds are so short that all of its functions occur.
+/// guard's rounds are so short that all of its functions occur. The depth of the queues depends on
+/// the number of axes; it is the least for three and six.
 pub fn build(
     axes: usize,
     clock_hz: u64,
@@ -265,6 +266,7 @@ pub fn build(
     build.pins = build.pins.iter().copied().cycle().take(axes).collect();
     let low = limits == LimitWiring::Pair;
     let all = InputRow { exist: all(axes), low: 0 };
+    build.queue = QUEUE_DEPTHS[axes % QUEUE_DEPTHS.len()];
     // A period of the PWM has fewer clocks than a program.
     build.outputs = Outputs { exist: 0xff, pwm_divider: 2, off_at_ramps: low };
     build.guard = Guard {

@@ -1,7 +1,7 @@
 //! Pages show the schedule of a time slot, the words of the memories and the fields of an answer as
 //! they stand in the code.
 
-use carrystep_core::engine::{MAX_AXES, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{MAX_AXES, QUEUE_DEPTHS, SEGMENT_WORDS};
 use carrystep_core::link::ANSWER;
 use carrystep_hdl::engine::layout::{self, INDICES};
 use carrystep_tests::pages::{self, says, word};
@@ -182,7 +182,7 @@ fn engine_page_counts_the_block_rams() {
     let (address, bits) = memory("store.rs", "segments");
     let address = address - 1;
     let (wide, deep) = (bits / RAM.1, (1 << address) / RAM.0);
-    assert_eq!(1 << address, MAX_AXES as u32 * (QUEUE as u32 + 1) * (SEGMENT_WORDS as u32 + 1));
+    assert_eq!(1 << address, MAX_AXES as u32 * (QUEUE_DEPTHS[0] as u32 + 1) * (SEGMENT_WORDS as u32 + 1));
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),
@@ -208,7 +208,7 @@ fn engine_page_counts_the_block_rams() {
             format!(
                 "{} axes, {} slots per axis, {} words per slot",
                 word(MAX_AXES as u64),
-                word(QUEUE as u64 + 1),
+                word(QUEUE_DEPTHS[0] as u64 + 1),
                 word(u64::from(SEGMENT_WORDS) + 1)
             ),
             format!("has {} bits and takes {} more block RAMs", control.1, number(rams(control))),

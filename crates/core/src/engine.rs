@@ -44,8 +44,9 @@ pub const MAX_AXES: usize = 8;
 /// The clock within a time slot, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
 
-/// Segments that an axis' queue holds, not counting the one that runs.
-pub const QUEUE: usize = 7;
+/// Numbers of segments that an axis' queue can hold, not counting the one that runs. An axis has one
+/// slot more in memory, a power of two.
+pub const QUEUE_DEPTHS: [usize; 3] = [7, 15, 31];
 
 /// Data words of a segment: ticks minus one, then V, A and J, each with its low half first.
 pub const SEGMENT_WORDS: u8 = 7;

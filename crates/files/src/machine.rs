@@ -29,6 +29,7 @@ mod home;
 mod inputs;
 mod link;
 mod outputs;
+mod queue;
 mod stop;
 mod units;
 
@@ -49,6 +50,8 @@ pub struct Machine {
     pub guard: Guard,
     /// The outputs that change with the motion.
     pub outputs: Outputs,
+    /// Number of segments that the queue of an axis holds besides the one that runs.
+    pub queue: usize,
     /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
     /// together.
     pub home_order: Vec<Vec<usize>>,
@@ -101,7 +104,14 @@ impl Machine {
     pub fn engine(&self) -> EngineBuild {
         let pins = self.axes.iter().map(|axis| axis.pins).collect();
         let guard = self.guard.clone();
-        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard, outputs: self.outputs }
+        EngineBuild {
+            timebase: self.timebase,
+            phase: self.phase,
+            pins,
+            guard,
+            outputs: self.outputs,
+            queue: self.queue,
+        }
     }
 
     /// Reads a machine file, which has a `[machine]` table.
@@ -184,6 +194,7 @@ pub(crate) struct RawMachine {
     outputs: RawOutputs,
     #[serde(default)]
     link: RawLink,
+    queue_depth: Option<Spanned<usize>>,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
@@ -231,8 +242,18 @@ impl RawMachine {
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
-        let (outputs, phase) = (self.outputs.check(source)?, self.phase);
-        Ok(Machine { timebase, chosen_tick, phase, axes, guard, outputs, home_order, baud, spi })
+        Ok(Machine {
+            timebase,
+            chosen_tick,
+            phase: self.phase,
+            axes,
+            guard,
+            outputs: self.outputs.check(source)?,
+            queue: queue::check(source, self.queue_depth.as_ref())?,
+            home_order,
+            baud,
+            spi,
+        })
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.

@@ -20,7 +20,7 @@
 //! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
-//! Interface: the host writes segments word by word (`put`) into a queue of seven segments per axis
+//! Interface: the host writes segments word by word (`put`) into a queue of 7, 15 or 31 segments per axis
 //! and starts axes by a mask. The engine outputs the state of all axes in every tick (`state`), on
 //! request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`, `inputs_1` and
 //! `latch` come directly from pins.
@@ -42,7 +42,7 @@ use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{CAUSE_BITS, QUEUE, least_clocks};
+use carrystep_core::engine::{CAUSE_BITS, least_clocks};
 use rust_hdl::prelude::*;
 
 pub mod adder;
@@ -183,8 +183,8 @@ pub struct Engine<const N: usize> {
     pub state: Signal<Out, Word<32>>,
     /// All live words of this tick have been output; asserted for one clock.
     pub refreshed: Signal<Out, Bit>,
-    /// The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
-    pub room: Signal<Out, Word<3>>,
+    /// The number of segments for which the queue of the axis `put_axis` has space.
+    pub room: Signal<Out, Word<5>>,
     /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
     /// The STEP pins; bit i is axis i. A rising edge is a step.
@@ -300,7 +300,7 @@ impl<const N: usize> Engine<N> {
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
-        let slots = QUEUE + 1;
+        let slots = build.slots();
         Ok(Self {
             time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop, slots),

@@ -26,13 +26,17 @@ typedef struct {
     bool last;      /* the axis stops when it is over */
 } carrystep_segment;
 
-/* A request: a read, a write of one word (address CARRYSTEP_WRITE | register), or a segment
- * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
+/* A request: a read, a write of one word (address CARRYSTEP_WRITE | register), a segment
+ * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)), or a cut (address
+ * CARRYSTEP_WRITE | CARRYSTEP_CUT). */
 typedef struct {
     bool writes;
     uint8_t address;
     uint32_t word;             /* of a write */
     carrystep_segment segment; /* of a segment */
+    /* of a cut: the axes that take part, one bit each, and the slot that each of them keeps */
+    uint8_t mask;
+    uint8_t slots[CARRYSTEP_MOST_AXES];
 } carrystep_request;
 
 /* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. `reason`
@@ -42,6 +46,7 @@ typedef struct {
     uint8_t address;
     uint8_t next;
     bool fault;
+    bool cut_refused; /* the last cut was refused */
     bool halted;
     bool idle;
     bool ready;

@@ -26,6 +26,26 @@ impl WideSegment {
     }
 }
 
+/// A cut: the slot of the last segment that each axis keeps, and `None` for an axis that takes no
+/// part. In all other axes, the segments behind it are dropped in one tick, or in none of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct CutSlots(pub [Option<u8>; MOST_AXES as usize]);
+
+impl CutSlots {
+    /// Bit of an axis' word: the axis takes part.
+    const NAMED: u32 = 1 << 24;
+
+    /// The words of the frame, one for each axis.
+    pub(crate) fn words(&self) -> [u32; MOST_AXES as usize] {
+        self.0.map(|slot| slot.map_or(0, |slot| Self::NAMED | u32::from(slot)))
+    }
+
+    /// The slots in these words.
+    pub(crate) fn of_words(words: [u32; MOST_AXES as usize]) -> Self {
+        Self(words.map(|word| (word >> 24 != 0).then_some(word as u8 & 0x1f)))
+    }
+}
+
 /// One command of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Command {

@@ -1,11 +1,11 @@
 //! Requests and answers, and their conversion to and from the bytes of a frame.
 
-use crate::command::{Segment, WideSegment};
+use crate::command::{CutSlots, Segment, WideSegment};
 use crate::registers::{
     self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
 };
 use crate::registers::{
-    AXES_AT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS, SEGMENTS, SEGMENTS_AXIS_WORDS,
+    AXES_AT, CUT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS, SEGMENTS, SEGMENTS_AXIS_WORDS,
     SEGMENTS_HEAD_WORDS, SESSION_BYTES,
 };
 use core::fmt;
@@ -53,6 +53,8 @@ pub enum Body {
     },
     /// Appends a segment to the queue of each of several axes.
     Segments(WideSegment),
+    /// Drops the segments behind the named ones.
+    Cut(CutSlots),
 }
 
 impl Body {
@@ -63,6 +65,7 @@ impl Body {
             Self::Write { address, .. } => address | WRITE,
             Self::Segment { axis, .. } => WRITE | of_axis(SEGMENT, axis),
             Self::Segments(_) => WRITE | SEGMENTS,
+            Self::Cut(_) => WRITE | CUT,
         }
     }
 
@@ -76,7 +79,7 @@ impl Body {
         match *self {
             Self::Segment { axis, .. } => 1 << (axis & (MOST_AXES - 1)),
             Self::Segments(wide) => wide.mask,
-            Self::Read { .. } | Self::Write { .. } => 0,
+            Self::Read { .. } | Self::Write { .. } | Self::Cut(_) => 0,
         }
     }
 }
@@ -152,6 +155,9 @@ impl Request {
                 wide.axes().for_each(|(_, cubic)| frame.put_cubic(cubic));
                 frame.put(&u32::from(wide.last).to_le_bytes());
             }
+            Body::Cut(slots) => {
+                slots.words().iter().for_each(|word| frame.put(&word.to_le_bytes()));
+            }
         }
         let crc = CRC.checksum(frame.as_slice());
         frame.put(&crc.to_le_bytes());
@@ -180,6 +186,7 @@ impl Request {
                 SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * axes + 1
             }
             _ if axis_of_segment(address).is_some() => SEGMENT_FRAME_WORDS,
+            _ if address == WRITE | CUT => MOST_AXES.into(),
             _ => 1,
         };
         if words.len() != 4 * expected || matches!(session.len(), 1) {
@@ -212,6 +219,9 @@ impl Request {
                 }
                 Body::Segments(wide)
             }
+            None if address == WRITE | CUT => {
+                Body::Cut(CutSlots::of_words(core::array::from_fn(word)))
+            }
             None if address < WRITE | SEGMENT => {
                 Body::Write { address: address & !WRITE, word: word(0) }
             }
@@ -233,6 +243,8 @@ pub enum Refusal {
     Session,
     /// The request names an axis that has hit the source of its seek, and the seek is not ended.
     SeekEnded,
+    /// A segment that a CUT names neither waits nor runs any more: nothing was dropped.
+    Cut,
     /// A reason that this version does not know, by its number.
     Other(u8),
 }
@@ -246,6 +258,7 @@ impl Refusal {
             map::REASON_BUSY => Some(Self::Busy),
             map::REASON_SESSION => Some(Self::Session),
             map::REASON_SEEK_ENDED => Some(Self::SeekEnded),
+            map::REASON_CUT => Some(Self::Cut),
             other => Some(Self::Other(other)),
         }
     }
@@ -257,6 +270,7 @@ impl Refusal {
             Self::Busy => map::REASON_BUSY,
             Self::Session => map::REASON_SESSION,
             Self::SeekEnded => map::REASON_SEEK_ENDED,
+            Self::Cut => map::REASON_CUT,
             Self::Other(number) => number,
         }
     }
@@ -279,6 +293,8 @@ pub struct Answer {
     pub next: u8,
     /// A stop is in force.
     pub fault: bool,
+    /// The last CUT was refused.
+    pub cut_refused: bool,
     /// The stop is over: no axis moves any more.
     pub halted: bool,
     /// All axes have finished and no start is armed.
@@ -317,6 +333,7 @@ impl Answer {
             address: map::address(bytes),
             next: map::next(bytes),
             fault: map::fault(bytes),
+            cut_refused: map::cut_refused(bytes),
             halted: map::halted(bytes),
             idle: map::idle(bytes),
             ready: map::ready(bytes),

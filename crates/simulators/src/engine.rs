@@ -171,7 +171,7 @@ impl<'a> EngineHost<'a> {
     /// A host that keeps the queues of planned moves full, and restarts the watchdog in every
     /// cycle.
     pub fn feeding(build: &EngineBuild, program: &'a dyn Commands) -> Self {
-        let acts = Box::new(feed::Acts::new(program.commands()));
+        let acts = Box::new(feed::Acts::new(program.commands(), build.queue));
         Self::doing(build, acts, Events::new(), true)
     }
 

@@ -4,7 +4,7 @@
 
 use super::{
     EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
-    Outputs, check_pins, check_schedule,
+    Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
@@ -26,6 +26,9 @@ pub struct EngineBuild {
     pub guard: Guard,
     /// The outputs that change with the motion.
     pub outputs: Outputs,
+    /// Number of segments that the queue of an axis holds besides the one that runs, one of
+    /// [`QUEUE_DEPTHS`].
+    pub queue: usize,
 }
 
 /// Settings of the guard: what it watches, and how it stops the axes.
@@ -132,13 +135,19 @@ impl Guard {
 }
 
 impl EngineBuild {
-    /// An engine with these parameters and the smallest guard, without outputs; every axis ramps down with `stop`,
-    /// 2^-64 step per tick^2.
+    /// An engine with these parameters, the smallest guard and the shortest queues, without outputs;
+    /// every axis ramps down with `stop`, 2^-64 step per tick^2.
     pub fn minimal(build: &Build, stop: u64) -> Self {
         let Build { timebase, phase, pins } = build;
         let guard = Guard::minimal(vec![stop; pins.len()]);
         let outputs = Outputs::default();
-        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard, outputs }
+        let queue = QUEUE_DEPTHS[0];
+        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard, outputs, queue }
+    }
+
+    /// Number of slots of an axis in memory: those of its queue, and that of the running segment.
+    pub const fn slots(&self) -> usize {
+        self.queue + 1
     }
 
     /// Number of axes.
@@ -183,6 +192,9 @@ impl EngineBuild {
         }
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
+        }
+        if !QUEUE_DEPTHS.contains(&self.queue) {
+            return Err(EngineError::Queue(self.queue));
         }
         if guard.stop.len() != axes {
             return Err(EngineError::StopCount { axes, found: guard.stop.len() });
@@ -241,6 +253,8 @@ mod tests {
         assert!(said.starts_with("a latch of 17 looks"), "{said}");
         let said = refusal(|build| build.outputs.pwm_divider = 257);
         assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
+        let said = refusal(|build| build.queue = 8);
+        assert_eq!(said, "a queue of 8 segments: 7, 15 and 31 can be built");
         assert!(
             refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
         );

@@ -107,6 +107,9 @@ pub enum EngineError {
         "a PWM of {0} clocks for each of its {PWM_STEPS} steps: 1 to {MAX_PWM_DIVIDER} can be counted"
     )]
     PwmDivider(u32),
+    /// No queue of this depth can be built.
+    #[error("a queue of {0} segments: 7, 15 and 31 can be built")]
+    Queue(usize),
     /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
     /// one tick.
     #[error(

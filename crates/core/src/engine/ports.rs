@@ -60,7 +60,7 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("refreshed", BIT, Peer::Host, "all live words of this tick have been output"),
     output(
         "room",
-        Width::Bits(3),
+        Width::Bits(5),
         Peer::Host,
         "segments for which the queue of `put_axis` has room",
     )

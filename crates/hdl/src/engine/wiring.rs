@@ -15,7 +15,7 @@
 use super::Engine;
 use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
-    MASK_OF_SLOT, PUT_NAMES, PUT_NUMBER, PUT_SLOT, SLOT_LOW,
+    MASK_OF_SLOT, PUT_NAMES, PUT_NUMBER, PUT_SLOT,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -63,7 +63,7 @@ impl<const N: usize> Logic for Engine<N> {
                     & self.is_own.val()
                     & self.names.val()
                     & !self.cut_control.checks.val()));
-        self.room.next = self.queue.room.val().get_bits::<3>(SLOT_LOW);
+        self.room.next = self.queue.room.val();
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
         self.taken.d.next = self.taken.q.val() & !self.time_slot.beat.val().get_bit(BEAT_WRITE_PUT);

@@ -28,7 +28,7 @@ mod strobe;
 mod switches;
 
 use crate::parts::shaper;
-use axis_model::{AxisModel, Queued, SLOTS, Tick};
+use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put};
 use cut::Cut;
@@ -79,6 +79,7 @@ impl Motion {
             AxisModel::new(
                 build.phase.start_value(),
                 *stop,
+                build.slots(),
                 shaper::ShaperState::at_configuration(pins),
             )
         };
@@ -280,7 +281,7 @@ impl Motion {
     fn put(&mut self, put: Put) -> bool {
         let axis_model = &mut self.axis_models[usize::from(put.axis)];
         if put.word & CUT_WORD != 0 {
-            axis_model.named = Some((put.data % SLOTS as u32) as u8);
+            axis_model.named = Some((put.data % axis_model.slots as u32) as u8);
             return true;
         }
         self.rest = 0;

@@ -3,13 +3,14 @@
 //! of its queue. The commands are read as far ahead as this order needs.
 //!
 //! ```text
-//! x  1 2 3 4 5 6 7    8    9        10       there is room for segment k when segment k - 7 begins
+//! x  1 2 3 4 5 6 7    8    9        10       a queue of 7: there is room for segment k when segment
+//!                                            k - 7 begins
 //! y  1 2 3 4 5 6 7        8     9
 //!                  ^ start
 //! ```
 
 use super::{Act, acts_of, puts};
-use carrystep_core::engine::{Put, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{Put, SEGMENT_WORDS};
 use carrystep_core::{Command, Segment};
 use std::collections::{BTreeMap, VecDeque};
 
@@ -30,7 +31,7 @@ struct Due {
 struct AxisFeed {
     /// Number of segments.
     count: u64,
-    /// The ticks at which the last of them begin, at most [`QUEUE`].
+    /// The ticks at which the last of them begin, as many as the queue holds.
     begins: VecDeque<u64>,
     end: u64,
     /// Time at which there was room for the last of them.
@@ -44,6 +45,8 @@ struct AxisFeed {
 pub(super) struct Acts<'a> {
     commands: Box<dyn Iterator<Item = Command> + 'a>,
     axis_feeds: [AxisFeed; 8],
+    /// Number of segments that the queue of an axis holds.
+    queue: usize,
     /// The tick at which the last move that was read begins, plus one.
     started: u64,
     started_before: bool,
@@ -57,10 +60,11 @@ pub(super) struct Acts<'a> {
 }
 
 impl<'a> Acts<'a> {
-    pub(super) fn new(commands: Box<dyn Iterator<Item = Command> + 'a>) -> Self {
+    pub(super) fn new(commands: Box<dyn Iterator<Item = Command> + 'a>, queue: usize) -> Self {
         Self {
             commands,
             axis_feeds: Default::default(),
+            queue,
             started: 0,
             started_before: false,
             read: 0,
@@ -96,7 +100,7 @@ impl<'a> Acts<'a> {
         if let Command::Segment { axis, segment } = command {
             let axis_feed = &mut self.axis_feeds[usize::from(*axis) % 8];
             let place = axis_feed.count;
-            if axis_feed.begins.len() == QUEUE {
+            if axis_feed.begins.len() == self.queue {
                 axis_feed.room = axis_feed.begins.pop_front().map_or(0, |begin| begin + 1);
             }
             axis_feed.count += 1;
@@ -210,14 +214,14 @@ mod tests {
     #[test]
     fn queues_are_filled_before_the_start_in_order() {
         let program = program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]);
-        let acts: Vec<Act> = Acts::new(Box::new(program.into_iter())).collect();
+        let acts: Vec<Act> = Acts::new(Box::new(program.into_iter()), 7).collect();
         let start = acts.iter().position(|act| matches!(act, Act::Start(_))).unwrap();
         let commits = |acts: &[Act], of: u8| {
             acts.iter()
                 .filter(|act| matches!(act, Act::Put(put) if put.axis == of && put.word == 7))
                 .count()
         };
-        assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (QUEUE, 2));
+        assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (7, 2));
         assert_eq!((commits(&acts, 0), commits(&acts, 1)), (10, 2));
         assert_eq!(acts.iter().filter(|act| matches!(act, Act::Start(0b11))).count(), 2);
     }
@@ -230,7 +234,7 @@ mod tests {
         let read = std::cell::Cell::new(0);
         let commands = program.iter().copied().inspect(|_| read.set(read.get() + 1));
         let mut sent = 0;
-        for act in Acts::new(Box::new(commands)) {
+        for act in Acts::new(Box::new(commands), 7) {
             sent += usize::from(!matches!(act, Act::Put(put) if put.word != 7));
             assert!(read.get() <= sent + 10 * 42, "{} read, {sent} sent", read.get());
         }

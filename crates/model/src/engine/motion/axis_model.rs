@@ -6,11 +6,8 @@ use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Commit, Guard, QUEUE, SEGMENT_WORDS, SWITCH_ROWS};
+use carrystep_core::engine::{Cause, Commit, Guard, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
-
-/// Number of slots of an axis: those of its queue, and that of the running segment.
-pub(super) const SLOTS: usize = QUEUE + 1;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,8 +43,10 @@ pub(super) struct AxisModel {
     pub(super) stop: i64,
     pub(super) seek: AxisSeek,
     pub(super) queue: VecDeque<Queued>,
-    /// Number of segments that have left the queue, modulo [`SLOTS`]: the slot of the running
-    /// segment, or of the last one that ran.
+    /// Number of slots: those of the queue, and that of the running segment.
+    pub(super) slots: usize,
+    /// Number of segments that have left the queue, modulo the number of slots: the slot of the
+    /// running segment, or of the last one that ran.
     pub(super) slot: u8,
     /// The commit of the segment with which the axis begins this tick, if it changes outputs.
     pub(super) begun: Option<Commit>,
@@ -75,7 +74,7 @@ pub(super) struct Tick<'a> {
 }
 
 impl AxisModel {
-    pub(super) fn new(p: u64, stop: u64, shaper: shaper::ShaperState) -> Self {
+    pub(super) fn new(p: u64, stop: u64, slots: usize, shaper: shaper::ShaperState) -> Self {
         Self {
             p,
             running: None,
@@ -84,6 +83,7 @@ impl AxisModel {
             stop: stop.cast_signed(),
             seek: AxisSeek::default(),
             queue: VecDeque::new(),
+            slots,
             slot: 0,
             begun: None,
             fresh: None,
@@ -99,7 +99,7 @@ impl AxisModel {
 
     /// Number of segments for which the queue has room.
     pub(super) fn room(&self) -> u8 {
-        (QUEUE - self.queue.len()) as u8
+        (self.slots - 1 - self.queue.len()) as u8
     }
 
     /// Takes the first segment of the queue, if there is one, as the running segment.
@@ -117,7 +117,7 @@ impl AxisModel {
 
     /// Counts segments that leave the queue.
     fn pass_slots(&mut self, segments: usize) {
-        self.slot = ((usize::from(self.slot) + segments) % SLOTS) as u8;
+        self.slot = ((usize::from(self.slot) + segments) % self.slots) as u8;
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.

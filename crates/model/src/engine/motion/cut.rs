@@ -10,7 +10,7 @@
 //! ```
 
 use super::Motion;
-use super::axis_model::{AxisModel, SLOTS};
+use super::axis_model::AxisModel;
 use carrystep_core::engine::EngineInputs;
 
 /// The registers of the cut, but for the names.
@@ -70,7 +70,7 @@ impl Motion {
 impl AxisModel {
     /// Number of slots from that of the running segment to this one.
     fn distance(&self, slot: u8) -> usize {
-        (usize::from(slot) + SLOTS - usize::from(self.slot)) % SLOTS
+        (usize::from(slot) + self.slots - usize::from(self.slot)) % self.slots
     }
 
     /// True if the segment in this slot still waits or runs after this tick, and no segment is partly

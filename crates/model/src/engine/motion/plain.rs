@@ -14,7 +14,7 @@ use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
 use carrystep_core::engine::{
-    CUT_WORD, EngineInputs, LimitWiring, PUT_BEAT, QUEUE, SWITCH_ROWS, TIME_SLOT_CLOCKS,
+    CUT_WORD, EngineInputs, LimitWiring, PUT_BEAT, SWITCH_ROWS, TIME_SLOT_CLOCKS,
 };
 
 /// Strobes before the first event, and ticks before the first tick with an event that comes before
@@ -110,7 +110,7 @@ impl Motion {
     fn clocks_to_put(&self, inputs: &EngineInputs) -> u64 {
         let Some(put) = inputs.put.filter(|_| self.stop.fault.is_none()) else { return u64::MAX };
         let names = put.word & CUT_WORD != 0;
-        if !names && self.axis_models[usize::from(put.axis)].queue.len() >= QUEUE {
+        if !names && self.axis_models[usize::from(put.axis)].room() == 0 {
             return u64::MAX;
         }
         let beat = if names { LAST_BEAT } else { PUT_BEAT };
