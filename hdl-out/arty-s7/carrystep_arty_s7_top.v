@@ -83,7 +83,7 @@ module carrystep_arty_s7_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h72586402e1035134),
+        .BUILD_ID(64'h9fc0e665889ab39f),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -190,6 +190,7 @@ module carrystep_arty_s7_top (
         .OUTPUTS(32'd0),
         .OUTPUTS_OFF_AT_RAMPS(32'd0),
         .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -238,8 +239,8 @@ module carrystep_arty_s7_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),

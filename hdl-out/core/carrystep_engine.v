@@ -365,7 +365,10 @@ module carrystep_lasts (
 endmodule
 
 // The segment queue of each axis: which segment runs, and which segments wait.
-module carrystep_queue (
+module carrystep_queue #(
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0
+) (
     // The clock.
     input  wire         clock,
     // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
@@ -452,6 +455,7 @@ module carrystep_queue (
     // `next_counts` of the time slot before of this axis, at first 0.
     output wire   [6:0] counts
 );
+    localparam HAS_CUTS = CUTS[0];
     localparam [4:0] SLOTS = 5'd7;
     localparam [5:0] BEYOND = 6'd56;
     localparam [4:0] ONE_SLOT = 5'd1;
@@ -501,7 +505,8 @@ module carrystep_queue (
     wire [30:0] word = control_read_data;
     wire [4:0] old_live = word[4:0] & SLOTS;
     wire [4:0] target = word[29:25] & SLOTS;
-    wire ends_here = cuts & word[30];
+    wire is_named = word[30] & (HAS_CUTS != 1'b0);
+    wire ends_here = cuts & is_named;
     wire [4:0] fresh_now = (newest + ONE_SLOT) & SLOTS;
     wire [4:0] space = (live_now + ~newest) & SLOTS;
     wire runs = (word[10] | starts) & !halted;
@@ -518,7 +523,7 @@ module carrystep_queue (
     wire waits = ((span & BEYOND) == 6'd0) & !is_live & !empties & !clear;
     wire keeps = waits | (is_live & stays & !follows);
     wire takes_word = take & !put_word[3];
-    wire names = take & put_word[3];
+    wire names = take & put_word[3] & (HAS_CUTS != 1'b0);
     wire [2:0] due = word[16:14];
     wire fits_in = put_word[2:0] == due;
 
@@ -538,7 +543,7 @@ module carrystep_queue (
     assign advances = steps_on;
     assign too_fast = runs & (word[11] | least);
     assign dry = moves & ended & !last_one & none & !ramp;
-    assign misses = checks & word[30] & (!keeps | (next_due != 3'd0));
+    assign misses = checks & is_named & (!keeps | (next_due != 3'd0));
     assign met = word[17];
     assign counts = word[24:18];
 
@@ -638,7 +643,7 @@ module carrystep_queue (
     always @(*) begin
         next_target = target;
         next_named = NO;
-        if (word[30] & !closes & !clear) begin
+        if (is_named & !closes & !clear) begin
             next_named = NAMED_BIT;
         end
         if (names) begin
@@ -801,7 +806,10 @@ module carrystep_step_counts (
 endmodule
 
 // The stages of a cut, which drops the segments behind a named one in several axes.
-module carrystep_cut_control (
+module carrystep_cut_control #(
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0
+) (
     // The clock.
     input  wire         clock,
     // Asserted in the last clock of a tick.
@@ -825,6 +833,13 @@ module carrystep_cut_control (
     // The last cut was refused.
     output wire         refused
 );
+    localparam EXIST = CUTS[0];
+
+    generate
+        if (CUTS > 32'd1) begin : cuts_out_of_range
+            carrystep_error_cuts_out_of_range error ();
+        end
+    endgenerate
 
     reg asked = 1'b0;
     reg checking = 1'b0;
@@ -836,7 +851,7 @@ module carrystep_cut_control (
     assign cuts = closing & !denied;
     assign closes = closing;
     assign busy = asked | checking;
-    assign refused = denied;
+    assign refused = denied | (EXIST == 1'b0);
 
     always @(posedge clock) begin
         if (beat[12] & misses) begin
@@ -851,7 +866,7 @@ module carrystep_cut_control (
                 denied <= missed;
             end
         end
-        if (request) begin
+        if (request & (EXIST != 1'b0)) begin
             asked <= 1'b1;
         end
         if (resetting) begin
@@ -2957,6 +2972,8 @@ module carrystep_engine #(
     parameter [31:0] OUTPUTS_OFF_AT_RAMPS = 32'd0,
     // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
     parameter [31:0] PWM_DIVIDER = 32'd0,
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0,
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
@@ -3477,7 +3494,9 @@ module carrystep_engine #(
         .q(adder_q)
     );
 
-    carrystep_queue queue (
+    carrystep_queue #(
+        .CUTS(CUTS)
+    ) queue (
         .clock(clock),
         .beat(time_slot_beat),
         .axis(time_slot_axis),
@@ -3541,7 +3560,9 @@ module carrystep_engine #(
         .on_way(step_counts_on_way)
     );
 
-    carrystep_cut_control cut_control (
+    carrystep_cut_control #(
+        .CUTS(CUTS)
+    ) cut_control (
         .clock(clock),
         .strobe(strobe),
         .beat(time_slot_beat),

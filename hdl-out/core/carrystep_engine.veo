@@ -54,6 +54,7 @@ carrystep_engine #(
     .OUTPUTS(32'd0),
     .OUTPUTS_OFF_AT_RAMPS(32'd0),
     .PWM_DIVIDER(32'd0),
+    .CUTS(32'd0),
     .EVENT_MEMORY("block")
 ) engine (
     .clock(),             // input

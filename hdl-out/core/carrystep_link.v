@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     e4ab743aaa08bc9c
+// Build id     5db5a34c719955df
 
 `default_nettype none
 
@@ -279,26 +279,26 @@ module carrystep_instructions (
         words[231] = 16'h801f;
         words[232] = 16'h1420;
         words[233] = 16'h215f;
-        words[234] = 16'h2b5f;
-        words[235] = 16'h8215;
-        words[236] = 16'h1001;
-        words[237] = 16'h9102;
-        words[238] = 16'h1004;
-        words[239] = 16'h9102;
-        words[240] = 16'h1004;
-        words[241] = 16'h9102;
-        words[242] = 16'h1004;
-        words[243] = 16'h9102;
-        words[244] = 16'h1004;
-        words[245] = 16'h22f8;
-        words[246] = 16'h8300;
-        words[247] = 16'h1820;
-        words[248] = 16'h8300;
-        words[249] = 16'h3eed;
-        words[250] = 16'h1340;
+        words[234] = 16'h8215;
+        words[235] = 16'h1001;
+        words[236] = 16'h9102;
+        words[237] = 16'h1004;
+        words[238] = 16'h9102;
+        words[239] = 16'h1004;
+        words[240] = 16'h9102;
+        words[241] = 16'h1004;
+        words[242] = 16'h9102;
+        words[243] = 16'h1004;
+        words[244] = 16'h22f7;
+        words[245] = 16'h8300;
+        words[246] = 16'h1820;
+        words[247] = 16'h8300;
+        words[248] = 16'h3eec;
+        words[249] = 16'h1340;
+        words[250] = 16'h1020;
         words[251] = 16'h1020;
         words[252] = 16'h1020;
-        words[253] = 16'h1020;
+        words[253] = 16'h2b5f;
         words[254] = 16'h8700;
         words[255] = 16'hc222;
         words[256] = 16'h32a3;
@@ -1180,7 +1180,7 @@ endmodule
 // Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'he4ab743aaa08bc9c,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1234,7 +1234,7 @@ endmodule
 // What the host can read: constants of the build, and the last words of state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'he4ab743aaa08bc9c,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1310,7 +1310,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'he4ab743aaa08bc9c,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1

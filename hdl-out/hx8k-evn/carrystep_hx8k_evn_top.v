@@ -83,7 +83,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h4af4aa32ddeee77b),
+        .BUILD_ID(64'h416c09920c000333),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),
@@ -190,6 +190,7 @@ module carrystep_hx8k_evn_top (
         .OUTPUTS(32'd0),
         .OUTPUTS_OFF_AT_RAMPS(32'd0),
         .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -238,8 +239,8 @@ module carrystep_hx8k_evn_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),

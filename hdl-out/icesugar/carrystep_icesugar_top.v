@@ -83,7 +83,7 @@ module carrystep_icesugar_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h227b92d6c5ee05aa),
+        .BUILD_ID(64'he804827a10178d1c),
         .CLOCK_HZ(32'h1c9c380),
         .TICK_NS(32'd3200),
         .ROUND_TICKS(32'd8),
@@ -190,6 +190,7 @@ module carrystep_icesugar_top (
         .OUTPUTS(32'd0),
         .OUTPUTS_OFF_AT_RAMPS(32'd0),
         .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -238,8 +239,8 @@ module carrystep_icesugar_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),

@@ -98,7 +98,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'hb5f6f13745c843a5),
+        .BUILD_ID(64'h2062a7b965b94182),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -205,6 +205,7 @@ module carrystep_mojo_v3_top (
         .OUTPUTS(32'd0),
         .OUTPUTS_OFF_AT_RAMPS(32'd0),
         .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -253,8 +254,8 @@ module carrystep_mojo_v3_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),

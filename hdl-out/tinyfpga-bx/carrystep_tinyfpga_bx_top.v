@@ -84,7 +84,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h4e6fc1ccd0dcef12),
+        .BUILD_ID(64'hd6340ffe14a954ae),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -191,6 +191,7 @@ module carrystep_tinyfpga_bx_top (
         .OUTPUTS(32'd0),
         .OUTPUTS_OFF_AT_RAMPS(32'd0),
         .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("block")
     ) engine (
         .put_valid(put_valid),
@@ -239,8 +240,8 @@ module carrystep_tinyfpga_bx_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),

@@ -267,6 +267,7 @@ pub fn build(
     let low = limits == LimitWiring::Pair;
     let all = InputRow { exist: all(axes), low: 0 };
     build.queue = QUEUE_DEPTHS[axes % QUEUE_DEPTHS.len()];
+    build.cuts = true;
     // A period of the PWM has fewer clocks than a program.
     build.outputs = Outputs { exist: 0xff, pwm_divider: 2, off_at_ramps: low };
     build.guard = Guard {
@@ -312,6 +313,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         latch: Some(Latch { low: true, looks: 1 }),
         ..fourth.guard
     };
+    fourth.cuts = false;
     fourth.outputs = Outputs { exist: 0x00, pwm_divider: 0, off_at_ramps: true };
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();

@@ -3,8 +3,8 @@
 
 use carrystep_core::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
 use carrystep_core::engine::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT, QUEUE_DEPTHS,
-    TIME_SLOT_CLOCKS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT,
+    QUEUE_DEPTHS, TIME_SLOT_CLOCKS,
 };
 use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
@@ -276,7 +276,10 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
                 "a read has {asked} to {owner_asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
             ),
             format!("has room, 0 to `QUEUE_DEPTH`"),
-            format!("(`QUEUE_DEPTH`, {}, {} or {})", QUEUE_DEPTHS[0], QUEUE_DEPTHS[1], QUEUE_DEPTHS[2]),
+            format!(
+                "(`QUEUE_DEPTH`, {}, {} or {})",
+                QUEUE_DEPTHS[0], QUEUE_DEPTHS[1], QUEUE_DEPTHS[2]
+            ),
         ],
     );
     // Ten bits a byte on a UART.

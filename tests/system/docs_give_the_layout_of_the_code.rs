@@ -182,7 +182,10 @@ fn engine_page_counts_the_block_rams() {
     let (address, bits) = memory("store.rs", "segments");
     let address = address - 1;
     let (wide, deep) = (bits / RAM.1, (1 << address) / RAM.0);
-    assert_eq!(1 << address, MAX_AXES as u32 * (QUEUE_DEPTHS[0] as u32 + 1) * (SEGMENT_WORDS as u32 + 1));
+    assert_eq!(
+        1 << address,
+        MAX_AXES as u32 * (QUEUE_DEPTHS[0] as u32 + 1) * (SEGMENT_WORDS as u32 + 1)
+    );
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),

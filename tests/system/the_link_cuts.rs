@@ -22,9 +22,13 @@ const STEPS: i32 = 500;
 const NAMED: u32 = 1 << 24;
 
 fn bench(queue: usize) -> LinkBench {
+    of_build(|build| EngineBuild { queue, cuts: true, ..build })
+}
+
+fn of_build(change: impl Fn(EngineBuild) -> EngineBuild) -> LinkBench {
     let timebase = Timebase::new(48_000_000, 2000, 16).expect("a timebase");
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-    let build = EngineBuild { queue, ..EngineBuild::minimal(&build, 1 << 54) };
+    let build = change(EngineBuild::minimal(&build, 1 << 54));
     LinkBench::uart(&build, Uart::new(48_000_000, 3_000_000).expect("a UART"))
 }
 
@@ -182,4 +186,17 @@ fn a_cut_of_an_axis_that_does_not_exist_is_a_fault() {
     let before = positions(&mut bench);
     host.run(&mut bench, 0b111);
     assert_eq!(positions(&mut bench), before.map(|position| position + STEPS));
+}
+
+#[test]
+fn a_build_without_cuts_refuses_each() {
+    let mut bench = of_build(|build| build);
+    let (mut host, first) = running(&mut bench, 7);
+    for words in [slots(&[(0, first)]), [0; 8]] {
+        let said = bench.ask(&host.frame(0, CUT, &words));
+        assert_eq!((said.reason, said.next, said.cut_refused), (REFUSED, host.next, true));
+    }
+    host.write(&mut bench, SEGMENTS, &segments(0b111, TICKS, 0, true));
+    while !bench.status().idle {}
+    assert_eq!(positions(&mut bench), [5 * STEPS; 3]);
 }

@@ -52,6 +52,8 @@ pub struct Machine {
     pub outputs: Outputs,
     /// Number of segments that the queue of an axis holds besides the one that runs.
     pub queue: usize,
+    /// Whether a host can cut queues.
+    pub cuts: bool,
     /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
     /// together.
     pub home_order: Vec<Vec<usize>>,
@@ -111,6 +113,7 @@ impl Machine {
             guard,
             outputs: self.outputs,
             queue: self.queue,
+            cuts: self.cuts,
         }
     }
 
@@ -195,6 +198,8 @@ pub(crate) struct RawMachine {
     #[serde(default)]
     link: RawLink,
     queue_depth: Option<Spanned<usize>>,
+    #[serde(default)]
+    cuts: bool,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
@@ -250,6 +255,7 @@ impl RawMachine {
             guard,
             outputs: self.outputs.check(source)?,
             queue: queue::check(source, self.queue_depth.as_ref())?,
+            cuts: self.cuts,
             home_order,
             baud,
             spi,

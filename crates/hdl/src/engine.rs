@@ -304,7 +304,8 @@ impl<const N: usize> Engine<N> {
         Ok(Self {
             time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop, slots),
-            queue: Queue::new(slots),
+            queue: Queue::new(slots, build.cuts),
+            cut_control: CutControl::new(build.cuts),
             readout: Readout::new(slots),
             event_wheel: EventWheel::new(&build.timebase),
             output_control: OutputControl::new(&build.outputs, slots),

@@ -165,6 +165,9 @@ pub const PWM_DIVIDER: Described = Described::new(
     "0 to 256",
     "length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM",
 );
+/// Whether cuts exist.
+pub const CUTS: Described =
+    Described::new("CUTS", "0 or 1", "cuts: 0 each is refused, 1 they exist");
 /// The kind of memory in which the event wheel keeps its events. The wheel writes single bits of a
 /// word, for which a block RAM needs a write mask.
 pub const EVENT_MEMORY: Described = Described::new(
@@ -192,7 +195,7 @@ pub const BIT_CLOCKS: Described = Described::new(
 );
 
 /// All parameters, in the order in which a module lists them.
-pub const PARAMETERS: [Described; 29] = [
+pub const PARAMETERS: [Described; 30] = [
     BUILD_ID,
     CLOCK_HZ,
     TICK_NS,
@@ -221,6 +224,7 @@ pub const PARAMETERS: [Described; 29] = [
     OUTPUTS,
     OUTPUTS_OFF_AT_RAMPS,
     PWM_DIVIDER,
+    CUTS,
     EVENT_MEMORY,
 ];
 

@@ -217,7 +217,7 @@
 #define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the request was a write; a read of the same address has 0 here */
 #define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
-/* the last CUT was refused; 0 if there was none */
+/* the last CUT was refused; always 1 in a build without cuts */
 #define CARRYSTEP_ANSWER_CUT_REFUSED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
 /* no axis moves, no queue holds a segment, and no start is armed */
 #define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 6 & 1u))

@@ -223,7 +223,7 @@ pub const fn written(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 3 & 1 == 1
 }
 
-/// Of an answer: the last CUT was refused; 0 if there was none.
+/// Of an answer: the last CUT was refused; always 1 in a build without cuts.
 pub const fn cut_refused(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 4 & 1 == 1
 }

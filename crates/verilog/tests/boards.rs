@@ -8,9 +8,10 @@ use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped
 use std::path::Path;
 use std::process::Command;
 
-/// All bits of a board's ports.
+/// All bits of a board's ports that have pins of their own.
 fn ports(board: &Board) -> Vec<String> {
-    board.wires.iter().map(|wire| wire.port.clone()).collect()
+    let own = board.wires.iter().filter(|wire| !wire.beside_uart);
+    own.map(|wire| wire.port.clone()).collect()
 }
 
 /// The files of a top level with these ports.
@@ -34,22 +35,24 @@ fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> 
 fn top(board: &Board) -> String {
     let bits = |way: fn(Way) -> bool| {
         let names = PORTS.iter().filter(move |port| way(port.way));
-        let counted = names.map(|port| (port.name, port.per_axis, board.bits(port.name)));
+        let own =
+            |name| ports(board).iter().filter(|port| port.split('[').next() == Some(name)).count();
+        let counted = names.map(|port| (port.name, port.is_list, own(port.name)));
         counted.filter(|(_, _, bits)| *bits > 0).collect::<Vec<_>>()
     };
     let (inputs, outputs) = (bits(|way| way != Way::Out), bits(|way| way == Way::Out));
     let range =
-        |per_axis, bits: usize| if per_axis { format!("[{}:0] ", bits - 1) } else { String::new() };
+        |is_list, bits: usize| if is_list { format!("[{}:0] ", bits - 1) } else { String::new() };
     let mut list = vec![format!("input wire {OSCILLATOR}")];
     list.extend(
         inputs
             .iter()
-            .map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))),
+            .map(|(name, is_list, bits)| format!("input wire {}{name}", range(*is_list, *bits))),
     );
     list.extend(
         outputs
             .iter()
-            .map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))),
+            .map(|(name, is_list, bits)| format!("output wire {}{name}", range(*is_list, *bits))),
     );
     list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
     list.extend(board.gate.iter().map(|gate| format!("input wire {}", gate.port)));

@@ -29,6 +29,8 @@ pub struct EngineBuild {
     /// Number of segments that the queue of an axis holds besides the one that runs, one of
     /// [`QUEUE_DEPTHS`].
     pub queue: usize,
+    /// Whether a host can cut queues.
+    pub cuts: bool,
 }
 
 /// Settings of the guard: what it watches, and how it stops the axes.
@@ -135,14 +137,22 @@ impl Guard {
 }
 
 impl EngineBuild {
-    /// An engine with these parameters, the smallest guard and the shortest queues, without outputs;
-    /// every axis ramps down with `stop`, 2^-64 step per tick^2.
+    /// An engine with these parameters, the smallest guard and the shortest queues, without outputs
+    /// and cuts; every axis ramps down with `stop`, 2^-64 step per tick^2.
     pub fn minimal(build: &Build, stop: u64) -> Self {
         let Build { timebase, phase, pins } = build;
         let guard = Guard::minimal(vec![stop; pins.len()]);
         let outputs = Outputs::default();
         let queue = QUEUE_DEPTHS[0];
-        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard, outputs, queue }
+        Self {
+            timebase: *timebase,
+            phase: *phase,
+            pins: pins.to_vec(),
+            guard,
+            outputs,
+            queue,
+            cuts: false,
+        }
     }
 
     /// Number of slots of an axis in memory: those of its queue, and that of the running segment.

@@ -14,6 +14,7 @@ pub(super) fn check(
         return Ok(*depth.as_ref());
     }
     let message = format!("queue_depth = {}: it is 7, 15 or 31", depth.as_ref());
-    Err(InputError::at(source, depth.span(), message)
-        .help("it is the number of segments that can wait for an axis; deeper queues need more block RAM"))
+    Err(InputError::at(source, depth.span(), message).help(
+        "it is the number of segments that can wait for an axis; deeper queues need more block RAM",
+    ))
 }

@@ -15,9 +15,12 @@
 //!
 //! Interface: [`super::queue`] keeps the names and ends the queues.
 //!
-//! Cost: five flip-flops, and some 25 cells in the queue.
+//! Cost: five flip-flops, and some 25 cells in the queue. A build without cuts has none of them, and
+//! refuses each.
 
 use super::layout::BEAT_LAST;
+use crate::parameters::CUTS;
+use crate::primitives::constant::{Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
@@ -52,6 +55,20 @@ pub struct CutControl {
     closing: Register<Bit>,  // `closes`
     missed: Register<Bit>,   // an axis of this tick has no named segment any more
     denied: Register<Bit>,   // `refused`
+    exist: Parameter<1>,
+    cuts_out_of_range: ParameterRefusal,
+}
+
+impl CutControl {
+    /// Makes the stages of a build with cuts, or without.
+    pub fn new(cuts: bool) -> Self {
+        let cuts = CUTS.of::<32>(cuts);
+        Self {
+            exist: Parameter::of(&cuts.bits(0)),
+            cuts_out_of_range: ParameterRefusal::of(&cuts.is_outside(0, 1)),
+            ..Self::default()
+        }
+    }
 }
 
 impl Logic for CutControl {
@@ -71,7 +88,7 @@ impl Logic for CutControl {
                 self.denied.d.next = self.missed.q.val();
             }
         }
-        if self.request.val() {
+        if self.request.val() & self.exist.val().any() {
             self.asked.d.next = true;
         }
         if self.resetting.val() {
@@ -86,7 +103,7 @@ impl Logic for CutControl {
         self.closes.next = self.closing.q.val();
         self.cuts.next = self.closing.q.val() & !self.denied.q.val();
         self.busy.next = self.asked.q.val() | self.checking.q.val();
-        self.refused.next = self.denied.q.val();
+        self.refused.next = self.denied.q.val() | !self.exist.val().any();
     }
 }
 
@@ -97,6 +114,6 @@ mod tests {
 
     #[test]
     fn cut_control_synthesizes() {
-        assert_synthesizes(CutControl::default(), "carrystep_cut_control");
+        assert_synthesizes(CutControl::new(true), "carrystep_cut_control");
     }
 }

@@ -34,6 +34,7 @@ use super::layout::{
     CONTROL_MET, CONTROL_NAMED, CONTROL_NEWEST, CONTROL_RUNNING, CONTROL_TARGET, CONTROL_UNFIT,
     PUT_NAMES, PUT_NUMBER,
 };
+use crate::parameters::CUTS;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -135,8 +136,9 @@ pub struct Queue {
     live_now: Signal<Local, Word<5>>,
     newest: Signal<Local, Word<5>>,
     target: Signal<Local, Word<5>>,
-    ends_here: Signal<Local, Bit>,    // this queue is cut in this tick
-    space: Signal<Local, Word<5>>,    // `room`
+    is_named: Signal<Local, Bit>,  // the axis takes part in the next cut
+    ends_here: Signal<Local, Bit>, // this queue is cut in this tick
+    space: Signal<Local, Word<5>>, // `room`
     distance: Signal<Local, Word<5>>, // from the running slot to the named one
     span: Signal<Local, Word<6>>,
     is_live: Signal<Local, Bit>,
@@ -169,6 +171,7 @@ pub struct Queue {
     next_met: Signal<Local, Word<31>>,
     next_target: Signal<Local, Word<5>>,
     next_named: Signal<Local, Word<31>>,
+    has_cuts: Parameter<1>,
     slots: Parameter<5>,  // the greatest number of a slot
     beyond: Parameter<6>, // the bits above it
     one_slot: Literal<5, 1>,
@@ -194,11 +197,13 @@ pub struct Queue {
 }
 
 impl Queue {
-    /// Makes the queue of axes with this number of slots, 8, 16 or 32.
-    pub fn new(slots: usize) -> Self {
+    /// Makes the queue of axes with this number of slots, 8, 16 or 32, of a build with cuts or
+    /// without.
+    pub fn new(slots: usize, cuts: bool) -> Self {
         let slots = slots as u64;
         Self {
             lasts: Memory::of_few_formulas((8 * slots).ilog2() as usize, &[]),
+            has_cuts: Parameter::of(&CUTS.of::<32>(cuts).bits(0)),
             slots: Parameter::new(slots - 1),
             beyond: Parameter::new(0x3f & !(slots - 1)),
             ..Self::default()
@@ -216,7 +221,8 @@ impl Logic for Queue {
         self.word.next = self.control.read_data.val();
         self.old_live.next = self.word.val().get_bits::<5>(CONTROL_LIVE) & self.slots.val();
         self.target.next = self.word.val().get_bits::<5>(CONTROL_TARGET) & self.slots.val();
-        self.ends_here.next = self.cuts.val() & self.word.val().get_bit(CONTROL_NAMED);
+        self.is_named.next = self.word.val().get_bit(CONTROL_NAMED) & self.has_cuts.val().any();
+        self.ends_here.next = self.cuts.val() & self.is_named.val();
         self.newest.next = self.word.val().get_bits::<5>(CONTROL_NEWEST) & self.slots.val();
         if self.ends_here.val() {
             self.newest.next = self.target.val();
@@ -268,7 +274,8 @@ impl Logic for Queue {
 
         // The host's words and its commit.
         self.takes_word.next = self.take.val() & !self.put_word.val().get_bit(PUT_NAMES);
-        self.names.next = self.take.val() & self.put_word.val().get_bit(PUT_NAMES);
+        self.names.next =
+            self.take.val() & self.put_word.val().get_bit(PUT_NAMES) & self.has_cuts.val().any();
         self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
         self.fits_in.next = self.put_word.val().get_bits::<3>(PUT_NUMBER) == self.due.val();
         self.wrong.d.next = self.takes_word.val() & !self.fits_in.val();
@@ -340,7 +347,7 @@ impl Logic for Queue {
         }
         self.next_target.next = self.target.val();
         self.next_named.next = self.no.val();
-        if self.word.val().get_bit(CONTROL_NAMED) & !self.closes.val() & !self.clear.val() {
+        if self.is_named.val() & !self.closes.val() & !self.clear.val() {
             self.next_named.next = self.named_bit.val();
         }
         if self.names.val() {
@@ -348,7 +355,7 @@ impl Logic for Queue {
             self.next_named.next = self.named_bit.val();
         }
         self.misses.next = self.checks.val()
-            & self.word.val().get_bit(CONTROL_NAMED)
+            & self.is_named.val()
             & (!self.keeps.val() | self.next_due.val().any());
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
@@ -392,7 +399,7 @@ mod tests {
     #[test]
     fn queue_synthesizes() {
         for slots in [8, 32] {
-            assert_synthesizes(Queue::new(slots), &format!("carrystep_queue_{slots}"));
+            assert_synthesizes(Queue::new(slots, slots == 8), &format!("carrystep_queue_{slots}"));
         }
     }
 }

@@ -173,6 +173,15 @@ static void obey(char *words)
         put(yes(carrystep_owns(&session)));
     } else if (strcmp(verb, "seek-ended") == 0) {
         put(yes(carrystep_seek_ended(&session)));
+    } else if (strcmp(verb, "cut-refused") == 0) {
+        put(yes(carrystep_cut_refused(&session)));
+    } else if (strcmp(verb, "cut") == 0) {
+        uint8_t mask = (uint8_t)strtoul(rest, &rest, 16);
+        uint8_t slots[CARRYSTEP_MOST_AXES];
+        for (unsigned axis = 0; axis < CARRYSTEP_MOST_AXES; axis++) {
+            slots[axis] = (uint8_t)strtoul(rest, &rest, 10);
+        }
+        put(yes(carrystep_cut(&session, mask, slots)));
     } else if (strcmp(verb, "stop") == 0) {
         carrystep_stop(&session);
     } else if (strcmp(verb, "read") == 0) {

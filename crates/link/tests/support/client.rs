@@ -22,8 +22,8 @@
 
 use super::{hex, unhex};
 use carrystep_link::{
-    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Refusal, Segment,
-    Session, Timing, slip,
+    Answer, Body, BuildFacts, Command, CutSlots, Feeder, GatewareMismatch, ProgramError, Refusal,
+    Segment, Session, Timing, slip,
 };
 use std::num::NonZeroU16;
 
@@ -160,6 +160,15 @@ impl Client for RustClient {
             }
             ("owns", []) => yes(self.session.number().is_some()),
             ("seek-ended", []) => yes(self.session.seek_ended()),
+            ("cut-refused", []) => yes(self.session.cut_refused()),
+            ("cut", [mask, slots @ ..]) => {
+                let mask = hexadecimal(mask);
+                let mut named = CutSlots::default();
+                for (axis, slot) in slots.iter().enumerate() {
+                    named.0[axis] = (mask >> axis & 1 == 1).then(|| number(slot) as u8);
+                }
+                yes(self.session.cut(named).is_ok())
+            }
             ("stop", []) => {
                 self.session.stop();
                 nothing

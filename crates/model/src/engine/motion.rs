@@ -30,7 +30,9 @@ mod switches;
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use carrystep_core::engine::{
+    COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put,
+};
 use cut::Cut;
 use guard::{Stop, Supervisor};
 use latch::LatchState;
@@ -129,7 +131,7 @@ impl Motion {
         EngineOutputs {
             put_ready: free && self.takes(put_axis, names),
             cut_busy: self.cut.is_busy(),
-            cut_refused: self.cut.refused,
+            cut_refused: self.cut.refused || !self.build.cuts,
             start_ready: free
                 && strobe
                 && self.armed.is_none()
@@ -281,7 +283,8 @@ impl Motion {
     fn put(&mut self, put: Put) -> bool {
         let axis_model = &mut self.axis_models[usize::from(put.axis)];
         if put.word & CUT_WORD != 0 {
-            axis_model.named = Some((put.data % axis_model.slots as u32) as u8);
+            axis_model.named =
+                self.build.cuts.then_some((put.data % axis_model.slots as u32) as u8);
             return true;
         }
         self.rest = 0;

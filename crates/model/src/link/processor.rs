@@ -12,9 +12,9 @@ use super::crc::{CrcUnit, Told};
 use carrystep_core::engine::{CUT_WORD, EngineOutputs};
 use carrystep_core::link::Image;
 use carrystep_core::link::processor::{
-    ACTS, AND, BROKEN, CAUSE, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP,
-    CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH, PUTS, ROOM,
-    SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
+    ACTS, AND, BROKEN, CAUSE, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED,
+    CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH,
+    PUTS, ROOM, SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
 };
 use std::sync::Arc;
 

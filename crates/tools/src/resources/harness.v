@@ -4,7 +4,7 @@
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 61 + 6 * AXES;
-    localparam OUTPUTS = 75 + 5 * AXES;
+    localparam OUTPUTS = 77 + 5 * AXES;
 
     reg [INPUTS - 1:0] inputs = 0;
     always @(posedge clock) inputs <= {inputs[INPUTS - 2:0], in};
@@ -12,7 +12,8 @@ module budget_harness (input wire clock, input wire in, output reg out);
     wire [31:0] state;
     wire [1:0] state_page;
     wire [AXES - 1:0] step, dir, culprits, seeking, hits;
-    wire [2:0] state_axis, state_item, room;
+    wire [2:0] state_axis, state_item;
+    wire [4:0] room;
     wire [3:0] cause, latch_edges;
     wire [7:0] levels;
     wire pwm, cut_busy, cut_refused;

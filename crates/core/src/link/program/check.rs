@@ -3,8 +3,8 @@
 //! A request without words is a read. The length of a SEGMENTS frame follows from its mask.
 
 use super::layout::{
-    ADDRESS, ANSWERS, AXIS, BASE, BITS, FRAMES, LAST, LENGTH, MASK, REASON, RESIDUE, WORDS, WRITTEN,
-    WRITTEN_BIT, end, last_of,
+    ADDRESS, ANSWERS, AXIS, BASE, BITS, FRAMES, LAST, LENGTH, MASK, REASON, RESIDUE, WORDS,
+    WRITTEN, WRITTEN_BIT, end, last_of,
 };
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{X7, Zero};

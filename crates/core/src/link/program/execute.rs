@@ -8,7 +8,8 @@ use crate::link::processor::{
     BROKEN, CLEARING, CONTROL, HITS, KICK, STARTS, STATE, ValueSource, WAIT,
 };
 use crate::link::registers::{
-    CLEAR, CONTROL as CONTROL_REGISTER, CUT, LATCH as LATCH_REGISTER, SEEK, SEGMENT, SNAPSHOT, START,
+    CLEAR, CONTROL as CONTROL_REGISTER, CUT, LATCH as LATCH_REGISTER, SEEK, SEGMENT, SNAPSHOT,
+    START,
 };
 
 /// Number of waits during which a clear is asserted. Each of them but the first contains a strobe;

@@ -5,9 +5,7 @@
 //! ticks are copied in front of each axis' own words, where only used words are. The commit of a
 //! frame of several axes changes outputs as that of its first axis.
 
-use super::layout::{
-    ANSWERS, AXIS, BASE, BITS, COMMIT, LAST, MASK, TICKS,
-};
+use super::layout::{ANSWERS, AXIS, BASE, BITS, COMMIT, LAST, MASK, TICKS};
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{Commit, Fault, Full, X7, Zero};
 use crate::link::processor::{

@@ -43,7 +43,7 @@ impl Motion {
         if strobe {
             self.cut.checks = std::mem::take(&mut self.cut.asked);
         }
-        self.cut.asked |= inputs.cut;
+        self.cut.asked |= inputs.cut && self.build.cuts;
     }
 
     /// Decides about a cut at a strobe, and executes it. `ticked` are the axes after this tick, with
