@@ -134,8 +134,8 @@ fn a_cut_that_is_late_in_one_axis_is_refused_in_all() {
     assert!(bench.status().cut_refused, "until another cut");
 }
 
-/// A cut without a name in any axis drops nothing and is granted. At rest, the segment that ran last
-/// is not there any more.
+/// A cut without a name in any axis drops nothing and is granted. At rest, the segment that ran
+/// last is not there any more.
 #[test]
 fn cuts_at_rest_and_cuts_of_nothing() {
     let mut bench = bench(15);

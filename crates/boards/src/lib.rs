@@ -154,8 +154,8 @@ pub struct Wire {
     /// Place of the pin on a connector, if it is on one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Place>,
-    /// Whether the pin may be that of an SPI port, so that the port exists only if the host uses the
-    /// UART.
+    /// Whether the pin may be that of an SPI port, so that the port exists only if the host uses
+    /// the UART.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub beside_uart: bool,
 }

@@ -44,8 +44,8 @@ pub const MAX_AXES: usize = 8;
 /// The clock within a time slot, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
 
-/// Numbers of segments that an axis' queue can hold, not counting the one that runs. An axis has one
-/// slot more in memory, a power of two.
+/// Numbers of segments that an axis' queue can hold, not counting the one that runs. An axis has
+/// one slot more in memory, a power of two.
 pub const QUEUE_DEPTHS: [usize; 3] = [7, 15, 31];
 
 /// Data words of a segment: ticks minus one, then V, A and J, each with its low half first.

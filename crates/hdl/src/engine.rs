@@ -20,10 +20,10 @@
 //! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
-//! Interface: the host writes segments word by word (`put`) into a queue of 7, 15 or 31 segments per axis
-//! and starts axes by a mask. The engine outputs the state of all axes in every tick (`state`), on
-//! request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`, `inputs_1` and
-//! `latch` come directly from pins.
+//! Interface: the host writes segments word by word (`put`) into a queue of 7, 15 or 31 segments
+//! per axis and starts axes by a mask. The engine outputs the state of all axes in every tick
+//! (`state`), on request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`,
+//! `inputs_1` and `latch` come directly from pins.
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
@@ -99,12 +99,12 @@ pub struct Engine<const N: usize> {
     pub put_axis: Input<Word<3>>,
     /// The number of the word. The words of a segment come in order: 0 is its duration in ticks
     /// less 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7
-    /// commits the segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the last
-    /// segment that the next cut keeps.
+    /// commits the segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the
+    /// last segment that the next cut keeps.
     pub put_word: Input<Word<4>>,
-    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
-    /// of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
-    /// their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
+    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a
+    /// commit of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19
+    /// to 12 their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
     pub put_data: Input<Word<32>>,
     /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
@@ -115,7 +115,8 @@ pub struct Engine<const N: usize> {
     pub start_mask: Input<Word<N>>,
     /// The engine accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
-    /// The host requests a cut in all axes for which it has offered a word 8; asserted for one clock.
+    /// The host requests a cut in all axes for which it has offered a word 8; asserted for one
+    /// clock.
     pub cut: Input<Bit>,
     /// A cut was requested and is not decided yet.
     pub cut_busy: Signal<Out, Bit>,

@@ -138,8 +138,8 @@ bool carrystep_writing(const carrystep_session *session);
 bool carrystep_seek_ended(const carrystep_session *session);
 
 /* Queues a cut: the axes of `mask`, one bit each, drop all segments behind that in the slot
- * slots[axis], all of them in one tick or none. Segments that are queued behind it are executed only
- * if it is granted. False if there is no room for a write or if this host owns no session. */
+ * slots[axis], all of them in one tick or none. Segments that are queued behind it are executed
+ * only if it is granted. False if there is no room for a write or if this host owns no session. */
 bool carrystep_cut(carrystep_session *session, uint8_t mask, const uint8_t slots[CARRYSTEP_MOST_AXES]);
 
 /* Whether the gateware has refused the last cut, because a segment that it names neither waits nor

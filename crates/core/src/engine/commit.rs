@@ -1,5 +1,5 @@
-//! The last word of a segment, which commits it to the queue: whether the segment is the last of its
-//! move, and the outputs that change where it begins.
+//! The last word of a segment, which commits it to the queue: whether the segment is the last of
+//! its move, and the outputs that change where it begins.
 //!
 //! ```text
 //! bits   0      1            3 2   11 .. 4   19 .. 12   31 .. 20
@@ -41,8 +41,8 @@ impl Outputs {
         Commit::LAST | exist << 4 | exist << 12 | pwm
     }
 
-    /// True if the build has an output or the PWM. Otherwise the engine ignores all bits of a commit
-    /// but [`Commit::LAST`].
+    /// True if the build has an output or the PWM. Otherwise the engine ignores all bits of a
+    /// commit but [`Commit::LAST`].
     pub const fn is_any(self) -> bool {
         self.exist != 0 || self.pwm_divider != 0
     }

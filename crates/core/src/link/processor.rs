@@ -123,8 +123,8 @@ pub const CRC_BEGIN: Code = 1 << 4;
 /// nothing, it lasts until all live words of a tick have been output (`refreshed`).
 pub const WAIT: Code = 1 << 5;
 /// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
-/// or with `refreshed`. Reports count from the second clock of the instruction to the first clock of
-/// the next one, so that none between two such instructions is missed.
+/// or with `refreshed`. Reports count from the second clock of the instruction to the first clock
+/// of the next one, so that none between two such instructions is missed.
 pub const FOR_ROOM: Code = 1 << 3;
 /// Bit 0 of A is written to the control register. With [`KICK`], A is written to the mask of the
 /// axes that seek instead, and with [`KICK`] and [`BROKEN`] to the source of seeks; with [`BROKEN`]

@@ -15,8 +15,8 @@
 //!
 //! Interface: [`super::queue`] keeps the names and ends the queues.
 //!
-//! Cost: five flip-flops, and some 25 cells in the queue. A build without cuts has none of them, and
-//! refuses each.
+//! Cost: five flip-flops, and some 25 cells in the queue. A build without cuts has none of them,
+//! and refuses each.
 
 use super::layout::BEAT_LAST;
 use crate::parameters::CUTS;

@@ -291,8 +291,8 @@ pub const SLOT_UP_LOW: u64 = 6;
 pub const SLOT_UP_HIGH: u64 = 7;
 
 /// Address of the number of the tick. Only as many of its lowest bits count as an address has. With
-/// up to seven axes and eight slots these are nine, and the address is one of the axis 7, which does
-/// not exist. With more slots it is that of word 7 in the last slot, which no axis uses.
+/// up to seven axes and eight slots these are nine, and the address is one of the axis 7, which
+/// does not exist. With more slots it is that of word 7 in the last slot, which no axis uses.
 pub const TICK_ADDRESS: u64 = 0x7ff;
 
 /// Address of a word of the state of an axis.

@@ -16,9 +16,9 @@
 //! the one with which the segment begins, and the memories keep it until the next read. So no other
 //! register delays it.
 //!
-//! Interface: `off` turns all outputs off; [`super::pwm`] makes the PWM of the duty. A commit with a
-//! bit for something that the build does not have, or with any bit but the lowest for another axis
-//! than the first, is a fault of the host (`stray`).
+//! Interface: `off` turns all outputs off; [`super::pwm`] makes the PWM of the duty. A commit with
+//! a bit for something that the build does not have, or with any bit but the lowest for another
+//! axis than the first, is a fault of the host (`stray`).
 //!
 //! Cost: a memory of one block RAM for the outputs and one for the duties, a flip-flop for each
 //! output, some ten for the slot and the order of events, and some ten cells for the fault. A build
@@ -99,8 +99,8 @@ pub struct OutputControl<const N: usize> {
 }
 
 impl<const N: usize> OutputControl<N> {
-    /// Makes the outputs of this build, whose axes have this number of slots. The caller has checked
-    /// it.
+    /// Makes the outputs of this build, whose axes have this number of slots. The caller has
+    /// checked it.
     pub fn new(build: &Outputs, slots: usize) -> Self {
         let exist = OUTPUTS.of::<32>(build.exist);
         let divider = PWM_DIVIDER.of::<32>(build.pwm_divider);

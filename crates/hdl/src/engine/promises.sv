@@ -1,5 +1,5 @@
-// Proves promises 5, 6, 8, 12 to 15 and 17 to 19 on the ports of the engine, and what the proofs of its
-// modules assume, without a bound on time.
+// Proves promises 5, 6, 8, 12 to 15 and 17 to 19 on the ports of the engine, and what the proofs of
+// its modules assume, without a bound on time.
 //
 //   parameters   AXES: number of axes
 //                CLOCKS, PHASES: clocks and phases in a tick
@@ -243,7 +243,8 @@ module promises (
     (* inside = "dut.cut_control.denied" *) wire denied;
     (* inside = "dut.queue.cuts" *) wire cuts;
     (* inside = "dut.queue.checks" *) wire checks;
-    // The newest segment, after the cut of this tick; and whether the named segment is in the queue.
+    // The newest segment, after the cut of this tick; and whether the named segment is in the
+    // queue.
     wire [2:0] newest = cuts & word[30] ? word[27:25] : word[7:5];
     wire [2:0] behind_live = word[27:25] - word[2:0], waiting = word[7:5] - word[2:0];
     wire is_there = !word[30] | (behind_live <= waiting & (behind_live != 0 | word[10]));

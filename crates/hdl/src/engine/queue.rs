@@ -1,9 +1,9 @@
 //! The segment queue of each axis, and the control word of the axis of the present time slot.
 //!
 //! An axis has 8, 16 or 32 slots in memory, each of which holds one segment. The running segment is
-//! in slot `live`; its ticks, V and A serve as the registers of the axis. The segments up to `newest`
-//! wait. The host writes the slot after `newest`. A cut makes the slot that the host has named the
-//! newest one.
+//! in slot `live`; its ticks, V and A serve as the registers of the axis. The segments up to
+//! `newest` wait. The host writes the slot after `newest`. A cut makes the slot that the host has
+//! named the newest one.
 //!
 //! ```text
 //! slot     | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 |
@@ -23,11 +23,12 @@
 //! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
 //! the host must put next: the words of a segment come in order, and word 7 commits it. `met` means
 //! that the axis has hit its own source, and that this tick outputs its state for that. `counts`
-//! belongs to [`super::step_counts`]; the queue only keeps it. `named` means that the axis takes part
-//! in the next cut, whose last segment is in the slot `target`.
+//! belongs to [`super::step_counts`]; the queue only keeps it. `named` means that the axis takes
+//! part in the next cut, whose last segment is in the slot `target`.
 //!
-//! Cost: a memory of 8 words of 31 bits for the control words and one of 64 to 256 bits for the marks of
-//! last segments. A transition to the next segment only increments `live`; no segment is copied.
+//! Cost: a memory of 8 words of 31 bits for the control words and one of 64 to 256 bits for the
+//! marks of last segments. A transition to the next segment only increments `live`; no segment is
+//! copied.
 
 use super::layout::{
     BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_COUNTS, CONTROL_DUE, CONTROL_KNOWN, CONTROL_LIVE,

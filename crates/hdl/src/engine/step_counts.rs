@@ -17,9 +17,9 @@
 //! `on_way` is the number of carries since the last clear less the steps that the position has
 //! counted since then.
 //!
-//! Interface: the adder adds `up`, `down` and `lost` in the beats in which they are valid. The queue
-//! keeps `next_counts` in the control word of the axis, and returns it as `counts` in the next time
-//! slot.
+//! Interface: the adder adds `up`, `down` and `lost` in the beats in which they are valid. The
+//! queue keeps `next_counts` in the control word of the axis, and returns it as `counts` in the
+//! next time slot.
 //!
 //! Cost: three flip-flops, seven bits of the control word and some 25 cells. The low bits of the
 //! position are compared as they come from memory, so the control word need not keep them.
@@ -33,7 +33,8 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// The comparison of the pulser's counts with those in memory, and the number of steps on their way.
+/// The comparison of the pulser's counts with those in memory, and the number of steps on their
+/// way.
 #[derive(LogicBlock, Default)]
 pub struct StepCounts {
     /// The clock.

@@ -18,8 +18,8 @@
 //! written after the last time slot, in the clock after its beat 16. In a ramp the memory returns
 //! -s or s in place of A, so that a ramp needs no additional adder.
 //!
-//! Cost: one memory of 512 words of 32 bits for eight slots of each axis, 1024 for 16 slots, 2048 for
-//! 32. Eight axes with eight slots have 1024 words, of which 513 are used.
+//! Cost: one memory of 512 words of 32 bits for eight slots of each axis, 1024 for 16 slots, 2048
+//! for 32. Eight axes with eight slots have 1024 words, of which 513 are used.
 
 use super::layout::{
     BEAT_OVER_SUM_TICK, BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
@@ -114,8 +114,8 @@ pub struct Store {
 
 impl Store {
     /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
-    /// axes in 2^-64 step per tick^2; `slots` is the number of slots of an axis, 8, 16 or 32. The first tick has no time slots, so the first number of a
-    /// tick that is read is 1.
+    /// axes in 2^-64 step per tick^2; `slots` is the number of slots of an axis, 8, 16 or 32. The
+    /// first tick has no time slots, so the first number of a tick that is read is 1.
     pub fn new(start: StartPhase, stops: &[u64], slots: usize) -> Self {
         let half = START_HALF.of::<32>(start == StartPhase::Half);
         let high = |start: StartPhase| Formula::number(start.start_value() >> 32);

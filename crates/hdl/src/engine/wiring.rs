@@ -8,9 +8,9 @@
 //! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
 //!
-//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of the
-//! mask without a waiting segment is a breach of the protocol. An axis of the mask that has hit the
-//! source of its seek drops the start, because its queue has been emptied.
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of
+//! the mask without a waiting segment is a breach of the protocol. An axis of the mask that has hit
+//! the source of its seek drops the start, because its queue has been emptied.
 
 use super::Engine;
 use super::layout::{

@@ -47,7 +47,8 @@ pub struct LinkProcessor<const N: usize> {
     pub facts: Input<Word<32>>,
     /// The machine offers a word of a segment to the engine.
     pub put_valid: Signal<Out, Bit>,
-    /// The number of the offered word: 0 to 7 in its segment, or 8 where it names the slot of a cut.
+    /// The number of the offered word: 0 to 7 in its segment, or 8 where it names the slot of a
+    /// cut.
     pub put_word: Signal<Out, Word<4>>,
     /// The offered word.
     pub put_data: Signal<Out, Word<32>>,

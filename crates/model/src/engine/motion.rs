@@ -1,6 +1,7 @@
 //! The engine without the words of state that it outputs for a host: up to eight accumulators with
 //! queues. The results of a tick take effect for all axes together at the strobe that ends it. The
-//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both together.
+//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both
+//! together.
 //!
 //! ```text
 //! tick     |       n       |     n + 1     |     n + 2     |
@@ -169,8 +170,8 @@ impl Motion {
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
         // The order of these calls is the priority of the causes: the first one is latched. It is
-        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, interlock,
-        // stop.
+        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog,
+        // interlock, stop.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
@@ -260,10 +261,10 @@ impl Motion {
         bits(&self.axis_models, |axis_model| axis_model.shaper.overrun)
     }
 
-    /// True if a word for this axis is accepted in this clock. The axis accepts a word of a segment in
-    /// its time slot if its queue has room, and one that `names` the slot of a cut at the end of its
-    /// time slot unless a cut is examined. A word for an axis that does not exist is accepted at once (and is a
-    /// protocol fault).
+    /// True if a word for this axis is accepted in this clock. The axis accepts a word of a segment
+    /// in its time slot if its queue has room, and one that `names` the slot of a cut at the end of
+    /// its time slot unless a cut is examined. A word for an axis that does not exist is accepted
+    /// at once (and is a protocol fault).
     fn takes(&self, axis: usize, names: bool) -> bool {
         self.axis_models.get(axis).is_none_or(|axis_model| {
             if names {

@@ -76,7 +76,8 @@ impl Readout {
         !self.asked && !self.takes && self.captures == 0 && !motion.latches()
     }
 
-    /// The word of its state that an axis outputs in this beat of its time slot of the present tick.
+    /// The word of its state that an axis outputs in this beat of its time slot of the present
+    /// tick.
     fn word(&self, motion: &Motion, axis: usize, beat: u32) -> Option<StateWord> {
         let (counts, state) = (self.counts[axis], motion.axis_state(axis));
         let page = self.page(motion, axis);
@@ -116,7 +117,8 @@ impl Readout {
         }
     }
 
-    /// All words of the present tick but those of switches, each with the clock in which it is output.
+    /// All words of the present tick but those of switches, each with the clock in which it is
+    /// output.
     pub(crate) fn words(&self, motion: &Motion) -> impl Iterator<Item = (u32, StateWord)> {
         (0..self.counts.len()).flat_map(move |axis| {
             (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {

@@ -1,8 +1,8 @@
 //! A CUT: names the slot of the last segment that each axis keeps, and requests the cut.
 //!
-//! The frame has a word for each axis: its lowest byte is the slot, and its highest byte is 0 if the
-//! axis takes no part. The engine examines all named slots and then drops the segments behind them,
-//! or refuses ("Cut" in docs/clock-by-clock.md).
+//! The frame has a word for each axis: its lowest byte is the slot, and its highest byte is 0 if
+//! the axis takes no part. The engine examines all named slots and then drops the segments behind
+//! them, or refuses ("Cut" in docs/clock-by-clock.md).
 
 use super::layout::{CUT_REFUSED_BIT, WORDS};
 use crate::link::assembler::Assembler;

@@ -69,11 +69,11 @@ pub(super) const WRITTEN_BIT: u8 = 1 << 3;
 /// Bits of an answer's flags: nothing moves and nothing waits, or a stop is complete.
 pub(super) const AT_REST: u8 = 1 << 6 | 1 << 7;
 
-/// Table: as many ones as the index says, 0 to 8. The number of axes leads to the bits of those that
-/// exist.
+/// Table: as many ones as the index says, 0 to 8. The number of axes leads to the bits of those
+/// that exist.
 const BELOW: u8 = 0x00;
-/// Table: by the address behind a word of a CUT frame, the axis to which it belongs. Bit 3 is 0, as a
-/// word that names a slot requires; only the last entry is 0xc0 or more.
+/// Table: by the address behind a word of a CUT frame, the axis to which it belongs. Bit 3 is 0, as
+/// a word that names a slot requires; only the last entry is 0xc0 or more.
 pub(super) const NAMED: u8 = WORDS + 4;
 /// Table: the bytes of the CRC's residue. Bit 7 of X becomes 1 behind the last one.
 pub(super) const RESIDUE: u8 = 0x7c;

@@ -1,5 +1,5 @@
-// Proves promises 5, 6, 10, 12, 15 and 18 of the queue, without a bound on time: which segment runs,
-// which segments wait, and that the control word keeps the step counts.
+// Proves promises 5, 6, 10, 12, 15 and 18 of the queue, without a bound on time: which segment
+// runs, which segments wait, and that the control word keeps the step counts.
 //
 //   parameters   `DUT: the name of the exported queue
 //   assumptions  The beats of a time slot follow one another and belong to one axis (proved in

@@ -2,7 +2,8 @@
 // output in each beat, and in which tick a snapshot is taken.
 //
 //   parameters   `DUT: the name of the exported module `readout`
-//   assumptions  There is no beat 0 to 12 at a strobe, at most one of them in a clock, and a tick has
+//   assumptions  There is no beat 0 to 12 at a strobe, at most one of them in a clock, and a tick
+//   has
 //                a time slot of the last axis (proved in time_slot/promises.sv). A source is hit in beat
 //                12 (proved in seek_control/promises.sv). `met` is asserted in the time slot of an
 //                axis in the tick after `meets` was, and in no other (proved in queue/promises.sv).

@@ -29,8 +29,8 @@ impl Queued {
     }
 }
 
-/// One axis: its accumulator, its queue, its switches, the stages behind the accumulator and the step
-/// shaper.
+/// One axis: its accumulator, its queue, its switches, the stages behind the accumulator and the
+/// step shaper.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct AxisModel {
     pub(super) p: u64,

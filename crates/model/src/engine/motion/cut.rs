@@ -1,5 +1,5 @@
-//! The cut: drops the segments behind a named one in several axes at one strobe, or in none. It must
-//! stay equal to "Cut" in docs/clock-by-clock.md.
+//! The cut: drops the segments behind a named one in several axes at one strobe, or in none. It
+//! must stay equal to "Cut" in docs/clock-by-clock.md.
 //!
 //! ```text
 //! cut      _/^\\_______________________________
@@ -46,8 +46,8 @@ impl Motion {
         self.cut.asked |= inputs.cut && self.build.cuts;
     }
 
-    /// Decides about a cut at a strobe, and executes it. `ticked` are the axes after this tick, with
-    /// the segments that were committed in it.
+    /// Decides about a cut at a strobe, and executes it. `ticked` are the axes after this tick,
+    /// with the segments that were committed in it.
     pub(super) fn decide_cut(&mut self, ticked: &mut [AxisModel]) {
         if !self.cut.checks {
             return;
@@ -73,8 +73,9 @@ impl AxisModel {
         (usize::from(slot) + self.slots - usize::from(self.slot)) % self.slots
     }
 
-    /// True if the segment in this slot still waits or runs after this tick, and no segment is partly
-    /// written. `after` is this axis after the tick, in which a clear has `emptied` the queue or not.
+    /// True if the segment in this slot still waits or runs after this tick, and no segment is
+    /// partly written. `after` is this axis after the tick, in which a clear has `emptied` the
+    /// queue or not.
     fn keeps(&self, after: &Self, slot: u8, emptied: bool) -> bool {
         let seek_empties = self.seek.ramps && after.running.is_none();
         let distance = self.distance(slot);

@@ -14,7 +14,8 @@ use carrystep_core::engine::{Commit, Outputs, PWM_STEPS};
 /// The registers of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct OutputState {
-    /// The commit of the segment with which axis 0 has begun the tick before, if it changes outputs.
+    /// The commit of the segment with which axis 0 has begun the tick before, if it changes
+    /// outputs.
     computed: Option<Commit>,
     /// `computed` of the tick before.
     emitted: Option<Commit>,
@@ -28,8 +29,8 @@ pub(super) struct OutputState {
 }
 
 impl OutputState {
-    /// Advances by one cycle, which is the first one of a tick, a strobe, or neither. `begun` is the
-    /// commit of the segment with which axis 0 has begun this tick, if it changes outputs.
+    /// Advances by one cycle, which is the first one of a tick, a strobe, or neither. `begun` is
+    /// the commit of the segment with which axis 0 has begun this tick, if it changes outputs.
     fn clock(&mut self, build: Outputs, off: bool, at: Place, begun: Option<Commit>) {
         let before = *self;
         if at == Place::First

@@ -21,8 +21,8 @@ impl Motion {
         (axis_models.collect(), found)
     }
 
-    /// Decides at this strobe about the armed start. A start of an axis whose seek had hit when this
-    /// tick began is dropped. A hit in this very tick does not change the decision.
+    /// Decides at this strobe about the armed start. A start of an axis whose seek had hit when
+    /// this tick began is dropped. A hit in this very tick does not change the decision.
     pub(super) fn decision(
         &self,
         (ticked, found): &(Vec<AxisModel>, Vec<(Cause, usize)>),

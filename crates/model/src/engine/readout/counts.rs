@@ -55,7 +55,8 @@ impl Counts {
         self.on_way = (((self.on_way as i32).wrapping_add(carries) << 28) >> 28) as i8;
     }
 
-    /// Makes this number of comparisons in a beat and commits each, while the shaper stays the same.
+    /// Makes this number of comparisons in a beat and commits each, while the shaper stays the
+    /// same.
     pub(super) fn follow(&mut self, beat: u32, shaper: &ShaperState, runs: bool, ticks: u64) {
         if beat == POSITION_BEAT {
             let apart = shaper.position.wrapping_sub(self.position);
