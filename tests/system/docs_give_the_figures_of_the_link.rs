@@ -3,7 +3,8 @@
 
 use carrystep_core::engine::{ENGINE_PORTS, QUEUE_DEPTHS};
 use carrystep_core::link::registers::{
-    AXES_AT, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP, of_axis,
+    AXES_AT, CONTROL_ENABLE, CUT, MOST_AXES, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP,
+    of_axis,
 };
 use carrystep_core::link::{
     ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, REFUSALS, REQUEST_HEAD,
@@ -33,7 +34,11 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
                 "- **Segment**: address `{segment:02X} + axis` and {} words:",
                 word(SEGMENT_FRAME_WORDS as u64)
             ),
-            format!("Addresses from `{:02X}` on are not for writes.", segment + MOST_AXES + 1),
+            format!(
+                "Addresses from `{:02X}` on are not for writes, except `{:02X}`.",
+                segment + MOST_AXES + 1,
+                WRITE | CUT
+            ),
             format!("- **Segments of several axes**: address `{:02X}`.", WRITE | SEGMENTS),
             format!(
                 "{} + {} k bytes: {} for six axes",

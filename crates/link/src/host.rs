@@ -3,7 +3,6 @@
 //! [`Host::open`] first.
 
 mod cancelled;
-mod cut;
 mod error;
 mod homing;
 mod motion;

@@ -26,7 +26,6 @@
 
 use super::layout::{
     BEAT_COMPARE_DISCARDED, BEAT_LOAD_POSITION, KEPT_DISCARDED, KEPT_ON_WAY, MISSING_SIGN,
-    POSITION_LOW,
 };
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
@@ -55,8 +54,8 @@ pub struct StepCounts {
     pub pulses: Input<Word<3>>,
     /// The low bits of the discarded steps, from the pulser of the axis.
     pub losses: Input<Word<3>>,
-    /// The word that the memory returns. In beat 6 it is the position.
-    pub word: Input<Word<32>>,
+    /// The lowest bits of the word that the memory returns. In beat 6 it is the position.
+    pub word: Input<Word<3>>,
     /// `next_counts` of the time slot before of this axis, at first 0.
     pub counts: Input<Word<7>>,
     /// In beat 12: what is kept until the next time slot of the axis.
@@ -96,7 +95,7 @@ impl Logic for StepCounts {
         dff_setup!(self, clock, forward, backward, gone);
 
         // The difference of the low bits shows which steps the memory has not counted yet.
-        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(POSITION_LOW);
+        self.missing.next = self.pulses.val() - self.word.val();
         self.more.next = self.missing.val().any() & !self.missing.val().get_bit(MISSING_SIGN);
         self.less.next = self.missing.val().get_bit(MISSING_SIGN);
         if self.beat.val().get_bit(BEAT_LOAD_POSITION) {

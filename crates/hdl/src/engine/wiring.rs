@@ -15,7 +15,7 @@
 use super::Engine;
 use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
-    MASK_OF_SLOT, PUT_NAMES, PUT_NUMBER, PUT_SLOT,
+    MASK_OF_SLOT, POSITION_LOW, PUT_NAMES, PUT_NUMBER, PUT_SLOT,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -198,7 +198,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.step_counts.clear.next = self.stops.clearing.val();
         self.step_counts.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
         self.step_counts.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
-        self.step_counts.word.next = self.store.word.val();
+        self.step_counts.word.next = self.store.word.val().get_bits::<3>(POSITION_LOW);
         self.step_counts.counts.next = self.queue.counts.val();
 
         self.adder.beat.next = self.time_slot.beat.val();
