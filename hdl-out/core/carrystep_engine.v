@@ -709,8 +709,8 @@ module carrystep_step_counts (
     input  wire   [2:0] pulses,
     // The low bits of the discarded steps, from the pulser of the axis.
     input  wire   [2:0] losses,
-    // The word that the memory returns. In beat 6 it is the position.
-    input  wire  [31:0] word,
+    // The lowest bits of the word that the memory returns. In beat 6 it is the position.
+    input  wire   [2:0] word,
     // `next_counts` of the time slot before of this axis, at first 0.
     input  wire   [6:0] counts,
     // In beat 12: what is kept until the next time slot of the axis.
@@ -739,7 +739,7 @@ module carrystep_step_counts (
     reg [3:0] gain;
     reg [3:0] next_on_way;
 
-    wire [2:0] missing = pulses - word[2:0];
+    wire [2:0] missing = pulses - word;
     wire more = (missing != 3'd0) & !missing[2];
     wire less = missing[2];
     wire [2:0] unseen = losses ^ counts[2:0];
@@ -3551,7 +3551,7 @@ module carrystep_engine #(
         .clear(stops_clearing),
         .pulses(counts[2:0]),
         .losses(counts[5:3]),
-        .word(store_word),
+        .word(store_word[2:0]),
         .counts(queue_counts),
         .next_counts(step_counts_next_counts),
         .up(step_counts_up),

@@ -251,3 +251,45 @@ fn machine_can_use_an_spi() {
     }
     assert!(on_spi >= 10, "{on_spi} boards have an SPI");
 }
+
+/// Probe, interlock, general inputs, latch, outputs and PWM: the top level connects each to its pin,
+/// and the general inputs take turns in the two rows of the engine.
+#[test]
+fn top_level_connects_the_inputs_and_outputs_of_the_machine() {
+    let board = board("hx8k-evn").unwrap();
+    let text = shipped_machine(board, &board.clocks[0]).unwrap().replace(
+        "[machine.link]",
+        "[machine.inputs]\nprobe = \"low\"\ninterlock = \"low\"\ngeneral = [\"low\", \"high\", \"low\"]\n\
+         latch = \"rising\"\n\n[machine.outputs]\ncount = 3\npwm_divider = 16\n\n[machine.link]",
+    );
+    let machine = SourceText { path: "machine.toml".into(), text: text.into() };
+    let files = Gateware::new(board, &board.parts[0], machine).unwrap().files().unwrap();
+    let text_of = |end: &str| {
+        let file = files.iter().find(|file| file.name.ends_with(end)).unwrap();
+        file.text.clone()
+    };
+    let (top, pins) = (text_of("_top.v"), text_of(".pcf"));
+    for line in [
+        "input wire [2:0] general,",
+        "output wire [2:0] outputs,",
+        "assign outputs = levels[2:0];",
+        ".inputs_0({1'b0, 1'b0, 1'b0, general[2], general[0], probe}),",
+        ".inputs_1({1'b0, 1'b0, 1'b0, 1'b0, general[1], interlock}),",
+        ".latch(latch),",
+        ".pwm(pwm),",
+    ] {
+        assert!(top.contains(line), "{line}\n{top}");
+    }
+    for (port, pulled_up) in [
+        ("probe", true),
+        ("interlock", true),
+        ("latch", true),
+        ("general[2]", true),
+        ("outputs[2]", false),
+        ("pwm", false),
+    ] {
+        let pin = &board.wire(port).unwrap().pin;
+        let line = format!("set_io {}{port} {pin}\n", if pulled_up { "-pullup yes " } else { "" });
+        assert!(pins.contains(&line), "{line}{pins}");
+    }
+}
