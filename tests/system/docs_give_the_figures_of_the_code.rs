@@ -275,7 +275,7 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!(
                 "a read has {asked} to {owner_asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
             ),
-            format!("has room, 0 to `QUEUE_DEPTH`"),
+            "has room, 0 to `QUEUE_DEPTH`".to_owned(),
             format!(
                 "(`QUEUE_DEPTH`, {}, {} or {})",
                 QUEUE_DEPTHS[0], QUEUE_DEPTHS[1], QUEUE_DEPTHS[2]
