@@ -59,8 +59,8 @@ pub fn shipped_engine() -> BuiltEngine {
     (machine.engine(), text.into())
 }
 
-/// An engine with this many axes and clocks per tick, with extreme pin timings and a guard with
-/// small figures.
+/// An engine with this many axes and clocks per tick, with extreme pin timings, a guard with small
+/// figures, and cuts.
 pub fn small_engine(
     axes: usize,
     clocks: u32,
@@ -72,6 +72,7 @@ pub fn small_engine(
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
     minimal.pins.resize(axes, PinTiming::SHORTEST);
     minimal.guard.stop.resize(axes, 1 << 40);
+    minimal.cuts = true;
     let low = limits != LimitWiring::Pair;
     let guard = Guard {
         round: 2,

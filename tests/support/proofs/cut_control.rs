@@ -21,8 +21,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_18_refused_is_told",
-        text: "refused = denied;",
-        becomes: "refused = missed;",
+        text: "refused = denied |",
+        becomes: "refused = missed |",
     },
     Bug {
         breaks: "promise_13_reset_forgets",
@@ -36,7 +36,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = Case {
         name: "any".into(),
         dut: "carrystep_cut_control".into(),
-        parameters: Vec::new(),
+        parameters: vec![("CUTS", 1)],
         verilog: built.1.clone(),
         numbers: Vec::new(),
     };

@@ -100,7 +100,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = Case {
         name: "any".into(),
         dut: "carrystep_queue".into(),
-        parameters: Vec::new(),
+        parameters: vec![("CUTS", 1)],
         verilog: built.1.clone(),
         numbers: Vec::new(),
     };
