@@ -1,6 +1,6 @@
-//! A program that is planned once, in a thread of its own, for everybody who needs its rows: the
-//! search for the start reads the first of them, the run takes all, and figures are kept as they
-//! pass.
+//! A program that is planned once, in a thread of its own. The search for the first start looks at
+//! the first rows, the run takes all rows, and the figures of each row are added up before either
+//! gets it.
 //!
 //! ```text
 //! planner's thread         read ahead                 taken
@@ -16,13 +16,11 @@ use carrystep_core::{Command, Timebase};
 use carrystep_program::{ProgramFile, Row, Survey};
 use carrystep_report::Detail;
 use carrystep_simulators::Commands;
+use carrystep_simulators::engine::run::TICKS_TO_SEND;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Ticks that a host may need for the words of a segment, with a reserve.
-const TICKS_TO_SEND: u64 = 10;
 
 /// Rows that are planned before anything is written: 16 s of motion or more.
 const FIRST: usize = 4096;
@@ -32,7 +30,7 @@ pub struct OnePass<'a> {
     kept: &'a Kept,
     timebase: Timebase,
     pulled: Mutex<Pulled>,
-    /// Clocks for the rows that have been read.
+    /// [`OnePass::clocks`].
     clocks: AtomicU64,
     /// Number of segments; 0 if it is not known.
     segments: u64,
@@ -47,8 +45,8 @@ struct Pulled {
 }
 
 impl<'a> OnePass<'a> {
-    /// Begins to plan. `kept` gets the error that ends the pass early; `segments` is their number
-    /// where an earlier pass has counted them.
+    /// Begins to plan. `kept` receives the error that ends the pass early. `segments` is the number
+    /// of segments if an earlier pass has counted them, else 0.
     pub fn new(
         file: &ProgramFile,
         detail: Detail,
@@ -74,12 +72,12 @@ impl<'a> OnePass<'a> {
         }
     }
 
-    /// The clocks that the rows need which have been read so far.
+    /// The number of clocks that a run needs at most for the rows that have been read so far.
     pub fn clocks(&self) -> &AtomicU64 {
         &self.clocks
     }
 
-    /// The same commands for somebody who only looks at them before they are taken.
+    /// The same commands from the first row that has not been taken, which stays in its place.
     pub fn looked_at(&self) -> LookedAt<'_> {
         LookedAt(self)
     }
@@ -159,7 +157,7 @@ impl Commands for OnePass<'_> {
     }
 }
 
-/// The commands of a pass for somebody who does not take them.
+/// The commands of a pass, whose rows stay for the run.
 #[derive(Debug, Clone, Copy)]
 pub struct LookedAt<'a>(&'a OnePass<'a>);
 

@@ -265,8 +265,9 @@ impl<'a> EngineHost<'a> {
         self.current = self.later.pop_front().or_else(|| self.acts.next());
     }
 
-    /// The word that is offered and those that follow it, up to the next other action or the end of
-    /// the segments that are sent side by side; none if the host offers none.
+    /// The word that the host offers now and the words after it: up to its next action that is no
+    /// word, or to the last commit of the segments that it sends side by side. Empty if the host
+    /// offers no word now.
     pub fn offered(&mut self) -> &[Put] {
         self.told.clear();
         let mut act = self.current.filter(|_| !self.fault);

@@ -125,8 +125,9 @@ impl FastEngine {
         self.leap_over(inputs, (inputs.put.as_slice(), false), most, fit, to).0
     }
 
-    /// Skips cycles. `words` are those that the host offers, and whether they are accepted in the
-    /// skipped cycles.
+    /// Skips cycles, and returns the number of cycles and of words that were accepted in them. The
+    /// host offers `words`; if `takes` is false, the last skipped cycle is before the one in which
+    /// the first of them is accepted.
     fn leap_over(
         &mut self,
         inputs: &EngineInputs,

@@ -9,6 +9,9 @@ use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use std::sync::atomic::AtomicU64;
 
+/// Ticks that a host may need for the words of one segment, with a reserve. Runs are limited by it.
+pub const TICKS_TO_SEND: u64 = 10;
+
 /// Index of the position in what is kept of an axis.
 const POSITION: usize = 2;
 
@@ -57,7 +60,8 @@ impl<'a> EngineJob<'a> {
             .max()
             .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        let max_clocks = (ticks + warm + 10 * program.segments() + 100) * clocks + 4 * pins;
+        let max_clocks =
+            (ticks + warm + TICKS_TO_SEND * program.segments() + 100) * clocks + 4 * pins;
         Self { build, program, max_clocks, more_clocks: None, halt: &[], how_far: None }
     }
 

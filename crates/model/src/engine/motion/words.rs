@@ -14,10 +14,11 @@ use super::Motion;
 use carrystep_core::engine::{COMMIT, MAX_AXES, PUT_BEAT, Put, QUEUE, TIME_SLOT_CLOCKS};
 
 impl Motion {
-    /// Of the first `most` clocks, the number that pass before the first event that a word causes,
-    /// and the number of words that are taken in them. `words` are offered one after the other, each
-    /// from the clock after the one that took the word before. If not `takes`, to take a word is an
-    /// event itself. All these clocks must be plain but for words.
+    /// Returns how many clocks, at most `most`, may be skipped before a word causes an event, and
+    /// how many of the words are taken in these clocks. All of them must be plain but for words.
+    ///
+    /// The host offers `words` one after the other: each from the clock after the one in which the
+    /// word before it was taken. If `takes` is false, the taking of a word is an event itself.
     pub(crate) fn taking(&self, words: &[Put], takes: bool, most: u64) -> (u64, usize) {
         if self.stop.fault.is_some() {
             return (most, 0);
@@ -43,7 +44,7 @@ impl Motion {
             if at >= end {
                 return (end, taken);
             }
-            // The first word ends the rest of the engine.
+            // A word that comes at rest makes the engine active, and a misplaced word is a fault.
             if !takes || self.rest > 0 || put.word != next_words[axis] {
                 return (at, taken);
             }
