@@ -16,6 +16,8 @@ pub struct Came {
     pub clocks: u64,
     /// Clock cycles that the fast engine skipped.
     pub leapt: u64,
+    /// Words that the fast engine took in cycles that it skipped.
+    pub taken: u64,
     /// Number of stops by each cause.
     pub faults: [u64; CAUSES.len()],
 }
@@ -25,11 +27,12 @@ impl Came {
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let faults = std::array::from_fn(|cause| self.faults[cause] + other.faults[cause]);
-        let Self { edges, clocks, leapt, .. } = self;
+        let Self { edges, clocks, leapt, taken, .. } = self;
         Self {
             edges: edges + other.edges,
             clocks: clocks + other.clocks,
             leapt: leapt + other.leapt,
+            taken: taken + other.taken,
             faults,
         }
     }
@@ -53,27 +56,43 @@ pub fn run(
     let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
     let mut came = Came::default();
     let mut leaps = leaps.iter().cycle();
-    let (mut quiet, mut fault, mut by_run) = (false, None, false);
+    let (mut quiet, mut fault, mut turn) = (false, None, 0_u64);
     while came.clocks < most && !quiet {
         let (inputs, outputs) = fast_host.meet(|inputs| fast.outputs(inputs));
         let longest = *leaps.next().unwrap_or(&u64::MAX);
         let patience = fast_host.patience(&outputs).min(most - came.clocks).min(longest);
-        // Alternates between a single leap or clock and a run up to the next event for the host.
-        by_run = !by_run;
-        let mut heard = None;
-        if by_run {
+        // Takes turns: a run up to the next event for the host, a single leap or clock, and a leap
+        // that takes words.
+        turn += 1;
+        let (mut heard, mut words) = (None, 0);
+        if turn % 3 == 0 {
             heard = fast.run(&inputs, came.clocks + patience.max(1), &mut fast_edges);
             // A host without patience continues in this cycle, whether or not there is an event.
             let goes_on = heard.or((patience == 0).then_some(outputs));
             fast_host.wait(fast.cycle() - came.clocks - u64::from(goes_on.is_some()));
             goes_on.iter().for_each(|outputs| fast_host.advance(outputs));
-        } else if patience > 0 && fast.leap(&inputs, patience, &mut fast_edges) > 0 {
-            came.leapt += fast.cycle() - came.clocks;
-            fast_host.wait(fast.cycle() - came.clocks);
         } else {
-            fast_host.advance(&outputs);
-            fast.clock(&inputs, &mut fast_edges);
-            heard = Some(outputs);
+            let mut leapt = 0;
+            if turn % 3 == 1 && patience > 0 {
+                leapt = fast.leap(&inputs, patience, &mut fast_edges);
+            } else if turn % 3 == 2 {
+                let patience = fast_host.patience_but_for_words(&outputs);
+                let patience = patience.min(most - came.clocks).min(longest);
+                if patience > 0 {
+                    let offered = fast_host.offered();
+                    (leapt, words) = fast.leap_taking(&inputs, offered, patience, &mut fast_edges);
+                }
+            }
+            if leapt > 0 {
+                came.leapt += leapt;
+                came.taken += words as u64;
+                fast_host.wait(leapt);
+                fast_host.accepted(words);
+            } else {
+                fast_host.advance(&outputs);
+                fast.clock(&inputs, &mut fast_edges);
+                heard = Some(outputs);
+            }
         }
         for clock in came.clocks + 1..=fast.cycle() {
             let before: Vec<_> = (0..build.axes()).map(|axis| *slow.shaper(axis)).collect();
@@ -85,7 +104,9 @@ pub fn run(
             }
             fault = slow_outputs.fault;
             slow.clock(&slow_inputs);
-            if slow_inputs != inputs {
+            // Where words were taken, the registers tell whether they were the right ones.
+            let word = if words > 0 { slow_inputs.put } else { inputs.put };
+            if slow_inputs != (EngineInputs { put: word, ..inputs }) {
                 return Err(format!(
                     "cycle {}: inputs\n fast {inputs:?}\n slow {slow_inputs:?}",
                     clock - 1
@@ -94,6 +115,8 @@ pub fn run(
             let last = clock == fast.cycle();
             let silent = is_silent(&slow_inputs, &slow_outputs, &slow.outputs(&slow_inputs));
             let heard_now = heard.filter(|_| last);
+            let takes = words > 0 && slow_inputs.put.is_some() && slow_outputs.put_ready;
+            let silent = silent || takes;
             if heard_now.map_or(!silent, |heard| heard != slow_outputs) {
                 return Err(format!("cycle {}: heard {heard:?}, not {slow_outputs:?}", clock - 1));
             }

@@ -127,6 +127,15 @@ impl<'a> PathChecker<'a> {
         (i128::from(ps) - i128::from(self.setup.origin_ps)) as f64 / PS
     }
 
+    /// Sets the length of the job, ps, and the steps that the program requires of each axis, where
+    /// they were not known before.
+    pub fn ends(&mut self, total_ps: u64, steps: impl Iterator<Item = i64>) {
+        self.setup.total_ps = total_ps;
+        for (axis, steps) in self.setup.axes.iter_mut().zip(steps) {
+            axis.steps = steps;
+        }
+    }
+
     /// Sets the start of the job, where it was not known before.
     pub(crate) fn begin_at(&mut self, origin_ps: u64) {
         self.setup.origin_ps = origin_ps;

@@ -181,7 +181,8 @@ pub fn run(
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
     let (timebase, phase) = (build.timebase, build.phase);
-    let progress = RunProgress::new(level, totals.ticks * u64::from(timebase.clocks_per_tick()));
+    let total = totals.ticks * u64::from(timebase.clocks_per_tick());
+    let progress = RunProgress::new(level, Some(total));
     let how_far = Some(progress.how_far());
     let on = match &engine {
         None => CorePlan::Parallel(Job {

@@ -24,6 +24,7 @@ mod job;
 mod junit;
 mod limits;
 mod memory;
+mod one_pass;
 #[cfg(unix)]
 mod operated;
 mod output;

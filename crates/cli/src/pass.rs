@@ -1,9 +1,12 @@
-//! The commands of a plan of moves or of a program, for a simulator that runs it.
+//! The commands of a plan of moves for a simulator that runs it, and rows of programs that are
+//! planned ahead of their reader.
 
+use crate::failure::Failure;
+use crate::interrupt;
 use carrystep_core::Command;
 use carrystep_plan::{self as plan, PlannedMove};
 use carrystep_profile::Reader;
-use carrystep_program::{ProgramError, ProgramFile, Row, Rows, Survey};
+use carrystep_program::{ProgramError, Row};
 use carrystep_simulators::Commands;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -46,59 +49,72 @@ impl Commands for PlanCommands<'_> {
 /// The first error of the passes over a program that feed a run. Each pass ends at its error, and
 /// the run is then judged by it.
 #[derive(Debug, Default)]
-pub struct Kept(Mutex<Option<ProgramError>>);
+pub struct Kept(Mutex<Option<Failure>>);
 
 impl Kept {
     /// What comes before the first error, which is kept.
-    pub fn until_an_error<T>(
+    pub fn until_an_error<T, E: Into<Failure>>(
         &self,
-        from: impl Iterator<Item = Result<T, ProgramError>>,
+        from: impl Iterator<Item = Result<T, E>>,
     ) -> impl Iterator<Item = T> {
         from.map_while(|one| match one {
             Ok(one) => Some(one),
             Err(error) => {
-                self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.into());
                 None
             }
         })
     }
 
     /// Fails if there was an error.
-    pub fn error(&self) -> Result<(), ProgramError> {
+    pub fn error(&self) -> Result<(), Failure> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
     }
 }
 
+/// A batch of rows, or of the error that ends them.
+type Batch = Vec<Result<Row, ProgramError>>;
+
 /// Rows that are planned in a thread of their own, a little ahead of their reader.
-pub struct RowsAhead {
-    batches: Option<Receiver<Vec<Result<Row, ProgramError>>>>,
+pub struct RowsAhead<R> {
+    batches: Option<Receiver<Batch>>,
     batch: std::vec::IntoIter<Result<Row, ProgramError>>,
-    planner: Option<JoinHandle<()>>,
+    planner: Option<JoinHandle<R>>,
+    /// The planner, after its last row.
+    ended: Option<R>,
 }
 
-impl RowsAhead {
+impl<R> RowsAhead<R> {
     /// Rows of a batch, and batches that may wait.
     const BATCH: usize = 256;
     const WAITING: usize = 4;
+}
 
+impl<R: Iterator<Item = Result<Row, ProgramError>> + Send + 'static> RowsAhead<R> {
     /// Begins to plan.
-    pub fn new(mut rows: Rows) -> Self {
+    pub fn new(mut rows: R) -> Self {
         let (sender, receiver) = sync_channel(Self::WAITING);
         let planner = std::thread::spawn(move || {
             loop {
-                let batch: Vec<_> = rows.by_ref().take(Self::BATCH).collect();
+                let batch: Batch = rows.by_ref().take(Self::BATCH).collect();
                 // Nobody listens where a run has ended early.
-                if batch.is_empty() || sender.send(batch).is_err() {
-                    return;
+                if batch.is_empty() || interrupt::is_asked() || sender.send(batch).is_err() {
+                    return rows;
                 }
             }
         });
         let batch = Vec::new().into_iter();
-        Self { batches: Some(receiver), batch, planner: Some(planner) }
+        Self { batches: Some(receiver), batch, planner: Some(planner), ended: None }
+    }
+
+    /// Plans what is left, and returns the planner.
+    pub fn finish(mut self) -> Option<R> {
+        self.by_ref().for_each(drop);
+        self.ended.take()
     }
 }
 
-impl Iterator for RowsAhead {
+impl<R> Iterator for RowsAhead<R> {
     type Item = Result<Row, ProgramError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -111,55 +127,18 @@ impl Iterator for RowsAhead {
                 Err(_) => {
                     self.batches = None;
                     let ended = self.planner.take()?.join();
-                    return ended.map_or_else(|panic| resume_unwind(panic), |()| None);
+                    self.ended = Some(ended.unwrap_or_else(|panic| resume_unwind(panic)));
+                    return None;
                 }
             }
         }
     }
 }
 
-impl Drop for RowsAhead {
+impl<R> Drop for RowsAhead<R> {
     fn drop(&mut self) {
         self.batches = None;
         // A panic of the planner has been passed on above, or the run has ended before it.
         let _ = self.planner.take().map(JoinHandle::join);
-    }
-}
-
-/// The commands of a planned program, which is planned anew for each run.
-#[derive(Debug)]
-pub struct RowCommands<'a> {
-    file: &'a ProgramFile,
-    survey: &'a Survey,
-    kept: &'a Kept,
-}
-
-impl<'a> RowCommands<'a> {
-    /// The commands of this program; `kept` gets the error that ends them early.
-    pub fn new(file: &'a ProgramFile, survey: &'a Survey, kept: &'a Kept) -> Self {
-        Self { file, survey, kept }
-    }
-}
-
-impl Commands for RowCommands<'_> {
-    fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
-        let (rows, error) = match Rows::new(self.file) {
-            Ok(rows) => (Some(RowsAhead::new(rows)), None),
-            Err(error) => (None, Some(Err(error))),
-        };
-        let rows = rows.into_iter().flatten().chain(error);
-        let mut begun = false;
-        Box::new(self.kept.until_an_error(rows).flat_map(move |row| {
-            let count = row.segments.len();
-            let segment = |(axis, segment)| Command::Segment { axis, segment };
-            let segments = (0..).zip(row.segments).map(segment);
-            // All axes start when each has its first segment.
-            let first = !std::mem::replace(&mut begun, true);
-            segments.chain(first.then(|| Command::Start { mask: ((1_u16 << count) - 1) as u8 }))
-        }))
-    }
-
-    fn segments(&self) -> u64 {
-        self.survey.rows * self.survey.axes.len() as u64
     }
 }

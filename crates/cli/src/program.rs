@@ -4,7 +4,7 @@ use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::PlanProgress;
-use crate::recorded::{self, Recorded};
+use crate::recorded::{Recorded, RecordedRows};
 use carrystep_files::{InputError, Machine};
 use carrystep_program::{ProgramFile, Row, Settings, Survey};
 use carrystep_report::Detail;
@@ -33,16 +33,14 @@ pub fn survey(
     mut watch: impl FnMut(&Row) -> Result<(), Failure>,
 ) -> Result<(Survey, Recorded), Failure> {
     let mut progress = PlanProgress::of("rows");
-    let mut recorder = recorded::of_program(file, detail);
-    let survey = Survey::new(file, |row| {
+    let mut rows = RecordedRows::new(file, detail)?;
+    for row in rows.by_ref() {
         progress.one();
-        recorder.row(&recorded::motion(row));
-        watch(row)?;
-        interrupt::check()
-    })?;
+        watch(&row?)?;
+        interrupt::check()?;
+    }
     file.same()?;
-    let (time_use, drawing) = recorder.finish();
-    Ok((survey, Recorded { time_use, drawing }))
+    Ok(rows.finish(file))
 }
 
 /// Refuses options of move files for a program.

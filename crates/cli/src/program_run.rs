@@ -6,10 +6,12 @@ use crate::document::Named;
 use crate::failure::Failure;
 use crate::gateware::{self, CorePlan};
 use crate::interrupt;
-use crate::pass::{Kept, RowCommands};
+use crate::one_pass::OnePass;
+use crate::pass::Kept;
+use crate::program;
 use crate::program_table::ProgramFigures;
 use crate::progress::RunProgress;
-use crate::recorded::{self, Recorded};
+use crate::recorded;
 use crate::wanted::Wanted;
 use carrystep_check::{
     OwnCapture, PathAxis, PathChecker, PathReport, PathSetup, PinSink, PinsVcd, Tee, csv_writer,
@@ -17,7 +19,8 @@ use carrystep_check::{
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
-use carrystep_program::{Legs, ProgramFile, Survey};
+use carrystep_program::{AxisSurvey, Legs, ProgramFile, Survey};
+use carrystep_report::Detail;
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::{Job, Level};
 use schemars::JsonSchema;
@@ -71,10 +74,13 @@ impl fmt::Display for ProgramResult {
     }
 }
 
-/// Runs a planned program on a core at a level, checks every pulse and writes what is wanted.
+/// Plans a program, runs it on a core at a level, checks every pulse and writes what is wanted.
+///
+/// At the fast level the program is planned once, while it is run. The other levels need its length
+/// before they begin, and are so slow that the time for another plan does not matter.
 pub fn run(
     file: &ProgramFile,
-    (survey, recorded): (&Survey, &Recorded),
+    detail: Detail,
     (core, level): (Core, Level),
     wanted: &Wanted,
 ) -> Result<ProgramResult, Failure> {
@@ -87,35 +93,46 @@ pub fn run(
         Core::Parallel => None,
     };
     carrystep_simulators::available(level)?;
-    crate::job::fits_into_a_capture(survey.ticks, &build.timebase)?;
-    let mut files = wanted.begin()?;
+    let mut known = None;
+    if level != Level::Fast {
+        let (survey, _) = program::survey(file, Detail::Figures, |_| Ok(()))?;
+        crate::job::fits_into_a_capture(survey.ticks, &build.timebase)?;
+        known = Some(survey);
+    }
     let kept = Kept::default();
-    let program = RowCommands::new(file, survey, &kept);
+    let segments = known.as_ref().map_or(0, |survey| survey.rows * survey.axes.len() as u64);
+    let program = OnePass::new(file, detail, segments, &kept)?;
+    let moves = program.begin()?;
+    let mut files = wanted.begin()?;
     // Set when an output fails, so that the run ends early.
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
     let timebase = build.timebase;
-    let progress = RunProgress::new(level, survey.ticks * u64::from(timebase.clocks_per_tick()));
+    let total = known.as_ref().map(|survey| survey.ticks * u64::from(timebase.clocks_per_tick()));
+    let progress = RunProgress::new(level, total);
     let how_far = Some(progress.how_far());
     let axes = machine.axes.len();
-    let on = match &engine {
+    let ticks = known.as_ref().map_or(0, |survey| survey.ticks);
+    let more_clocks = known.is_none().then(|| program.clocks());
+    let on = |program| match &engine {
         None => {
-            let job = Job::new(&build, &program, survey.ticks);
-            CorePlan::Parallel(Job { axes, halt, how_far, ..job })
+            let job = Job::new(&build, program, ticks);
+            CorePlan::Parallel(Job { axes, more_clocks, halt, how_far, ..job })
         }
         Some(engine) => {
-            let job = EngineJob::new(engine, &program, survey.ticks);
-            CorePlan::Engine(EngineJob { halt, how_far, ..job })
+            let job = EngineJob::new(engine, program, ticks);
+            CorePlan::Engine(EngineJob { more_clocks, halt, how_far, ..job })
         }
     };
+    let looked_at = program.looked_at();
     // A job without motion has no start.
-    let load = if survey.rows > 0 { on.origin()? } else { 0 };
+    let load = if moves { on(&looked_at).origin() } else { Ok(0) };
+    kept.error()?;
+    let load = load?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());
 
-    let checker = PathChecker::new(
-        setup(file, survey, origin_ps, &timebase),
-        Box::new(kept.until_an_error(Legs::new(file)?)),
-    );
+    let checker =
+        PathChecker::new(setup(file, origin_ps), Box::new(kept.until_an_error(Legs::new(file)?)));
     let names = || machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };
     let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names())).transpose()?;
@@ -131,11 +148,11 @@ pub fn run(
 
     let started = Instant::now();
     // The checker follows the path in a thread of its own.
-    let (outcome, checker) = sink_beside(checker, |checker| -> Result<_, Failure> {
+    let (outcome, mut checker) = sink_beside(checker, |checker| -> Result<_, Failure> {
         let mut tee = Tee::new();
         tee.add(checker);
         writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
-        on.run_into(level, timebase, axes, &mut tee, (progress.how_far(), &deaf))
+        on(&program).run_into(level, timebase, axes, &mut tee, (progress.how_far(), &deaf))
     })?;
     // An error of reading explains whatever the run reports.
     kept.error()?;
@@ -145,8 +162,11 @@ pub fn run(
     drop(progress);
     drop(writers);
 
+    let (survey, recorded) = program.finish(file)?;
+    interrupt::check()?;
+    checker.ends(length_ps(&survey, &timebase), survey.axes.iter().map(AxisSurvey::steps));
     let check = checker.finish();
-    let plan = ProgramFigures::new(file, survey, &recorded.time_use);
+    let plan = ProgramFigures::new(file, &survey, &recorded.time_use);
     let positions: Vec<i32> = outcome.positions.into_iter().take(axes).collect();
     let landed =
         positions.iter().zip(&survey.axes).all(|(&found, axis)| i64::from(found) == axis.steps());
@@ -164,36 +184,30 @@ pub fn run(
     };
     if let Some(out) = &mut files.report {
         let source = recorded::source(file, survey.one_file, &recorded.time_use)?;
-        recorded::write(out, &title, &Named::new(&done), recorded, &source)?;
+        recorded::write(out, &title, &Named::new(&done), &recorded, &source)?;
     }
     files.keep()?;
     Ok(done)
 }
 
-/// What the checker compares the pulses with.
-pub fn setup<'a>(
-    file: &'a ProgramFile,
-    survey: &Survey,
-    origin_ps: u64,
-    timebase: &Timebase,
-) -> PathSetup<'a> {
+/// What the checker compares the pulses with, but for the end of the job.
+pub fn setup(file: &ProgramFile, origin_ps: u64) -> PathSetup<'_> {
     let letters = file.letters();
-    let axes = file.machine().axes.iter().zip(letters.of_axes()).zip(&survey.axes);
-    let axes = axes.map(|((axis, &letter), planned)| PathAxis {
+    let axes = file.machine().axes.iter().zip(letters.of_axes()).zip(file.start_steps());
+    let axes = axes.map(|((axis, &letter), start_steps)| PathAxis {
         name: &axis.name,
         letter,
         step: letters.step()[letter],
-        start_steps: planned.start_steps,
-        steps: planned.steps(),
+        start_steps,
+        steps: 0,
         pins_ns: axis.pins_ns,
     });
+    let (axes, start) = (axes.collect(), file.settings().start);
+    PathSetup { axes, start, origin_ps, total_ps: u64::MAX, slack_ps: 0 }
+}
+
+/// The length of a job, ps.
+pub fn length_ps(survey: &Survey, timebase: &Timebase) -> u64 {
     let ticks = u128::from(survey.ticks) * u128::from(timebase.tick_ns()) * 1000;
-    let total_ps = u64::try_from(ticks).unwrap_or(u64::MAX);
-    PathSetup {
-        axes: axes.collect(),
-        start: file.settings().start,
-        origin_ps,
-        total_ps,
-        slack_ps: 0,
-    }
+    u64::try_from(ticks).unwrap_or(u64::MAX)
 }

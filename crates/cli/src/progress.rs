@@ -23,8 +23,8 @@ pub struct RunProgress {
 }
 
 impl RunProgress {
-    /// The progress of a run of about `total` clocks at this level.
-    pub fn new(level: Level, total: u64) -> Self {
+    /// The progress of a run at this level, of about `total` clocks if that is known.
+    pub fn new(level: Level, total: Option<u64>) -> Self {
         let (how_far, over) = (Arc::new(HowFar::default()), Arc::new(AtomicBool::new(false)));
         let seen = (Arc::clone(&how_far), Arc::clone(&over));
         let watch = move || watch(level, total, &seen.0, &seen.1);
@@ -50,7 +50,7 @@ impl Drop for RunProgress {
 }
 
 /// Displays the progress until the run is over.
-fn watch(level: Level, total: u64, how_far: &HowFar, over: &AtomicBool) {
+fn watch(level: Level, total: Option<u64>, how_far: &HowFar, over: &AtomicBool) {
     let begun = Instant::now();
     let mut stage = (how_far.stage(), begun);
     let mut bar: Option<ProgressBar> = None;
@@ -62,14 +62,20 @@ fn watch(level: Level, total: u64, how_far: &HowFar, over: &AtomicBool) {
         if begun.elapsed() < SHORT {
             continue;
         }
-        let bar = bar.get_or_insert_with(|| begin(total));
-        let clock = how_far.clock().min(total);
-        bar.set_position(clock);
-        bar.set_prefix(match stage.0 {
+        let bar = bar.get_or_insert_with(|| total.map_or_else(spinner, begin));
+        let name = match stage.0 {
             RunStage::Runs => level.name().to_owned(),
             RunStage::ModelRuns => format!("model, then {level}"),
             RunStage::VerilogRuns => format!("{level} against the model"),
-        });
+        };
+        let Some(total) = total else {
+            bar.set_message(format!("{name}: {} M clocks", how_far.clock() / 1_000_000));
+            bar.tick();
+            continue;
+        };
+        let clock = how_far.clock().min(total);
+        bar.set_position(clock);
+        bar.set_prefix(name);
         bar.set_message(told(stage.1.elapsed(), clock, total));
     }
     if let Some(bar) = bar {

@@ -5,7 +5,7 @@ use crate::output::OutputFile;
 use crate::program_table::JERK_TIME;
 use carrystep_files::{Axis, Machine, decimal};
 use carrystep_plan::PlannedMove;
-use carrystep_program::{ProgramFile, Row};
+use carrystep_program::{ProgramError, ProgramFile, Row, Survey, SurveyedRows};
 use carrystep_report::{
     AxisSetup, Detail, Drawing, Motion, PageError, Recorder, TimeUse, common_rows, write_page,
 };
@@ -74,8 +74,40 @@ impl MoveRecorder {
     }
 }
 
+/// The rows of a program, of which figures and drawing are kept as they pass.
+#[derive(Debug)]
+pub struct RecordedRows {
+    rows: SurveyedRows,
+    recorder: Recorder,
+}
+
+impl RecordedRows {
+    /// Plans a program from its beginning.
+    pub fn new(file: &ProgramFile, detail: Detail) -> Result<Self, ProgramError> {
+        Ok(Self { rows: SurveyedRows::new(file)?, recorder: of_program(file, detail) })
+    }
+
+    /// What was kept; after the last row, of the program.
+    pub fn finish(self, file: &ProgramFile) -> (Survey, Recorded) {
+        let (time_use, drawing) = self.recorder.finish();
+        (self.rows.finish(file), Recorded { time_use, drawing })
+    }
+}
+
+impl Iterator for RecordedRows {
+    type Item = Result<Row, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let row = self.rows.next()?;
+        if let Ok(row) = &row {
+            self.recorder.row(&motion(row));
+        }
+        Some(row)
+    }
+}
+
 /// A recorder for the rows of a program.
-pub fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
+fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
     let machine = file.machine();
     let axes = machine.axes.iter().zip(file.letters().of_axes()).map(|(axis, &letter)| {
         let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
@@ -90,7 +122,7 @@ pub fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
 }
 
 /// A row of a program.
-pub fn motion(row: &Row) -> Motion<'_> {
+fn motion(row: &Row) -> Motion<'_> {
     let Row { ticks, segments, line, feed, off, corner, .. } = row;
     let (ticks, line, feed, off, corner) = (*ticks, *line, *feed, *off, *corner);
     Motion { ticks, segments, line, feed, given: false, off, corner }

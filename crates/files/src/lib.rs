@@ -19,6 +19,7 @@ pub mod error;
 mod input;
 mod long_file;
 pub mod machine;
+mod made_folders;
 pub mod move_file;
 mod moves;
 mod names;

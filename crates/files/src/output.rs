@@ -8,6 +8,7 @@
 //! name exists, the new file first receives a temporary name and is then renamed. A process that is
 //! killed between these two system calls leaves the temporary name behind.
 
+use crate::made_folders::MadeFolders;
 use crate::place::{End, Identity, folder, follow};
 use crate::registry::{self, Collision};
 use crate::unnamed::{beside, name, nameless};
@@ -137,8 +138,8 @@ impl OutputClaim {
     /// # Errors
     /// The operating system reports an error.
     pub fn begin(self, executable: bool) -> Result<NewFile, OutputFailure> {
-        let place = self.place(executable).map_err(|source| self.failed(source))?;
-        Ok(NewFile { claim: self, place })
+        let (place, made) = self.place(executable).map_err(|source| self.failed(source))?;
+        Ok(NewFile { claim: self, place, made })
     }
 
     /// Whether the output is a regular file, which is replaced, and no pipe or device.
@@ -149,13 +150,13 @@ impl OutputClaim {
     /// Writes a whole file to the disk and gives it the name. The claim remains.
     pub(crate) fn replace(&self, bytes: &[u8]) -> Result<(), OutputFailure> {
         let write = || {
-            let mut place = self.place(false)?;
+            let (mut place, made) = self.place(false)?;
             place.file().write_all(bytes)?;
             // After a power failure, the name must lead to the whole file or to the old one.
             place.file().sync_all()?;
-            Ok(place)
+            Ok((place, made))
         };
-        let place = write().map_err(|source| self.failed(source))?;
+        let (place, _made) = write().map_err(|source| self.failed(source))?;
         // While the old file is open, no other file gets its number, by which it is registered.
         let old = File::open(&self.shown);
         self.name(place)?;
@@ -183,20 +184,22 @@ impl OutputClaim {
         OutputFailure { path: self.shown.clone(), source }
     }
 
-    fn place(&self, executable: bool) -> io::Result<Place> {
+    fn place(&self, executable: bool) -> io::Result<(Place, MadeFolders)> {
+        let itself = |file| (Place::Itself(file), MadeFolders::default());
         match &self.at {
-            At::Itself(path) => File::options().write(true).open(path).map(Place::Itself),
-            At::Stdout => stdout().map(Place::Itself),
+            At::Itself(path) => File::options().write(true).open(path).map(itself),
+            At::Stdout => stdout().map(itself),
             At::Name(path) => {
                 let folder = folder(path);
                 if folder.is_file() {
                     return Err(ErrorKind::NotADirectory.into());
                 }
-                fs::create_dir_all(folder)?;
-                match nameless(folder, executable)? {
-                    Some(file) => Ok(Place::Nameless(file)),
-                    None => beside(folder, executable).map(Place::Beside),
-                }
+                let made = MadeFolders::make(folder)?;
+                let place = match nameless(folder, executable)? {
+                    Some(file) => Place::Nameless(file),
+                    None => beside(folder, executable).map(Place::Beside)?,
+                };
+                Ok((place, made))
             }
         }
     }
@@ -215,6 +218,8 @@ impl Drop for OutputClaim {
 pub struct NewFile {
     claim: OutputClaim,
     place: Place,
+    /// Folders that were made for the file; dropped after it.
+    made: MadeFolders,
 }
 
 #[derive(Debug)]
@@ -246,8 +251,9 @@ impl NewFile {
     /// # Errors
     /// The operating system reports an error; no file has appeared.
     pub fn appear(self) -> Result<PathBuf, OutputFailure> {
-        let Self { claim, place } = self;
+        let Self { claim, place, made } = self;
         claim.name(place)?;
+        drop(made);
         Ok(claim.shown.clone())
     }
 }

@@ -3,8 +3,9 @@
 use crate::error::{Fault, ProgramError};
 use crate::letter::unit;
 use crate::letters::Letters;
+use bigdecimal::BigDecimal;
 use carrystep_files::unit::digits;
-use carrystep_files::{InputError, Machine};
+use carrystep_files::{InputError, Machine, decimal};
 use carrystep_gcode::{DEFAULT_BLOCKS, Point};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -119,6 +120,22 @@ impl ProgramFile {
     /// How the program is to be run.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// The steps of each axis at a place, rounded half away from zero in exact decimals.
+    pub fn steps(&self, place: &Point) -> Vec<i64> {
+        let axes = self.machine.axes.iter().zip(self.letters.of_axes());
+        axes.map(|(axis, &letter)| {
+            let exact =
+                BigDecimal::try_from(place[letter]).unwrap_or_default() * &axis.steps_per_unit;
+            decimal::round_half_away(&exact).unwrap_or(i64::MAX)
+        })
+        .collect()
+    }
+
+    /// The steps of each axis at the place where the program begins.
+    pub fn start_steps(&self) -> Vec<i64> {
+        self.steps(&self.settings.start)
     }
 
     /// Checks that the file is still the one that was opened.

@@ -33,5 +33,5 @@ pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
 pub use rows::Rows;
-pub use survey::{AxisSurvey, Survey};
+pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::Switch;

@@ -1,13 +1,10 @@
-//! Plans a program once to its end, before anything is written or moves, and keeps its figures.
+//! Keeps the figures of a program while its rows pass, and plans a program once to its end.
 
 use crate::counts::Counts;
 use crate::error::ProgramError;
 use crate::file::ProgramFile;
 use crate::rows::Rows;
-use bigdecimal::BigDecimal;
 use carrystep_core::Segment;
-use carrystep_files::decimal;
-use carrystep_gcode::Point;
 use carrystep_job::Row;
 use carrystep_plan::Peaks;
 use carrystep_plan::exact::{speeds, travel};
@@ -72,6 +69,59 @@ impl AxisSurvey {
     }
 }
 
+/// The rows of a program, whose figures are kept as they pass. After an error there are no more.
+#[derive(Debug)]
+pub struct SurveyedRows {
+    rows: Rows,
+    ticks: u64,
+    count: u64,
+    axes: Vec<AxisSurvey>,
+}
+
+impl SurveyedRows {
+    /// Plans a program from its beginning.
+    ///
+    /// # Errors
+    /// As [`Rows::new`].
+    pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
+        let axis = |start_steps: i64| AxisSurvey {
+            start_steps,
+            end_steps: start_steps,
+            distance: 0,
+            extent: [0, 0],
+            peaks: Peaks::default(),
+        };
+        let axes = file.start_steps().into_iter().map(axis).collect();
+        Ok(Self { rows: Rows::new(file)?, ticks: 0, count: 0, axes })
+    }
+
+    /// The survey of the rows that have passed; after the last one, of the program.
+    pub fn finish(self, file: &ProgramFile) -> Survey {
+        let Self { rows, ticks, count, mut axes } = self;
+        for (axis, end_steps) in axes.iter_mut().zip(file.steps(rows.end())) {
+            axis.end_steps = end_steps;
+        }
+        let (counts, one_file) = (rows.counts().clone(), rows.one_file());
+        Survey { counts, one_file, ticks, rows: count, axes }
+    }
+}
+
+impl Iterator for SurveyedRows {
+    type Item = Result<Row, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let row = self.rows.next()?;
+        if let Ok(row) = &row {
+            self.ticks += u64::from(row.ticks);
+            self.count += 1;
+            for (axis, segment) in self.axes.iter_mut().zip(&row.segments) {
+                axis.add(segment);
+            }
+        }
+        Some(row)
+    }
+}
+
 impl Survey {
     /// Plans a program to its end. `watch` sees each row.
     ///
@@ -82,45 +132,15 @@ impl Survey {
         file: &ProgramFile,
         mut watch: impl FnMut(&Row) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let start = steps(file, &file.settings().start);
-        let axis = |&start_steps: &i64| AxisSurvey {
-            start_steps,
-            end_steps: start_steps,
-            distance: 0,
-            extent: [0, 0],
-            peaks: Peaks::default(),
-        };
-        let mut axes: Vec<AxisSurvey> = start.iter().map(axis).collect();
-        let (mut ticks, mut count) = (0, 0);
-        let mut rows = Rows::new(file)?;
+        let mut rows = SurveyedRows::new(file)?;
         for row in rows.by_ref() {
-            let row = row?;
-            ticks += u64::from(row.ticks);
-            count += 1;
-            for (axis, segment) in axes.iter_mut().zip(&row.segments) {
-                axis.add(segment);
-            }
-            watch(&row)?;
+            watch(&row?)?;
         }
-        for (axis, end_steps) in axes.iter_mut().zip(steps(file, rows.end())) {
-            axis.end_steps = end_steps;
-        }
-        let (counts, one_file) = (rows.counts().clone(), rows.one_file());
-        Ok(Self { counts, one_file, ticks, rows: count, axes })
+        Ok(rows.finish(file))
     }
 
     /// Whether every axis ends exactly at its target, P included.
     pub fn landed(&self) -> bool {
         self.axes.iter().all(|axis| axis.residue() == 0)
     }
-}
-
-/// The steps of each axis at a place, rounded half away from zero in exact decimals.
-fn steps(file: &ProgramFile, place: &Point) -> Vec<i64> {
-    let axes = file.machine().axes.iter().zip(file.letters().of_axes());
-    axes.map(|(axis, &letter)| {
-        let exact = BigDecimal::try_from(place[letter]).unwrap_or_default() * &axis.steps_per_unit;
-        decimal::round_half_away(&exact).unwrap_or(i64::MAX)
-    })
-    .collect()
 }

@@ -8,9 +8,11 @@ pub mod run;
 
 use crate::Commands;
 use carrystep_core::engine::{
-    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, Put, SeekSource,
+    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put,
+    SEGMENT_WORDS, SeekSource,
 };
 use carrystep_core::{Command, Program, Segment};
+use std::collections::VecDeque;
 use std::fmt;
 
 /// An engine that is simulated in Rust, clock by clock.
@@ -122,6 +124,9 @@ pub enum Event {
     Stray(u32),
 }
 
+/// Most words that a host tells in advance: a segment of each axis.
+const TOLD: usize = MAX_AXES * (SEGMENT_WORDS as usize + 1);
+
 /// Events, in the order of their cycles.
 pub type Events = Vec<(u64, Event)>;
 
@@ -130,8 +135,10 @@ pub type Events = Vec<(u64, Event)>;
 pub struct EngineHost<'a> {
     acts: Box<dyn Iterator<Item = Act> + 'a>,
     current: Option<Act>,
-    /// Actions that an event has interrupted, the last one first.
-    interrupted: Vec<Option<Act>>,
+    /// Actions after the current one: read ahead, or interrupted by an event.
+    later: VecDeque<Act>,
+    /// The words that are told in advance.
+    told: Vec<Put>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
     /// Whether the watchdog is restarted in every cycle.
@@ -177,17 +184,19 @@ impl<'a> EngineHost<'a> {
 
     fn doing(
         build: &EngineBuild,
-        mut acts: Box<dyn Iterator<Item = Act> + 'a>,
+        acts: Box<dyn Iterator<Item = Act> + 'a>,
         events: Events,
         awake: bool,
     ) -> Self {
+        let mut acts: Box<dyn Iterator<Item = Act> + 'a> = Box::new(acts.fuse());
         let current = acts.next();
         let events = events.into_iter().peekable();
         let around = EngineInputs { enable: true, ..EngineInputs::default() };
         let mut host = Self {
             acts,
             current,
-            interrupted: Vec::new(),
+            later: VecDeque::new(),
+            told: Vec::new(),
             events,
             cycle: 0,
             awake,
@@ -236,7 +245,7 @@ impl<'a> EngineHost<'a> {
                 Event::Name(axis, slot) => {
                     let put = Put { axis, word: CUT_WORD, data: slot.into() };
                     let interrupted = self.current.replace(Act::Put(put));
-                    self.interrupted.push(interrupted);
+                    interrupted.into_iter().for_each(|act| self.later.push_front(act));
                 }
                 Event::Cut => self.around.cut = true,
                 Event::Outputs(bits) => self.outputs = bits & self.commit_bits,
@@ -249,17 +258,18 @@ impl<'a> EngineHost<'a> {
     pub fn inputs(&self, fault: bool) -> EngineInputs {
         let inputs = self.around.levels(&self.guard);
         match self.current {
-            Some(Act::Put(put)) if !fault => {
-                let outputs = if put.axis == 0 { self.outputs } else { 0 };
-                let bits = if put.word == COMMIT { outputs | self.stray } else { 0 };
-                let (word, data) = (put.word ^ self.word_error, put.data | bits);
-                let put = Put { word, data, ..put };
-                EngineInputs { put: Some(put), ..inputs }
-            }
+            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(self.sent(put)), ..inputs },
             Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
             Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
             _ => inputs,
         }
+    }
+
+    /// A word as the host sends it: with its wrong number, and the outputs of a commit.
+    fn sent(&self, put: Put) -> Put {
+        let outputs = if put.axis == 0 { self.outputs } else { 0 };
+        let bits = if put.word == COMMIT { outputs | self.stray } else { 0 };
+        Put { word: put.word ^ self.word_error, data: put.data | bits, ..put }
     }
 
     /// Continues with the next command if the current one was accepted in this cycle.
@@ -276,13 +286,39 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) => !fault,
         };
         if done {
-            self.current = match self.interrupted.pop() {
-                Some(act) => act,
-                None => self.acts.next(),
-            };
+            self.go_on();
         }
         self.cycle += 1;
         self.happen();
+    }
+
+    /// Continues with the next action.
+    fn go_on(&mut self) {
+        self.current = self.later.pop_front().or_else(|| self.acts.next());
+    }
+
+    /// The word that the host offers now and the words after it: up to its next action that is no
+    /// word, or to the last commit of the segments that it sends side by side. Empty if the host
+    /// offers no word now.
+    pub fn offered(&mut self) -> &[Put] {
+        self.told.clear();
+        let mut act = self.current.filter(|_| !self.fault);
+        let mut ends = false;
+        while let Some(Act::Put(put)) = act {
+            if ends && put.word != COMMIT {
+                break;
+            }
+            ends = put.word == COMMIT;
+            self.told.push(self.sent(put));
+            if self.told.len() == TOLD {
+                break;
+            }
+            if self.told.len() > self.later.len() {
+                self.later.extend(self.acts.next());
+            }
+            act = self.later.get(self.told.len() - 1).copied();
+        }
+        &self.told
     }
 
     /// Simulates one cycle of a core under this host, and returns its inputs and outputs.
@@ -313,10 +349,18 @@ impl<'a> EngineHost<'a> {
     /// Number of cycles in which the host's inputs stay the same, as long as the outputs make it
     /// wait and no new fault occurs.
     pub fn patience(&mut self, outputs: &EngineOutputs) -> u64 {
+        match self.current {
+            Some(Act::Put(_)) if outputs.put_ready => 0,
+            _ => self.patience_but_for_words(outputs),
+        }
+    }
+
+    /// As [`EngineHost::patience`], where words are accepted meanwhile.
+    pub fn patience_but_for_words(&mut self, outputs: &EngineOutputs) -> u64 {
         let fault = outputs.fault.is_some();
         let blocked = match self.current {
             Some(Act::Wait(clocks)) => clocks.saturating_sub(1).into(),
-            Some(Act::Put(_)) if fault || outputs.put_ready => 0,
+            Some(Act::Put(_)) if fault => 0,
             Some(Act::Start(_)) if fault || outputs.start_ready => 0,
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
@@ -344,8 +388,13 @@ impl<'a> EngineHost<'a> {
         self.cycle += cycles;
     }
 
+    /// Continues after this many of the [`offered`](EngineHost::offered) words.
+    pub fn accepted(&mut self, words: usize) {
+        (0..words).for_each(|_| self.go_on());
+    }
+
     /// Whether no command is left.
     pub fn is_done(&mut self) -> bool {
-        self.current.is_none() && self.interrupted.is_empty() && self.events.peek().is_none()
+        self.current.is_none() && self.events.peek().is_none()
     }
 }

@@ -13,7 +13,7 @@ use carrystep_model::Fast;
 pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     let mut replay = Replay::new(&job.build.pins, observer);
     let end = run(job, &mut replay);
-    replay.reach(end.as_ref().map_or(job.max_clocks, |outcome| outcome.clocks));
+    replay.reach(end.as_ref().map_or(job.limit(), |outcome| outcome.clocks));
     end
 }
 
@@ -28,7 +28,7 @@ pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outco
     let mut host = Host::new(job.program);
     let mut quiet = 0;
     let mut origin = None;
-    while core.cycle() < job.max_clocks {
+    while core.cycle() < job.limit() {
         if halted(job.halt) {
             return Err(LevelError::Halted);
         }
@@ -46,7 +46,7 @@ pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outco
             return Ok(Outcome { clocks: cycle + 1, origin, last: outputs });
         }
         let to_the_end = if quiet > 0 { job.tail - quiet } else { u64::MAX };
-        let most = host.patience(&outputs).min(to_the_end).min(job.max_clocks - cycle);
+        let most = host.patience(&outputs).min(to_the_end).min(job.limit() - cycle);
         match if most > 0 { core.leap(&inputs, most, listener) } else { 0 } {
             0 => {
                 host.advance(&outputs);
@@ -59,5 +59,5 @@ pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outco
             }
         }
     }
-    Err(LevelError::Endless(job.max_clocks))
+    Err(LevelError::Endless(job.limit()))
 }

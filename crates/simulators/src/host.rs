@@ -105,7 +105,8 @@ impl<'a> Host<'a> {
 /// The first cycle after a start; `None` if no start is executed.
 pub(crate) fn first_start(core: &mut impl SimulatedCore, job: &Job<'_>) -> Option<u64> {
     let mut host = Host::new(job.program);
-    for cycle in 0..job.max_clocks {
+    let mut cycle = 0;
+    while cycle < job.limit() {
         let inputs = host.inputs(false);
         let outputs = core.outputs(&inputs);
         if outputs.started {
@@ -113,6 +114,7 @@ pub(crate) fn first_start(core: &mut impl SimulatedCore, job: &Job<'_>) -> Optio
         }
         host.advance(&outputs);
         core.clock(&inputs);
+        cycle += 1;
     }
     None
 }

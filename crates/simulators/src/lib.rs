@@ -27,7 +27,7 @@ use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Build};
 use carrystep_tools::programs::Tool;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
@@ -73,6 +73,9 @@ pub struct Job<'a> {
     pub tail: u64,
     /// The run fails after this number of cycles.
     pub max_clocks: u64,
+    /// What the commands that have been read add to this number, if they are planned while they are
+    /// run. Only the fast level has such runs.
+    pub more_clocks: Option<&'a AtomicU64>,
     /// Flags that end the run early.
     pub halt: Halt<'a>,
     /// Receives the progress of the run.
@@ -101,10 +104,22 @@ impl<'a> Job<'a> {
             program,
             tail: slack,
             max_clocks: (ticks + 8) * clocks + 4 * slack,
+            more_clocks: None,
             halt: &[],
             how_far: None,
         }
     }
+
+    /// The greatest number of cycles, as far as it is known.
+    pub(crate) fn limit(&self) -> u64 {
+        limit(self.max_clocks, self.more_clocks)
+    }
+}
+
+/// A greatest number of cycles, with what is added to it while commands are read.
+pub(crate) fn limit(max_clocks: u64, more_clocks: Option<&AtomicU64>) -> u64 {
+    let more = more_clocks.map_or(0, |more| more.load(Ordering::Relaxed));
+    max_clocks.saturating_add(more)
 }
 
 /// Result of a run.
@@ -220,7 +235,7 @@ pub fn run_verilog(
 /// [`LevelError::Endless`] if the program has no start; [`LevelError::Axes`] if no core has the
 /// number of axes of the job.
 pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
-    host::first_start(&mut model(job)?, job).ok_or(LevelError::Endless(job.max_clocks))
+    host::first_start(&mut model(job)?, job).ok_or_else(|| LevelError::Endless(job.limit()))
 }
 
 /// The clock-by-clock model of a job's core.

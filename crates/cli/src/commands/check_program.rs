@@ -47,18 +47,18 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     job::fits_into_a_capture(survey.ticks, &timebase)?;
 
     let kept = Kept::default();
-    let mut setup = program_run::setup(&file, &survey, 0, &timebase);
+    let mut setup = program_run::setup(&file, 0);
+    for (axis, planned) in setup.axes.iter_mut().zip(&survey.axes) {
+        axis.steps = planned.steps();
+    }
     setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
-    let rows = match arguments.path_only {
-        true => {
-            setup.total_ps = u64::MAX;
-            None
-        }
-        false => {
-            let rows = RowsAhead::new(Rows::new(&file)?);
-            let rows = kept.until_an_error(rows).map(|row| row.segments);
-            Some(Box::new(rows) as PlannedRows<'_>)
-        }
+    let rows = if arguments.path_only {
+        None
+    } else {
+        setup.total_ps = program_run::length_ps(&survey, &timebase);
+        let rows = RowsAhead::new(Rows::new(&file)?);
+        let rows = kept.until_an_error(rows).map(|row| row.segments);
+        Some(Box::new(rows) as PlannedRows<'_>)
     };
     let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
     let checker = JobChecker::new(setup, legs, rows, &timebase, origin);

@@ -48,7 +48,6 @@ fn run_program(arguments: &Simulate) -> Result<(), Failure> {
     ])?;
     let file = program::load(&arguments.file, &arguments.program)?;
     let detail = recorded::detail(arguments.report.is_some());
-    let (survey, recorded) = program::survey(&file, detail, |_| Ok(()))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),
         csv: arguments.csv.clone(),
@@ -56,7 +55,7 @@ fn run_program(arguments: &Simulate) -> Result<(), Failure> {
         ..Wanted::default()
     };
     let on = (arguments.core, arguments.level);
-    let done = program_run::run(&file, (&survey, &recorded), on, &wanted)?;
+    let done = program_run::run(&file, detail, on, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

@@ -195,6 +195,20 @@ fn mistakes_are_refused_with_their_place_and_nothing_is_written() {
     }
 }
 
+/// `simulate` plans while it runs, so that the run has begun when it reads the last line.
+#[test]
+fn mistake_behind_a_long_rest_is_refused_and_no_file_appears() {
+    let folder = folder("G1 X1 F600\nG4 P300\nG1 X2 Q1\n");
+    for level in ["fast", "fast --core parallel"] {
+        let arguments = format!(
+            "simulate job.ngc --machine m.toml --vcd new/a.vcd --csv a.csv --level {level}"
+        );
+        folder.run(&arguments).refuses_at("job.ngc", (3, 7), "Q");
+        folder.run(&format!("{arguments} --json")).refuses("Q");
+        assert_eq!(folder.files(), ["job.ngc", "m.toml"], "no folder either");
+    }
+}
+
 #[test]
 fn files_that_are_no_programs_are_refused() {
     let mut binary: Vec<u8> = (0..=255).collect();

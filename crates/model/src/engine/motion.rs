@@ -27,6 +27,7 @@ mod reset;
 mod seek;
 mod strobe;
 mod switches;
+mod words;
 
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
@@ -159,7 +160,10 @@ impl Motion {
                 .time_slot_at(PUT_BEAT)
                 .filter(|axis| *axis == put_axis)
                 .map(|axis| self.axis_models[axis].room()),
-            started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
+            // Without an armed start there is no decision, and no need for the tick.
+            started: strobe
+                && self.armed.is_some()
+                && matches!(self.decision(&self.ticked()), Decision::Go(_)),
         }
     }
 

@@ -1,17 +1,17 @@
 //! The engine's motion without visiting every clock. States, outputs and faults are exactly those
 //! of [`Motion`].
 //!
-//! It leaps over clocks in which the axes only repeat their additions, ramps included. Accepted
-//! words, loads, starts, calls of stops, changes of debounced switches, hits of seeks, edges of the
-//! latch and clears are executed by the
-//! clock-by-clock model.
+//! It leaps over clocks in which the axes only repeat their additions, ramps included. Loads,
+//! starts, calls of stops, changes of debounced switches, hits of seeks, edges of the latch and
+//! clears are executed by the clock-by-clock model. So are accepted words, unless the host tells
+//! which words it offers next.
 
 use super::edges::{self, Edges};
 use super::passage::{From, Passages};
 use crate::engine::Motion;
 use crate::parts::moving::Moving;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES};
+use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES, Put};
 
 /// The engine without the words of state that only a host reads, and the number of the clock cycle
 /// that it is in. [`HostedEngine`](super::HostedEngine) has these words too.
@@ -99,6 +99,21 @@ impl FastEngine {
         self.leap_fitting(inputs, most, |clocks| clocks, to)
     }
 
+    /// As [`FastEngine::leap`], but words are accepted in the skipped cycles. `words` are those that
+    /// the host offers, the first of them in `inputs`; each is offered from the cycle after the one
+    /// in which the word before it was accepted. Returns the number of cycles, and the number of
+    /// words that were accepted in them.
+    #[inline]
+    pub fn leap_taking(
+        &mut self,
+        inputs: &EngineInputs,
+        words: &[Put],
+        most: u64,
+        to: &mut impl Edges,
+    ) -> (u64, usize) {
+        self.leap_over(inputs, (words, true), most, |clocks| clocks, to)
+    }
+
     /// As [`FastEngine::leap`], but of the number of cycles that could be skipped, only `fit` of it
     /// are skipped. `fit` must not return more than it is given.
     pub(super) fn leap_fitting(
@@ -108,7 +123,22 @@ impl FastEngine {
         fit: impl Fn(u64) -> u64,
         to: &mut impl Edges,
     ) -> u64 {
-        let mut clocks = self.core.plain_clocks(inputs, most.min(LONGEST));
+        self.leap_over(inputs, (inputs.put.as_slice(), false), most, fit, to).0
+    }
+
+    /// Skips cycles, and returns the number of cycles and of words that were accepted in them. The
+    /// host offers `words`; if `takes` is false, the last skipped cycle is before the one in which
+    /// the first of them is accepted.
+    fn leap_over(
+        &mut self,
+        inputs: &EngineInputs,
+        (words, takes): (&[Put], bool),
+        most: u64,
+        fit: impl Fn(u64) -> u64,
+        to: &mut impl Edges,
+    ) -> (u64, usize) {
+        let plain = self.core.plain_clocks(inputs, most.min(LONGEST));
+        let mut clocks = self.core.taking(words, takes, plain).0;
         if clocks > 0 && !self.core.is_still() {
             let clock_of_tick = self.core.clock_of_tick().into();
             self.axes.clear();
@@ -116,16 +146,18 @@ impl FastEngine {
             let build = self.core.build();
             let from = From { cycle: self.cycle, clock_of_tick };
             let strobes;
-            let fit = |longest: u64| fit(longest.min(clocks));
+            let fit = |longest: u64| fit(self.core.taking(words, takes, longest.min(clocks)).0);
             (clocks, strobes) =
                 self.passages.pass(&mut self.axes, from, fit, &build.timebase, &build.pins, to);
             self.core.moved(&self.axes, strobes);
         } else {
             clocks = fit(clocks);
         }
+        let (_, taken) = self.core.taking(words, takes, clocks);
+        self.core.take(&words[..taken]);
         self.core.pass(inputs, clocks);
         self.cycle += clocks;
-        clocks
+        (clocks, taken)
     }
 }
 

@@ -4,7 +4,7 @@ use super::run::{EngineJob, EngineObserver, EngineOutcome};
 use super::{EngineHost, replay};
 use crate::fast::{EdgesOnly, Listener};
 use crate::replay::Replay;
-use crate::{LevelError, halted, how_far};
+use crate::{LevelError, halted, how_far, limit};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_model::FastEngine;
 
@@ -30,11 +30,16 @@ impl Fed<'_> {
         let told = EngineOutputs { room: None, pwm: false, ..quiet };
         listener.outputs(self.core.cycle(), &told);
         let rests = self.host.is_done() && (outputs.idle || outputs.halted);
-        let patience =
-            self.host.patience(&outputs).min(if rests { most_at_rest.min(most) } else { most });
-        let cycles = if patience > 0 { self.core.leap(&inputs, patience, listener) } else { 0 };
+        let most = if rests { most_at_rest.min(most) } else { most };
+        let patience = self.host.patience_but_for_words(&outputs).min(most);
+        let (cycles, words) = if patience > 0 {
+            self.core.leap_taking(&inputs, self.host.offered(), patience, listener)
+        } else {
+            (0, 0)
+        };
         if cycles > 0 {
             self.host.wait(cycles);
+            self.host.accepted(words);
         } else {
             self.host.advance(&outputs);
             self.core.clock(&inputs, listener);
@@ -44,6 +49,11 @@ impl Fed<'_> {
 }
 
 impl EngineJob<'_> {
+    /// The greatest number of cycles, as far as it is known.
+    fn limit(&self) -> u64 {
+        limit(self.max_clocks, self.more_clocks)
+    }
+
     fn fed(&self) -> Fed<'_> {
         Fed { core: FastEngine::new(self.build), host: self.host() }
     }
@@ -59,13 +69,13 @@ impl EngineJob<'_> {
         let mut fed = self.fed();
         let settle = replay::settle(self.build);
         let mut quiet = 0;
-        while fed.core.cycle() < self.max_clocks {
+        while fed.core.cycle() < self.limit() {
             if halted(self.halt) {
                 return Err(LevelError::Halted);
             }
             how_far::tell(self.how_far, fed.core.cycle());
             let (cycles, outputs) =
-                fed.advance(self.max_clocks - fed.core.cycle(), settle - quiet, listener);
+                fed.advance(self.limit() - fed.core.cycle(), settle - quiet, listener);
             quiet = if fed.host.is_done() && (outputs.idle || outputs.halted) {
                 quiet + cycles
             } else {
@@ -82,7 +92,7 @@ impl EngineJob<'_> {
                 });
             }
         }
-        Err(LevelError::Endless(self.max_clocks))
+        Err(LevelError::Endless(self.limit()))
     }
 
     /// As [`Self::run_fast`], for an observer. It is called for each cycle in which any output
@@ -93,7 +103,7 @@ impl EngineJob<'_> {
     ) -> Result<EngineOutcome, LevelError> {
         let mut replay = Replay::new(&self.build.pins, observer);
         let end = self.run_fast(&mut replay);
-        replay.reach(end.as_ref().map_or(self.max_clocks, |outcome| outcome.clocks));
+        replay.reach(end.as_ref().map_or(self.limit(), |outcome| outcome.clocks));
         end
     }
 
@@ -104,13 +114,13 @@ impl EngineJob<'_> {
     /// [`LevelError::Endless`] if no start is executed.
     pub fn origin(&self) -> Result<u64, LevelError> {
         let mut fed = self.fed();
-        while fed.core.cycle() < self.max_clocks {
-            let most = self.max_clocks - fed.core.cycle();
+        while fed.core.cycle() < self.limit() {
+            let most = self.limit() - fed.core.cycle();
             // A leap over several cycles contains no start.
             if fed.advance(most, most, &mut EdgesOnly(())).1.started {
                 return Ok(fed.core.cycle());
             }
         }
-        Err(LevelError::Endless(self.max_clocks))
+        Err(LevelError::Endless(self.limit()))
     }
 }

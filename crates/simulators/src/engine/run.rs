@@ -7,6 +7,10 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineOutputs};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
+use std::sync::atomic::AtomicU64;
+
+/// Ticks that a host may need for the words of one segment, with a reserve. Runs are limited by it.
+pub const TICKS_TO_SEND: u64 = 10;
 
 /// Index of the position in what is kept of an axis.
 const POSITION: usize = 2;
@@ -20,6 +24,9 @@ pub struct EngineJob<'a> {
     pub program: &'a dyn Commands,
     /// The run fails after this number of cycles.
     pub max_clocks: u64,
+    /// What the commands that have been read add to this number, if they are planned while they are
+    /// run. Only the fast level has such runs.
+    pub more_clocks: Option<&'a AtomicU64>,
     /// Flags that end the run early.
     pub halt: Halt<'a>,
     /// Receives the progress of the run.
@@ -53,8 +60,9 @@ impl<'a> EngineJob<'a> {
             .max()
             .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        let max_clocks = (ticks + warm + 10 * program.segments() + 100) * clocks + 4 * pins;
-        Self { build, program, max_clocks, halt: &[], how_far: None }
+        let max_clocks =
+            (ticks + warm + TICKS_TO_SEND * program.segments() + 100) * clocks + 4 * pins;
+        Self { build, program, max_clocks, more_clocks: None, halt: &[], how_far: None }
     }
 
     pub(super) fn host(&self) -> EngineHost<'_> {

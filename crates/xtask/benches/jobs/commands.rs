@@ -120,8 +120,7 @@ pub fn speed_and_memory(
     let real = relief_s * times as f64 / wall;
     println!(
         "\n`simulate` of {times} times the relief, {:.0} s, with its check: {wall:.1} s on the clock \
-         ({real:.0} times real time) and {processor:.1} s of processor time, of which two cores can \
-         share the part behind the first planning.",
+         ({real:.0} times real time)\nand {processor:.1} s of processor time.",
         relief_s * times as f64
     );
     judge(missed, real >= SIMULATED, format!("simulate: {real:.0} x real time of {SIMULATED}"));

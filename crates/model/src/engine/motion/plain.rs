@@ -9,13 +9,11 @@
 use super::axis_model::AxisModel;
 use super::guard::Stop;
 use super::seek::AxisSeek;
-use super::switches::{INTERLOCK_ROW, LAST_BEAT, SAMPLE_BEAT, Switch};
+use super::switches::{INTERLOCK_ROW, SAMPLE_BEAT, Switch};
 use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
-use carrystep_core::engine::{
-    CUT_WORD, EngineInputs, LimitWiring, PUT_BEAT, SWITCH_ROWS, TIME_SLOT_CLOCKS,
-};
+use carrystep_core::engine::{EngineInputs, LimitWiring, SWITCH_ROWS, TIME_SLOT_CLOCKS};
 
 /// Strobes before the first event, and ticks before the first tick with an event that comes before
 /// its strobe.
@@ -69,7 +67,7 @@ impl Motion {
     }
 
     /// The number of cycles, at most `most`, in which these inputs change nothing and every strobe
-    /// only adds.
+    /// only adds, but for the words that are taken in them ([`Motion::taking`]).
     pub(crate) fn plain_clocks(&self, inputs: &EngineInputs, most: u64) -> u64 {
         if !self.is_steady(inputs) {
             return 0;
@@ -80,7 +78,7 @@ impl Motion {
         let Some(whole) = ticks.checked_sub(1) else { return 0 };
         let to_tick = whole.saturating_mul(per_tick).saturating_add(to_strobe + 1);
         let to_event = strobes.saturating_mul(per_tick).saturating_add(to_strobe).min(to_tick);
-        most.min(to_event).min(self.clocks_to_put(inputs))
+        most.min(to_event)
     }
 
     /// True if nothing happens before the next strobe except on the pins.
@@ -104,19 +102,6 @@ impl Motion {
             && !(self.rest == 2 && busy)
             && self.supervisor.is_steady(guard, inputs, idle, stop)
             && self.axis_models.iter().all(|axis_model| !axis_model.shaper.overrun && (!stop.frozen || axis_model.is_still(true)))
-    }
-
-    /// Clocks before the clock in which the offered word is accepted.
-    fn clocks_to_put(&self, inputs: &EngineInputs) -> u64 {
-        let Some(put) = inputs.put.filter(|_| self.stop.fault.is_none()) else { return u64::MAX };
-        let names = put.word & CUT_WORD != 0;
-        if !names && self.axis_models[usize::from(put.axis)].room() == 0 {
-            return u64::MAX;
-        }
-        let beat = if names { LAST_BEAT } else { PUT_BEAT };
-        let (beat, per_tick) =
-            (u32::from(put.axis) * TIME_SLOT_CLOCKS + beat, self.clocks_per_tick());
-        ((beat + per_tick - self.clock) % per_tick).into()
     }
 
     /// How long nothing happens but that strobes add and samples count.

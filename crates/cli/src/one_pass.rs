@@ -1,0 +1,186 @@
+//! A program that is planned once, in a thread of its own. The search for the first start looks at
+//! the first rows, the run takes all rows, and the figures of each row are added up before either
+//! gets it.
+//!
+//! ```text
+//! planner's thread         read ahead                 taken
+//! rows, figures  ------->  first rows, kept  ------>  the run
+//!                            '-> search for the start, which only looks at them
+//! ```
+
+use crate::failure::Failure;
+use crate::job;
+use crate::pass::{Kept, RowsAhead};
+use crate::recorded::{Recorded, RecordedRows};
+use carrystep_core::{Command, Timebase};
+use carrystep_program::{ProgramFile, Row, Survey};
+use carrystep_report::Detail;
+use carrystep_simulators::Commands;
+use carrystep_simulators::engine::run::TICKS_TO_SEND;
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Rows that are planned before anything is written: 16 s of motion or more.
+const FIRST: usize = 4096;
+
+/// The one pass over a program. As commands, it gives each row once.
+pub struct OnePass<'a> {
+    kept: &'a Kept,
+    timebase: Timebase,
+    pulled: Mutex<Pulled>,
+    /// [`OnePass::clocks`].
+    clocks: AtomicU64,
+    /// Number of segments; 0 if it is not known.
+    segments: u64,
+}
+
+/// The rows, as far as they have been read.
+struct Pulled {
+    ahead: RowsAhead<RecordedRows>,
+    /// Rows that have been looked at and not taken.
+    seen: VecDeque<Row>,
+    ticks: u64,
+}
+
+impl<'a> OnePass<'a> {
+    /// Begins to plan. `kept` receives the error that ends the pass early. `segments` is the number
+    /// of segments if an earlier pass has counted them, else 0.
+    pub fn new(
+        file: &ProgramFile,
+        detail: Detail,
+        segments: u64,
+        kept: &'a Kept,
+    ) -> Result<Self, Failure> {
+        let ahead = RowsAhead::new(RecordedRows::new(file, detail)?);
+        Ok(Self {
+            kept,
+            timebase: file.machine().timebase,
+            pulled: Mutex::new(Pulled { ahead, seen: VecDeque::new(), ticks: 0 }),
+            clocks: AtomicU64::new(0),
+            segments,
+        })
+    }
+
+    /// Looks at the first rows, so that a mistake of a short program is found before anything is
+    /// written. Returns whether there is any row.
+    pub fn begin(&self) -> Result<bool, Failure> {
+        match self.look(FIRST - 1) {
+            Some(Err(error)) => Err(error),
+            Some(Ok(_)) | None => Ok(!self.lock().seen.is_empty()),
+        }
+    }
+
+    /// The number of clocks that a run needs at most for the rows that have been read so far.
+    pub fn clocks(&self) -> &AtomicU64 {
+        &self.clocks
+    }
+
+    /// The same commands from the first row that has not been taken, which stays in its place.
+    pub fn looked_at(&self) -> LookedAt<'_> {
+        LookedAt(self)
+    }
+
+    /// Plans what is left, and returns the figures.
+    pub fn finish(self, file: &ProgramFile) -> Result<(Survey, Recorded), Failure> {
+        let Pulled { ahead, .. } = self.pulled.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let rows = ahead.finish();
+        rows.map(|rows| rows.finish(file)).ok_or_else(|| Failure::Run("no plan".into()))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Pulled> {
+        self.pulled.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Reads the next row from the planner.
+    fn pull(&self, pulled: &mut Pulled) -> Option<Result<Row, Failure>> {
+        let row = match pulled.ahead.next()? {
+            Ok(row) => row,
+            Err(error) => return Some(Err(error.into())),
+        };
+        pulled.ticks = pulled.ticks.saturating_add(row.ticks.into());
+        if job::fits_into_a_capture(pulled.ticks, &self.timebase).is_err() {
+            return Some(Err(self.too_long(pulled)));
+        }
+        let send = TICKS_TO_SEND * row.segments.len() as u64;
+        let clocks = (u64::from(row.ticks) + send) * u64::from(self.timebase.clocks_per_tick());
+        self.clocks.fetch_add(clocks, Ordering::Relaxed);
+        Some(Ok(row))
+    }
+
+    /// Plans the rest of a job that is too long, and tells how long it is.
+    fn too_long(&self, pulled: &mut Pulled) -> Failure {
+        for row in pulled.ahead.by_ref() {
+            match row {
+                Ok(row) => pulled.ticks = pulled.ticks.saturating_add(row.ticks.into()),
+                Err(error) => return error.into(),
+            }
+        }
+        let fits = job::fits_into_a_capture(pulled.ticks, &self.timebase);
+        fits.err().unwrap_or_else(|| Failure::Run("the job is too long".into()))
+    }
+
+    /// Takes the next row.
+    fn take(&self) -> Option<Result<Row, Failure>> {
+        let mut pulled = self.lock();
+        pulled.seen.pop_front().map(Ok).or_else(|| self.pull(&mut pulled))
+    }
+
+    /// Looks at a row, counted from the first that has not been taken.
+    fn look(&self, number: usize) -> Option<Result<Row, Failure>> {
+        let mut pulled = self.lock();
+        while pulled.seen.len() <= number {
+            match self.pull(&mut pulled)? {
+                Ok(row) => pulled.seen.push_back(row),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        pulled.seen.get(number).cloned().map(Ok)
+    }
+}
+
+impl fmt::Debug for OnePass<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OnePass").field("clocks", &self.clocks).finish_non_exhaustive()
+    }
+}
+
+impl Commands for OnePass<'_> {
+    fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
+        let rows = std::iter::from_fn(|| self.take());
+        Box::new(commands(self.kept.until_an_error(rows)))
+    }
+
+    fn segments(&self) -> u64 {
+        self.segments
+    }
+}
+
+/// The commands of a pass, whose rows stay for the run.
+#[derive(Debug, Clone, Copy)]
+pub struct LookedAt<'a>(&'a OnePass<'a>);
+
+impl Commands for LookedAt<'_> {
+    fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
+        let rows = (0..).map_while(|number| self.0.look(number));
+        Box::new(commands(self.0.kept.until_an_error(rows)))
+    }
+
+    fn segments(&self) -> u64 {
+        self.0.segments
+    }
+}
+
+/// What a host sends for rows.
+fn commands<'r>(rows: impl Iterator<Item = Row> + 'r) -> impl Iterator<Item = Command> + 'r {
+    let mut begun = false;
+    rows.flat_map(move |row| {
+        let count = row.segments.len();
+        let segment = |(axis, segment)| Command::Segment { axis, segment };
+        let segments = (0..).zip(row.segments).map(segment);
+        // All axes start when each has its first segment.
+        let first = !std::mem::replace(&mut begun, true);
+        segments.chain(first.then(|| Command::Start { mask: ((1_u16 << count) - 1) as u8 }))
+    })
+}
