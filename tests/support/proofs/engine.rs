@@ -112,7 +112,11 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         dut: "carrystep_engine".into(),
         parameters: Vec::new(),
         verilog,
-        numbers: [vec![axes(&build), causes()], beat(&build.timebase)].concat(),
+        numbers: [
+            vec![axes(&build), causes(), ("CUTS", u8::from(build.cuts).to_string())],
+            beat(&build.timebase),
+        ]
+        .concat(),
     };
     Proof {
         module: "engine",

@@ -46,7 +46,8 @@ module promises (
     wire pwm, cut_busy, cut_refused;
     wire [1:0] state_page;
     wire [`AXES-1:0] step, dir, culprits, seeking, hits;
-    wire [2:0] state_axis, state_item, room;
+    wire [2:0] state_axis, state_item;
+    wire [4:0] room;
     wire [3:0] cause, latch_edges;
     `DUT dut (.*);
 
@@ -237,6 +238,7 @@ module promises (
     (* inside = "dut.readout.takes" *) wire takes;
     (* inside = "dut.readout.found" *) wire found_now;
     (* inside = "dut.readout.swept" *) wire swept;
+    (* inside = "dut.cut_control.asked" *) wire cut_asked;
     (* inside = "dut.cut_control.checking" *) wire checking;
     (* inside = "dut.cut_control.closing" *) wire closing;
     (* inside = "dut.cut_control.missed" *) wire missed;
@@ -292,6 +294,8 @@ module promises (
         invariant_31: assert (!(checking && had_time_slot && !missed) || is_there);
         invariant_32: assert (!(closing && !denied && !had_time_slot) || is_there);
         invariant_33: assert ({word[29:28], word[9:8], word[4:3]} == 0 && !(checking && !turning) && !(closing && !turning));
+        invariant_34: assert (!was_resetting || !cut_asked && !checking);
+        invariant_35: assert (`CUTS || {word[30], cut_asked, checking, closing} == 0);
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held, drops, word[17]} && quiet);
     end
 `endif
