@@ -16,6 +16,7 @@ use guard::RawGuard;
 use home::{RawOrder, RawPlace};
 use inputs::RawInputs;
 use link::RawLink;
+pub use outputs::OutputUses;
 use outputs::RawOutputs;
 use serde::Deserialize;
 use std::ops::Range;
@@ -50,6 +51,8 @@ pub struct Machine {
     pub guard: Guard,
     /// The outputs that change with the motion.
     pub outputs: Outputs,
+    /// What G-code programs do with them.
+    pub output_uses: OutputUses,
     /// Number of segments that the queue of an axis holds besides the one that runs.
     pub queue: usize,
     /// Whether a host can cut queues.
@@ -246,6 +249,7 @@ impl RawMachine {
         let guard = self.guard.check(source, &timebase, inputs, stop)?;
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
+        let outputs = self.outputs.check(source)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
         Ok(Machine {
             timebase,
@@ -253,7 +257,8 @@ impl RawMachine {
             phase: self.phase,
             axes,
             guard,
-            outputs: self.outputs.check(source)?,
+            outputs,
+            output_uses: self.outputs.uses(source, outputs)?,
             queue: queue::check(source, self.queue_depth.as_ref())?,
             cuts: self.cuts,
             home_order,

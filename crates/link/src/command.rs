@@ -200,15 +200,17 @@ mod from_core {
     use carrystep_core as planned;
 
     impl Command {
-        /// Converts a planned command; `None` for a wait or a clear, which the link's programs do
-        /// not contain.
+        /// Converts a planned command; `None` for a wait, a clear or a change of outputs, which the
+        /// link's programs do not contain.
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
                 planned::Command::Segment { axis, segment } => {
                     Some(Self::Segment { axis, segment })
                 }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
-                planned::Command::Wait { .. } | planned::Command::Clear => None,
+                planned::Command::Wait { .. }
+                | planned::Command::Clear
+                | planned::Command::Outputs(_) => None,
             }
         }
     }

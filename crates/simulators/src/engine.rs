@@ -8,8 +8,8 @@ pub mod run;
 
 use crate::Commands;
 use carrystep_core::engine::{
-    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put,
-    SEGMENT_WORDS, SeekSource,
+    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES,
+    OutputChange, Put, SEGMENT_WORDS, SeekSource,
 };
 use carrystep_core::{Command, Program, Segment};
 use std::collections::VecDeque;
@@ -50,24 +50,31 @@ enum Act {
     Clear,
 }
 
-/// The words of a segment, and its commit.
+/// The words of a segment, and its commit, with what changes at the outputs where it begins.
 ///
 /// A segment of 0 ticks cannot be encoded, because the first word is `ticks - 1`; the sender
 /// refuses it.
-pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
+pub fn puts(axis: u8, segment: &Segment, outputs: OutputChange) -> Vec<Put> {
     let Some(left) = segment.ticks.checked_sub(1) else { return Vec::new() };
     let halves = |x: i64| [x as u32, (x >> 32) as u32];
     let words =
         [[left].as_slice(), &halves(segment.v), &halves(segment.a), &halves(segment.j)].concat();
-    let commit = Put { axis, word: COMMIT, data: u32::from(segment.last) };
+    let commit = Commit { last: segment.last, outputs };
+    let commit = Put { axis, word: COMMIT, data: commit.word() };
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
 
-/// The actions of a host that executes one command after the other.
-fn acts_of(command: &Command) -> Vec<Act> {
+/// The actions of a host that executes one command after the other. `outputs` is what changes with
+/// the next segment of axis 0.
+fn acts_of(command: &Command, outputs: &mut OutputChange) -> Vec<Act> {
     match *command {
         Command::Segment { axis, segment } => {
-            puts(axis, &segment).into_iter().map(Act::Put).collect()
+            let outputs = if axis == 0 { std::mem::take(outputs) } else { OutputChange::NONE };
+            puts(axis, &segment, outputs).into_iter().map(Act::Put).collect()
+        }
+        Command::Outputs(change) => {
+            *outputs = outputs.then(change);
+            Vec::new()
         }
         Command::Start { mask } => vec![Act::Start(mask)],
         Command::Wait { clocks } => vec![Act::Wait(clocks)],
@@ -169,7 +176,9 @@ impl EngineHost<'static> {
     /// A host that executes a program command by command. The drivers have power until an event
     /// removes it.
     pub fn new(build: &EngineBuild, program: &Program, events: &Events) -> Self {
-        let acts: Vec<Act> = program.iter().flat_map(acts_of).collect();
+        let mut outputs = OutputChange::NONE;
+        let acts: Vec<Act> =
+            program.iter().flat_map(|command| acts_of(command, &mut outputs)).collect();
         Self::doing(build, Box::new(acts.into_iter()), events.clone(), false)
     }
 }

@@ -48,12 +48,10 @@ impl Outputs {
     }
 }
 
-/// The content of a commit.
+/// What changes at the outputs where a segment of the first axis begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Commit {
-    /// The segment is the last of its move.
-    pub last: bool,
-    /// The outputs that change where the segment begins, one bit each.
+pub struct OutputChange {
+    /// The outputs that change, one bit each.
     pub mask: u8,
     /// Their new levels; 1 is active.
     pub levels: u8,
@@ -61,25 +59,60 @@ pub struct Commit {
     pub duty: Option<u16>,
 }
 
+impl OutputChange {
+    /// Nothing changes.
+    pub const NONE: Self = Self { mask: 0, levels: 0, duty: None };
+
+    /// True if no output and no duty can change.
+    pub const fn is_none(self) -> bool {
+        self.mask == 0 && self.duty.is_none()
+    }
+
+    /// The change that has the effect of this one followed by a later one.
+    ///
+    /// ```
+    /// use carrystep_core::engine::OutputChange;
+    /// let first = OutputChange { mask: 3, levels: 3, duty: Some(7) };
+    /// let later = OutputChange { mask: 6, levels: 4, duty: None };
+    /// assert_eq!(first.then(later), OutputChange { mask: 7, levels: 5, duty: Some(7) });
+    /// ```
+    #[must_use]
+    pub const fn then(self, later: Self) -> Self {
+        Self {
+            mask: self.mask | later.mask,
+            levels: (self.levels & !later.mask) | (later.levels & later.mask),
+            duty: match later.duty {
+                Some(duty) => Some(duty),
+                None => self.duty,
+            },
+        }
+    }
+}
+
+/// The content of a commit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Commit {
+    /// The segment is the last of its move.
+    pub last: bool,
+    /// What changes at the outputs where the segment begins.
+    pub outputs: OutputChange,
+}
+
 impl Commit {
     /// Bit of the word: the segment is the last of its move.
     pub const LAST: u32 = 1 << 0;
 
-    /// The commit of a segment that changes no output.
-    pub const fn of_motion(last: bool) -> Self {
-        Self { last, mask: 0, levels: 0, duty: None }
-    }
-
     /// The word that commits the segment. Of the duty, only the lowest 12 bits count.
     ///
     /// ```
-    /// use carrystep_core::engine::Commit;
-    /// let commit = Commit { last: true, mask: 3, levels: 1, duty: Some(0x800) };
+    /// use carrystep_core::engine::{Commit, OutputChange};
+    /// let outputs = OutputChange { mask: 3, levels: 1, duty: Some(0x800) };
+    /// let commit = Commit { last: true, outputs };
     /// assert_eq!(commit.word(), 0x8000_1033);
     /// assert_eq!(Commit::of_word(0x8000_1033), commit);
     /// ```
     pub const fn word(self) -> u32 {
-        let Self { last, mask, levels, duty } = self;
+        let Self { last, outputs: OutputChange { mask, levels, duty } } = self;
         let duty = match duty {
             Some(duty) => 1 << 1 | (duty as u32) << 20,
             None => 0,
@@ -91,15 +124,12 @@ impl Commit {
     pub const fn of_word(word: u32) -> Self {
         Self {
             last: word & Self::LAST != 0,
-            mask: (word >> 4) as u8,
-            levels: (word >> 12) as u8,
-            duty: if word >> 1 & 1 == 1 { Some((word >> 20) as u16) } else { None },
+            outputs: OutputChange {
+                mask: (word >> 4) as u8,
+                levels: (word >> 12) as u8,
+                duty: if word >> 1 & 1 == 1 { Some((word >> 20) as u16) } else { None },
+            },
         }
-    }
-
-    /// True if an output or the duty of the PWM may change where the segment begins.
-    pub const fn changes_outputs(self) -> bool {
-        self.mask != 0 || self.duty.is_some()
     }
 }
 

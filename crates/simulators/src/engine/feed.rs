@@ -10,7 +10,7 @@
 //! ```
 
 use super::{Act, acts_of, puts};
-use carrystep_core::engine::{Put, SEGMENT_WORDS};
+use carrystep_core::engine::{OutputChange, Put, SEGMENT_WORDS};
 use carrystep_core::{Command, Segment};
 use std::collections::{BTreeMap, VecDeque};
 
@@ -52,10 +52,12 @@ pub(super) struct Acts<'a> {
     started_before: bool,
     /// Number of commands that were read.
     read: u64,
-    /// Commands that were read and are not sent yet.
-    waiting: BTreeMap<Due, Command>,
+    /// Commands that were read and are not sent yet, each with what it changes at the outputs.
+    waiting: BTreeMap<Due, (Command, OutputChange)>,
+    /// What changes with the next segment of axis 0 that is read.
+    outputs: OutputChange,
     /// Segments of different axes for which there is room at the same time.
-    row: Vec<(u64, u8, Segment)>,
+    row: Vec<Sent>,
     ready: VecDeque<Act>,
 }
 
@@ -69,13 +71,14 @@ impl<'a> Acts<'a> {
             started_before: false,
             read: 0,
             waiting: BTreeMap::new(),
+            outputs: OutputChange::NONE,
             row: Vec::new(),
             ready: VecDeque::new(),
         }
     }
 
     /// The next command, once no command that has not been read can come before it.
-    fn next_due(&mut self) -> Option<(Due, Command)> {
+    fn next_due(&mut self) -> Option<(Due, (Command, OutputChange))> {
         loop {
             // There is room for a later segment of an axis at the same time as for its last one or
             // later, and for a later start not before there is room for its segments.
@@ -88,8 +91,16 @@ impl<'a> Acts<'a> {
                 return Some(first.remove_entry());
             }
             let Some(command) = self.commands.next() else { return self.waiting.pop_first() };
+            let outputs = match command {
+                Command::Outputs(change) => {
+                    self.outputs = self.outputs.then(change);
+                    continue;
+                }
+                Command::Segment { axis: 0, .. } => std::mem::take(&mut self.outputs),
+                _ => OutputChange::NONE,
+            };
             let due = self.due(&command);
-            self.waiting.insert(due, command);
+            self.waiting.insert(due, (command, outputs));
         }
     }
 
@@ -134,15 +145,15 @@ impl Iterator for Acts<'_> {
     fn next(&mut self) -> Option<Act> {
         while self.ready.is_empty() {
             match self.next_due() {
-                Some((Due { room, .. }, Command::Segment { axis, segment })) => {
-                    if self.row.iter().any(|&(first, other, _)| first != room || other == axis) {
+                Some((Due { room, .. }, (Command::Segment { axis, segment }, outputs))) => {
+                    if self.row.iter().any(|sent| sent.room != room || sent.axis == axis) {
                         self.end_row();
                     }
-                    self.row.push((room, axis, segment));
+                    self.row.push(Sent { room, axis, segment, outputs });
                 }
-                Some((_, other)) => {
+                Some((_, (other, mut outputs))) => {
                     self.end_row();
-                    self.ready.extend(acts_of(&other));
+                    self.ready.extend(acts_of(&other, &mut outputs));
                 }
                 None if self.row.is_empty() => return None,
                 None => self.end_row(),
@@ -152,9 +163,18 @@ impl Iterator for Acts<'_> {
     }
 }
 
+/// A segment, when there is room for it, and what changes at the outputs where it begins.
+struct Sent {
+    room: u64,
+    axis: u8,
+    segment: Segment,
+    outputs: OutputChange,
+}
+
 /// Sends segments of different axes in parallel: one word for each in a tick.
-fn side_by_side(row: &[(u64, u8, Segment)]) -> Vec<Act> {
-    let words: Vec<Vec<Put>> = row.iter().map(|(_, axis, segment)| puts(*axis, segment)).collect();
+fn side_by_side(row: &[Sent]) -> Vec<Act> {
+    let words: Vec<Vec<Put>> =
+        row.iter().map(|sent| puts(sent.axis, &sent.segment, sent.outputs)).collect();
     let word =
         |k: usize| words.iter().filter_map(move |words| words.get(k)).map(|put| Act::Put(*put));
     (0..=usize::from(SEGMENT_WORDS)).flat_map(word).collect()

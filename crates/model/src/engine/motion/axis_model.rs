@@ -6,7 +6,7 @@ use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Commit, Guard, SEGMENT_WORDS, SWITCH_ROWS};
+use carrystep_core::engine::{Cause, Commit, Guard, OutputChange, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
@@ -48,8 +48,8 @@ pub(super) struct AxisModel {
     /// Number of segments that have left the queue, modulo the number of slots: the slot of the
     /// running segment, or of the last one that ran.
     pub(super) slot: u8,
-    /// The commit of the segment with which the axis begins this tick, if it changes outputs.
-    pub(super) begun: Option<Commit>,
+    /// The change of outputs with the segment with which the axis begins this tick.
+    pub(super) begun: Option<OutputChange>,
     /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Queued>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
@@ -106,7 +106,7 @@ impl AxisModel {
     pub(super) fn load(&mut self) {
         self.running = self.queue.pop_front();
         self.begun =
-            self.running.map(|segment| segment.commit).filter(|commit| commit.changes_outputs());
+            self.running.map(|segment| segment.commit.outputs).filter(|change| !change.is_none());
         self.pass_slots(usize::from(self.running.is_some()));
     }
 

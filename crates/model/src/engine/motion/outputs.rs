@@ -9,16 +9,15 @@
 //! ```
 
 use super::Motion;
-use carrystep_core::engine::{Commit, Outputs, PWM_STEPS};
+use carrystep_core::engine::{OutputChange, Outputs, PWM_STEPS};
 
 /// The registers of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct OutputState {
-    /// The commit of the segment with which axis 0 has begun the tick before, if it changes
-    /// outputs.
-    computed: Option<Commit>,
+    /// The change with the segment with which axis 0 has begun the tick before.
+    computed: Option<OutputChange>,
     /// `computed` of the tick before.
-    emitted: Option<Commit>,
+    emitted: Option<OutputChange>,
     /// Levels of the outputs, one bit each; 1 is active.
     pub(super) levels: u8,
     duty: u32,
@@ -30,17 +29,17 @@ pub(super) struct OutputState {
 
 impl OutputState {
     /// Advances by one cycle, which is the first one of a tick, a strobe, or neither. `begun` is
-    /// the commit of the segment with which axis 0 has begun this tick, if it changes outputs.
-    fn clock(&mut self, build: Outputs, off: bool, at: Place, begun: Option<Commit>) {
+    /// the change with the segment with which axis 0 has begun this tick.
+    fn clock(&mut self, build: Outputs, off: bool, at: Place, begun: Option<OutputChange>) {
         let before = *self;
         if at == Place::First
-            && let Some(Commit { mask, levels, .. }) = before.emitted
+            && let Some(OutputChange { mask, levels, .. }) = before.emitted
         {
             let mask = mask & build.exist;
             self.levels = (before.levels & !mask) | (levels & mask);
         }
         if at == Place::Strobe {
-            if let Some(duty) = before.computed.and_then(|commit| commit.duty)
+            if let Some(duty) = before.computed.and_then(|change| change.duty)
                 && build.pwm_divider > 0
             {
                 self.duty = (u32::from(duty)) % PWM_STEPS;
