@@ -1561,8 +1561,8 @@ module carrystep_output_control #(
     input  wire         clock,
     // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
-    // The axis of the time slot, one-hot.
-    input  wire   [5:0] axis_one_hot,
+    // The time slot is that of axis 0.
+    input  wire         first,
     // The engine accepts a word of the host in this clock, for the axis of the time slot.
     input  wire         take,
     // The number of that word.
@@ -1614,7 +1614,6 @@ module carrystep_output_control #(
     wire [15:0] output_words_read_data;
     wire [12:0] duty_words_read_data;
 
-    wire first = axis_one_hot[0];
     wire commits = take & (put_word == COMMIT);
     wire stores = commits & first;
     wire [31:0] never = put_data & LACKS;
@@ -3627,7 +3626,7 @@ module carrystep_engine #(
     ) output_control (
         .clock(clock),
         .beat(time_slot_beat),
-        .axis_one_hot(time_slot_axis_one_hot),
+        .first(time_slot_axis_one_hot[0]),
         .take(take),
         .put_word(put_word),
         .put_data(put_data),

@@ -235,7 +235,7 @@ pub struct Engine<const N: usize> {
     cut_control: CutControl,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
-    output_control: OutputControl<N>,
+    output_control: OutputControl,
     pulse_width: PulseWidth,
     switches: Switches<N>,
     seek_control: SeekControl<N>,

@@ -1,6 +1,6 @@
 //! The proof of the outputs: which commit changes which of them, and when.
 
-use super::builds::{BuiltEngine, axes, engine_with_inputs, engine_with_outputs};
+use super::builds::{BuiltEngine, engine_with_inputs, engine_with_outputs};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::EngineBuild;
 
@@ -45,11 +45,7 @@ pub(super) fn proof(_: &BuiltEngine) -> Proof {
             dut: "carrystep_output_control".into(),
             parameters: Vec::new(),
             verilog,
-            numbers: vec![
-                axes(&build),
-                ("EXIST", outputs.exist.to_string()),
-                ("HAS_PWM", pwm.to_string()),
-            ],
+            numbers: vec![("EXIST", outputs.exist.to_string()), ("HAS_PWM", pwm.to_string())],
         }
     };
     Proof {

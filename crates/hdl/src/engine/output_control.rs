@@ -26,7 +26,7 @@
 
 use super::layout::{
     BEAT_FIRST, BEAT_LAST, COMMIT_DUTY, COMMIT_MASK, COMMIT_SETS_DUTY, DUTY_STEPS, DUTY_VALID,
-    OUTPUT_LEVELS, OUTPUT_MASK, SLOT_OF_FIRST,
+    OUTPUT_LEVELS, OUTPUT_MASK,
 };
 use crate::parameters::{OUTPUTS, PWM_DIVIDER};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
@@ -39,13 +39,13 @@ use rust_hdl::prelude::*;
 
 /// The outputs, and the duties for the PWM.
 #[derive(LogicBlock, Default)]
-pub struct OutputControl<const N: usize> {
+pub struct OutputControl {
     /// The clock.
     pub clock: Input<Clock>,
     /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
-    /// The axis of the time slot, one-hot.
-    pub axis_one_hot: Input<Word<N>>,
+    /// The time slot is that of axis 0.
+    pub first: Input<Bit>,
     /// The engine accepts a word of the host in this clock, for the axis of the time slot.
     pub take: Input<Bit>,
     /// The number of that word.
@@ -72,13 +72,12 @@ pub struct OutputControl<const N: usize> {
     pub stray: Signal<Out, Bit>,
     output_words: HeldMemory<5, 16>,
     duty_words: HeldMemory<5, 13>,
-    levels: Register<Word<8>>, // `pins`
-    place: Register<Word<5>>,  // the slot of the segment that axis 0 ran last
-    follower: Register<Bit>,   // it begins with this tick, after another segment
-    begun: Register<Bit>,      // it has begun with this tick
-    due: Register<Bit>,        // the word in the memories' output is to be applied
-    wrong: Register<Bit>,      // `stray`
-    first: Signal<Local, Bit>,
+    levels: Register<Word<8>>,   // `pins`
+    place: Register<Word<5>>,    // the slot of the segment that axis 0 ran last
+    follower: Register<Bit>,     // it begins with this tick, after another segment
+    begun: Register<Bit>,        // it has begun with this tick
+    due: Register<Bit>,          // the word in the memories' output is to be applied
+    wrong: Register<Bit>,        // `stray`
     applies: Signal<Local, Bit>, // the first clock of a tick
     commits: Signal<Local, Bit>,
     stores: Signal<Local, Bit>,
@@ -98,7 +97,7 @@ pub struct OutputControl<const N: usize> {
     outputs_out_of_range: ParameterRefusal,
 }
 
-impl<const N: usize> OutputControl<N> {
+impl OutputControl {
     /// Makes the outputs of this build, whose axes have this number of slots. The caller has
     /// checked it.
     pub fn new(build: &Outputs, slots: usize) -> Self {
@@ -123,14 +122,13 @@ impl<const N: usize> OutputControl<N> {
     }
 }
 
-impl<const N: usize> Logic for OutputControl<N> {
+impl Logic for OutputControl {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, levels, place, follower, begun, due, wrong);
         clock!(self, clock, output_words, duty_words);
 
         // Stores the commit of axis 0, and examines every commit.
-        self.first.next = self.axis_one_hot.val().get_bit(SLOT_OF_FIRST);
         self.commits.next = self.take.val() & (self.put_word.val() == self.commit.val());
         self.stores.next = self.commits.val() & self.first.val();
         self.output_words.write.next = self.stores.val();
@@ -194,6 +192,6 @@ mod tests {
     #[test]
     fn output_control_synthesizes() {
         let build = Outputs { exist: 0x35, pwm_divider: 7, off_at_ramps: true };
-        assert_synthesizes(OutputControl::<6>::new(&build, 8), "carrystep_output_control");
+        assert_synthesizes(OutputControl::new(&build, 8), "carrystep_output_control");
     }
 }

@@ -15,7 +15,7 @@
 use super::Engine;
 use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
-    MASK_OF_SLOT, POSITION_LOW, PUT_NAMES, PUT_NUMBER, PUT_SLOT,
+    MASK_OF_SLOT, POSITION_LOW, PUT_NAMES, PUT_NUMBER, PUT_SLOT, SLOT_OF_FIRST,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -238,7 +238,7 @@ impl<const N: usize> Logic for Engine<N> {
             | (self.stops.fault.val() & self.off_at_ramps.val().any())
             | !self.supervisor.enabled.val();
         self.output_control.beat.next = self.time_slot.beat.val();
-        self.output_control.axis_one_hot.next = self.time_slot.axis_one_hot.val();
+        self.output_control.first.next = self.time_slot.axis_one_hot.val().get_bit(SLOT_OF_FIRST);
         self.output_control.take.next = self.take.val();
         self.output_control.put_word.next = self.put_word.val();
         self.output_control.put_data.next = self.put_data.val();

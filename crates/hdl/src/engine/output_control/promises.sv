@@ -1,8 +1,7 @@
 // Proves promises 13 and 17 of the outputs, without a bound on time: an output changes only where a
 // segment that says so begins, or where all are turned off.
 //
-//   parameters   AXES: number of axes
-//                EXIST: the outputs that the build has; HAS_PWM: 1 if it has a PWM
+//   parameters   EXIST: the outputs that the build has; HAS_PWM: 1 if it has a PWM
 //                `DUT: the name of the exported module `output_control`, built with these values
 //   assumptions  The beats of a time slot follow one another (proved in time_slot/promises.sv). A
 //                word is taken only in beat 7 of the time slot of its axis (engine/promises.sv).
@@ -13,7 +12,7 @@
 module promises (
     input wire clock,
     input wire [16:0] beat,
-    input wire [`AXES-1:0] axis_one_hot,
+    input wire first,
     input wire take,
     input wire [3:0] put_word,
     input wire [31:0] put_data,
@@ -34,7 +33,6 @@ module promises (
 
     // ---- The time slots of axis 0: their first beat is the first clock of a tick.
 
-    wire first = axis_one_hot[0];
     wire begins = first & beat[0];
     wire ends = first & beat[12];
     reg first_clock = 1, before_all = 1, between = 0;
