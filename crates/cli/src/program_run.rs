@@ -94,6 +94,11 @@ pub fn run(
     let build = machine.build().map_err(too_many)?;
     let engine = match core {
         Core::Engine => Some(gateware::engine(machine, &title)?),
+        Core::Parallel if machine.outputs.is_any() => {
+            let message = "the parallel core has no outputs; leave out --core parallel, or \
+                           [machine.outputs]";
+            return Err(Failure::input(message.to_owned()));
+        }
         Core::Parallel => None,
     };
     carrystep_simulators::available(level)?;

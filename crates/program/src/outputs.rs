@@ -42,15 +42,15 @@ impl ProgramOutputs {
             }
             change.duty = Some(duty(rpm / f64::from(most)));
         }
-        let is_all = !turns || spindle.is_some() || spindle_rpm.is_some();
-        Ok(Effect { change, is_all })
+        Ok(Effect { change, is_all: spindle.is_some() || spindle_rpm.is_some() })
     }
 
     /// M7, M8, M9: what is on from here on.
     pub(crate) fn coolant(&self, mist: bool, flood: bool) -> Effect {
-        let change = level(self.uses.mist, mist).then(level(self.uses.flood, flood));
-        let is_all = (!mist || self.uses.mist.is_some()) && (!flood || self.uses.flood.is_some());
-        Effect { change, is_all }
+        let uses = self.uses;
+        let change = level(uses.mist, mist).then(level(uses.flood, flood));
+        let lacks = (mist && uses.mist.is_none()) || (flood && uses.flood.is_none());
+        Effect { change, is_all: !lacks && change.mask != 0 }
     }
 
     /// M62 to M65.
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(none.coolant(true, false), nothing);
         assert_eq!(none.digital(9, true), Ok(nothing));
         assert_eq!(none.analog(9, 9.0), Ok(nothing));
-        let off = none.spindle(Turn::Off, 0.0);
-        assert_eq!(off, Ok(Effect { is_all: true, ..nothing }));
+        assert_eq!(none.spindle(Turn::Off, 0.0), Ok(nothing));
+        assert_eq!(none.coolant(false, false), nothing);
     }
 }
