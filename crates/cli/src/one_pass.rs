@@ -140,7 +140,7 @@ impl<'a> OnePass<'a> {
         if let Ok(row) = &row {
             let change = carrystep_program::outputs(row);
             if !change.is_none() {
-                let tick_ps = u64::from(self.timebase.tick_ns()) * 1000;
+                let tick_ps = self.timebase.tick_ns() * 1000;
                 let ps = pulled.taken.saturating_mul(tick_ps);
                 let mut due = self.due.lock().unwrap_or_else(PoisonError::into_inner);
                 due.push_back(DueChange { ps, change });
