@@ -7,7 +7,7 @@
 
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
-use carrystep_core::engine::OutputChange;
+use carrystep_core::OutputChange;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;

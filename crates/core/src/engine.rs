@@ -24,7 +24,7 @@ mod state;
 
 pub use build::{EngineBuild, Guard, InputRow, Latch, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
-pub use commit::{Commit, MAX_PWM_DIVIDER, OutputChange, Outputs, PWM_STEPS};
+pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 pub use ports::{ENGINE_PORTS, is_recorded, ports_of};

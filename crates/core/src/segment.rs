@@ -1,6 +1,6 @@
 //! What the host sends to the gateware: segments, and the commands that carry them.
 
-use crate::engine::OutputChange;
+use crate::output_change::OutputChange;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 

@@ -7,7 +7,7 @@ use crate::letter::LINEAR;
 use crate::letters::Letters;
 use crate::outputs::{Effect, ProgramOutputs};
 use crate::switch::Switch;
-use carrystep_core::engine::OutputChange;
+use carrystep_core::OutputChange;
 use carrystep_gcode::{
     AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
 };

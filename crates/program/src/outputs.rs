@@ -2,7 +2,8 @@
 //! names.
 
 use crate::error::Fault;
-use carrystep_core::engine::{OutputChange, Outputs, PWM_STEPS};
+use carrystep_core::OutputChange;
+use carrystep_core::engine::{Outputs, PWM_STEPS};
 use carrystep_files::Machine;
 use carrystep_files::machine::OutputUses;
 use carrystep_gcode::Turn;

@@ -8,10 +8,10 @@ pub mod run;
 
 use crate::Commands;
 use carrystep_core::engine::{
-    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES,
-    OutputChange, Put, SEGMENT_WORDS, SeekSource,
+    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put,
+    SEGMENT_WORDS, SeekSource,
 };
-use carrystep_core::{Command, Program, Segment};
+use carrystep_core::{Command, OutputChange, Program, Segment};
 use std::collections::VecDeque;
 use std::fmt;
 

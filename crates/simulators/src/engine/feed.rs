@@ -10,8 +10,8 @@
 //! ```
 
 use super::{Act, acts_of, puts};
-use carrystep_core::engine::{OutputChange, Put, SEGMENT_WORDS};
-use carrystep_core::{Command, Segment};
+use carrystep_core::engine::{Put, SEGMENT_WORDS};
+use carrystep_core::{Command, OutputChange, Segment};
 use std::collections::{BTreeMap, VecDeque};
 
 /// When a command is sent. Of two commands, the one with the lesser value is sent first.

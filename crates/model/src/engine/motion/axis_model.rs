@@ -6,7 +6,8 @@ use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Commit, Guard, OutputChange, SEGMENT_WORDS, SWITCH_ROWS};
+use carrystep_core::OutputChange;
+use carrystep_core::engine::{Cause, Commit, Guard, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.

@@ -9,7 +9,8 @@
 //! ```
 
 use super::Motion;
-use carrystep_core::engine::{OutputChange, Outputs, PWM_STEPS};
+use carrystep_core::OutputChange;
+use carrystep_core::engine::{Outputs, PWM_STEPS};
 
 /// The registers of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
