@@ -423,7 +423,7 @@ module carrystep_queue #(
     output wire         misplaced,
     // From beat 1: no slot is free for the host.
     output wire         full,
-    // The number of segments for which the queue has space.
+    // From beat 1: the number of segments for which the queue has space.
     output wire   [4:0] room,
     // No segment waits.
     output wire         empty,
@@ -479,7 +479,7 @@ module carrystep_queue #(
     localparam [4:0] AT_18 = 5'd18;
     localparam [4:0] AT_25 = 5'd25;
 
-    reg filled = 1'b0;
+    reg [4:0] spare = 5'd0;
     reg took = 1'b0;
     reg wrong = 1'b0;
     reg [4:0] newest;
@@ -530,8 +530,8 @@ module carrystep_queue #(
     assign live = live_now;
     assign fresh = fresh_now;
     assign misplaced = wrong;
-    assign full = filled;
-    assign room = space;
+    assign full = spare == 5'd0;
+    assign room = spare;
     assign empty = none;
     assign running = runs;
     assign sound = fits;
@@ -685,7 +685,7 @@ module carrystep_queue #(
         if (takes_word & fits_in) begin
             took <= 1'b1;
         end
-        filled <= fresh_now == live_now;
+        spare <= space;
     end
 endmodule
 

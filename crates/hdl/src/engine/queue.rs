@@ -99,7 +99,7 @@ pub struct Queue {
     pub misplaced: Signal<Out, Bit>,
     /// From beat 1: no slot is free for the host.
     pub full: Signal<Out, Bit>,
-    /// The number of segments for which the queue has space.
+    /// From beat 1: the number of segments for which the queue has space.
     pub room: Signal<Out, Word<5>>,
     /// No segment waits.
     pub empty: Signal<Out, Bit>,
@@ -159,9 +159,10 @@ pub struct Queue {
     steps_on: Signal<Local, Bit>, // `advances`
     due: Signal<Local, Word<3>>,
     fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
-    filled: Register<Bit>,       // `full`, a clock later, so that no long path begins at the memory
-    took: Register<Bit>,         // the word that is due was accepted in this time slot
-    wrong: Register<Bit>,        // `misplaced`
+    // `room`, a clock later, so that no long path begins at the memory
+    spare: Register<Word<5>>,
+    took: Register<Bit>,  // the word that is due was accepted in this time slot
+    wrong: Register<Bit>, // `misplaced`
     next_live: Signal<Local, Word<5>>,
     next_newest: Signal<Local, Word<5>>,
     next_running: Signal<Local, Word<31>>,
@@ -215,7 +216,7 @@ impl Queue {
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, filled, took, wrong);
+        dff_setup!(self, clock, spare, took, wrong);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot. A cut takes effect before anything else.
@@ -378,9 +379,9 @@ impl Logic for Queue {
 
         self.live.next = self.live_now.val();
         self.fresh.next = self.fresh_now.val();
-        self.filled.d.next = self.fresh_now.val() == self.live_now.val();
-        self.full.next = self.filled.q.val();
-        self.room.next = self.space.val();
+        self.spare.d.next = self.space.val();
+        self.full.next = !self.spare.q.val().any();
+        self.room.next = self.spare.q.val();
         self.empty.next = self.none.val();
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();

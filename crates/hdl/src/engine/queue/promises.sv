@@ -147,7 +147,7 @@ module promises (
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
         promise_6_in_order: assert (!mine || !in_time_slot || live == begun_now[2:0] && fresh == {2'd0, committed_now[2:0] + 3'd1});
         promise_6_full: assert (!mine || beat[12:1] == 0 || full == (waiting == 7));
-        promise_6_room: assert (!mine || !in_time_slot || room == 7 - waiting);
+        promise_6_room: assert (!mine || beat[12:1] == 0 || room == 7 - waiting);
         promise_6_empty: assert (!mine || !in_time_slot || empty == (waiting == 0));
         promise_6_runs_as_told: assert (!mine || !in_time_slot || {running, moves, too_fast} == {on, fine, on & !fine});
         promise_6_the_next_begins: assert (!ends || advances == (fine & !ramp & follows));
@@ -197,7 +197,7 @@ module promises (
 
     (* inside = "dut.word" *) wire [30:0] word;
     (* inside = "dut.took" *) wire dut_took;
-    (* inside = "dut.filled" *) wire dut_filled;
+    (* inside = "dut.spare" *) wire [4:0] dut_spare;
     (* inside = "dut.fresh_now" *) wire [4:0] fresh_now;
     (* inside = "dut.live_now" *) wire [4:0] live_now;
     (* inside = "dut.control.write_bits" *) wire [30:0] write_bits;
@@ -218,7 +218,7 @@ module promises (
         invariant_3: assert (control[30:25] == {named, 2'd0, target});
         invariant_8: assert (!(passed && named) || distance <= committed - begun && (distance != 0 || runs));
         invariant_15: assert (!in_time_slot || word == present);
-        invariant_16: assert (beat[12:1] == 0 || dut_filled == (fresh_now == live_now));
+        invariant_16: assert (beat[12:1] == 0 || dut_spare == {2'd0, live_now[2:0] - fresh_now[2:0]});
         invariant_14: assert (control[24:17] == {kept, was_meets});
         invariant_13: assert ((mine && beat[12:1] != 0 ? dut_took == takes : !takes) && (!takes || beat[12:8] != 0));
         invariant_4: assert (!mine || first_clock || was_ends || word == control);
