@@ -15,6 +15,25 @@ impl OutputChange {
     /// Nothing changes.
     pub const NONE: Self = Self { mask: 0, levels: 0, duty: None };
 
+    /// The bits of a [`Commit`](crate::engine::Commit) that are about outputs. Of the duty, only the
+    /// lowest 12 bits count.
+    pub const fn word(self) -> u32 {
+        let duty = match self.duty {
+            Some(duty) => 1 << 1 | (duty as u32) << 20,
+            None => 0,
+        };
+        (self.mask as u32) << 4 | (self.levels as u32) << 12 | duty
+    }
+
+    /// The change in such a word, whose other bits do not count.
+    pub const fn of_word(word: u32) -> Self {
+        Self {
+            mask: (word >> 4) as u8,
+            levels: (word >> 12) as u8,
+            duty: if word >> 1 & 1 == 1 { Some((word >> 20) as u16) } else { None },
+        }
+    }
+
     /// True if no output and no duty can change.
     pub const fn is_none(self) -> bool {
         self.mask == 0 && self.duty.is_none()

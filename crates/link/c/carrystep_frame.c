@@ -63,7 +63,7 @@ size_t carrystep_encode(uint8_t *line, uint8_t sequence, uint16_t session, const
         length = put_long(frame, length, segment->v);
         length = put_long(frame, length, segment->a);
         length = put_long(frame, length, segment->j);
-        length = put_word(frame, length, segment->last ? 1u : 0u);
+        length = put_word(frame, length, (segment->last ? 1u : 0u) | segment->outputs);
     } else if (request->writes && request->address == (CARRYSTEP_WRITE | CARRYSTEP_CUT)) {
         for (uint8_t axis = 0; axis < CARRYSTEP_MOST_AXES; axis++) {
             bool named = (request->mask >> axis & 1u) != 0;

@@ -4,7 +4,7 @@
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
-pub use carrystep_core::Segment;
+pub use carrystep_core::{OutputChange, Segment};
 
 /// Segments of several axes with the same ticks, which one frame carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -17,6 +17,8 @@ pub struct WideSegment {
     pub cubics: [[i64; 3]; MOST_AXES as usize],
     /// Whether the axes stop when the segment is over.
     pub last: bool,
+    /// What changes at the outputs where the segment begins, if axis 0 is one of the axes.
+    pub outputs: OutputChange,
 }
 
 impl WideSegment {
@@ -56,6 +58,9 @@ pub enum Command {
         /// The segment.
         segment: Segment,
     },
+    /// Changes outputs where the next segment of axis 0 begins. Several of these before one segment
+    /// have the effect of one after the other.
+    Outputs(OutputChange),
     /// Starts axes on the same tick.
     Start {
         /// Bit i starts axis i.
@@ -100,6 +105,9 @@ pub enum ProgramError {
         /// Number of the axis, from 0.
         axis: u8,
     },
+    /// A change of outputs has no segment of axis 0 behind it.
+    #[error("outputs change, and no segment of axis 0 follows with which they could")]
+    NoSegment,
     /// A start while the drivers have no power. The gateware would refuse it as long as they have
     /// none.
     #[error(
@@ -112,6 +120,11 @@ pub enum ProgramError {
 pub trait SegmentSource {
     /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
+    /// What changes at the outputs where the segment of axis 0 begins that was returned last. It is
+    /// asked once for each.
+    fn outputs(&mut self) -> OutputChange {
+        OutputChange::NONE
+    }
     /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
 }
@@ -121,6 +134,7 @@ pub trait SegmentSource {
 pub struct Program<'a> {
     commands: &'a [Command],
     segment: [usize; MOST_AXES as usize],
+    outputs: OutputChange,
     start: usize,
 }
 
@@ -150,7 +164,7 @@ impl<'a> Program<'a> {
                         }
                         started += 1;
                     }
-                    Command::Segment { .. } | Command::Start { .. } => {}
+                    Command::Segment { .. } | Command::Outputs(_) | Command::Start { .. } => {}
                 }
             }
             if open {
@@ -166,7 +180,13 @@ impl<'a> Program<'a> {
                 return Err(ProgramError::NoStart { axis });
             }
         }
-        Ok(Self { commands, segment: [0; MOST_AXES as usize], start: 0 })
+        let last = |is: fn(&Command) -> bool| commands.iter().rposition(is);
+        let of_first = last(|command| matches!(command, Command::Segment { axis: 0, .. }));
+        if last(|command| matches!(command, Command::Outputs(_))) > of_first {
+            return Err(ProgramError::NoSegment);
+        }
+        let outputs = OutputChange::NONE;
+        Ok(Self { commands, segment: [0; MOST_AXES as usize], outputs, start: 0 })
     }
 }
 
@@ -177,10 +197,15 @@ impl SegmentSource for Program<'_> {
             *at += 1;
             match *command {
                 Command::Segment { axis: own, segment } if own == axis => return Some(segment),
+                Command::Outputs(change) if axis == 0 => self.outputs = self.outputs.then(change),
                 _ => {}
             }
         }
         None
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        core::mem::take(&mut self.outputs)
     }
 
     fn start(&mut self) -> Option<u8> {
@@ -200,17 +225,16 @@ mod from_core {
     use carrystep_core as planned;
 
     impl Command {
-        /// Converts a planned command; `None` for a wait, a clear or a change of outputs, which the
-        /// link's programs do not contain.
+        /// Converts a planned command; `None` for a wait or a clear, which the link's programs do
+        /// not contain.
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
                 planned::Command::Segment { axis, segment } => {
                     Some(Self::Segment { axis, segment })
                 }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
-                planned::Command::Wait { .. }
-                | planned::Command::Clear
-                | planned::Command::Outputs(_) => None,
+                planned::Command::Outputs(change) => Some(Self::Outputs(change)),
+                planned::Command::Wait { .. } | planned::Command::Clear => None,
             }
         }
     }

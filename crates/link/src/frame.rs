@@ -1,6 +1,6 @@
 //! Requests and answers, and their conversion to and from the bytes of a frame.
 
-use crate::command::{CutSlots, Segment, WideSegment};
+use crate::command::{CutSlots, OutputChange, Segment, WideSegment};
 use crate::registers::{
     self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
 };
@@ -50,6 +50,8 @@ pub enum Body {
         axis: u8,
         /// The segment; it has at least 1 tick.
         segment: Segment,
+        /// What changes at the outputs where it begins; for other axes than axis 0, nothing.
+        outputs: OutputChange,
     },
     /// Appends a segment to the queue of each of several axes.
     Segments(WideSegment),
@@ -144,16 +146,16 @@ impl Request {
         match self.body {
             Body::Read { .. } => {}
             Body::Write { word, .. } => frame.put(&word.to_le_bytes()),
-            Body::Segment { segment: Segment { ticks, v, a, j, last }, .. } => {
+            Body::Segment { segment: Segment { ticks, v, a, j, last }, outputs, .. } => {
                 frame.put(&ticks.wrapping_sub(1).to_le_bytes());
                 frame.put_cubic([v, a, j]);
-                frame.put(&u32::from(last).to_le_bytes());
+                frame.put(&(u32::from(last) | outputs.word()).to_le_bytes());
             }
             Body::Segments(wide) => {
                 frame.put(&u32::from(wide.mask).to_le_bytes());
                 frame.put(&wide.ticks.wrapping_sub(1).to_le_bytes());
                 wide.axes().for_each(|(_, cubic)| frame.put_cubic(cubic));
-                frame.put(&u32::from(wide.last).to_le_bytes());
+                frame.put(&(u32::from(wide.last) | wide.outputs.word()).to_le_bytes());
             }
             Body::Cut(slots) => {
                 slots.words().iter().for_each(|word| frame.put(&word.to_le_bytes()));
@@ -201,13 +203,15 @@ impl Request {
             _ if words.is_empty() => Body::Read { address },
             Some(axis) => {
                 let ([v, a, j], ticks) = (cubic(1), word(0).wrapping_add(1));
-                Body::Segment { axis, segment: Segment { ticks, v, a, j, last: word(7) & 1 == 1 } }
+                let (last, outputs) = (word(7) & 1 == 1, OutputChange::of_word(word(7)));
+                Body::Segment { axis, segment: Segment { ticks, v, a, j, last }, outputs }
             }
             None if address == WRITE | SEGMENTS => {
                 let mut wide = WideSegment {
                     mask: word(0) as u8,
                     ticks: word(1).wrapping_add(1),
                     last: word(expected - 1) & 1 == 1,
+                    outputs: OutputChange::of_word(word(expected - 1)),
                     ..WideSegment::default()
                 };
                 let mut at = SEGMENTS_HEAD_WORDS;

@@ -9,7 +9,7 @@
 //!                                  ^                  before this moment
 //! ```
 
-use crate::command::{Command, Segment, WideSegment};
+use crate::command::{Command, OutputChange, Segment, WideSegment};
 use crate::frame::{Body, Request};
 use crate::slip;
 use std::collections::VecDeque;
@@ -42,6 +42,7 @@ struct Job {
     place: u64,
     due: u64,
     segment: Segment,
+    outputs: OutputChange,
 }
 
 /// Checks that a UART at this baud rate delivers each segment before its axis needs it, provided
@@ -69,6 +70,8 @@ pub struct Supply {
     queue: usize,
     baud: u32,
     axes: Vec<Axis>,
+    /// What changes with the next segment of axis 0.
+    outputs: OutputChange,
     /// The time until which the line is busy, ns.
     now: u64,
 }
@@ -88,7 +91,7 @@ impl Supply {
     /// segments, on a line of `baud` bits per second.
     pub fn new(axes: u8, tick_ns: u64, queue: usize, baud: u32) -> Self {
         let axes = (0..axes).map(|_| Axis::default()).collect();
-        Self { tick_ns, queue, baud, axes, now: 0 }
+        Self { tick_ns, queue, baud, axes, outputs: OutputChange::NONE, now: 0 }
     }
 
     /// Adds the next command of the program.
@@ -96,7 +99,16 @@ impl Supply {
     /// # Errors
     /// [`Starved`] as soon as it is known that the queue of an axis would run empty.
     pub fn add(&mut self, command: &Command) -> Result<(), Starved> {
-        let Command::Segment { axis: number, segment } = *command else { return Ok(()) };
+        let (number, segment) = match *command {
+            Command::Segment { axis, segment } => (axis, segment),
+            Command::Outputs(change) => {
+                self.outputs = self.outputs.then(change);
+                return Ok(());
+            }
+            Command::Start { .. } => return Ok(()),
+        };
+        let none = OutputChange::NONE;
+        let outputs = if number == 0 { core::mem::take(&mut self.outputs) } else { none };
         let Some(axis) = self.axes.get_mut(usize::from(number)) else { return Ok(()) };
         let due = axis.tick.saturating_mul(self.tick_ns);
         axis.tick = axis.tick.saturating_add(segment.ticks.into());
@@ -105,7 +117,7 @@ impl Supply {
         if axis.begins.len() > self.queue
             && let Some(place) = axis.begins.pop_front()
         {
-            axis.jobs.push_back(Job { place, due, segment });
+            axis.jobs.push_back(Job { place, due, segment, outputs });
         }
         // Which axis is next is known when the next job of each axis is.
         while self.axes.iter().all(|axis| !axis.jobs.is_empty()) {
@@ -142,14 +154,16 @@ impl Supply {
                 same && job.due == due && job.place <= now
             });
             if joins
-                && let Some(Job { segment: Segment { v, a, j, .. }, .. }) = axis.jobs.pop_front()
+                && let Some(Job { segment: Segment { v, a, j, .. }, outputs, .. }) =
+                    axis.jobs.pop_front()
             {
+                wide.outputs = wide.outputs.then(outputs);
                 wide.mask |= 1_u8 << number;
                 *cubic = [v, a, j];
             }
         }
         let body = if wide.mask.is_power_of_two() {
-            Body::Segment { axis, segment }
+            Body::Segment { axis, segment, outputs: wide.outputs }
         } else {
             Body::Segments(wide)
         };

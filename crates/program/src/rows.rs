@@ -6,7 +6,6 @@ use crate::events::{Event, Events, ProgrammedMove};
 use crate::file::ProgramFile;
 use crate::letters::Letters;
 use carrystep_core::OutputChange;
-use carrystep_core::engine::Commit;
 use carrystep_files::Machine;
 use carrystep_gcode::Point;
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
@@ -105,7 +104,7 @@ impl Rows {
             }
             Event::Rest { seconds, line } => [rest(seconds, line), None],
             Event::Outputs { change, with_motion, line } => {
-                let mark = Item::Mark(Commit { last: false, outputs: change }.word().into());
+                let mark = Item::Mark(change.word().into());
                 [rest(0.0, line).filter(|_| !with_motion), Some(mark)]
             }
             Event::Switch { line, .. } => [rest(0.0, line), None],
@@ -125,9 +124,9 @@ impl Rows {
 }
 
 /// What changes at the outputs where a row of a program begins. The planner carries it as marks,
-/// which are the bits of a commit.
+/// which are the words of these changes.
 pub fn outputs(row: &Row) -> OutputChange {
-    let changes = row.marks.iter().map(|mark| Commit::of_word(*mark as u32).outputs);
+    let changes = row.marks.iter().map(|mark| OutputChange::of_word(*mark as u32));
     changes.fold(OutputChange::NONE, OutputChange::then)
 }
 

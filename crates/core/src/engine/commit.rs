@@ -74,24 +74,12 @@ impl Commit {
     /// assert_eq!(Commit::of_word(0x8000_1033), commit);
     /// ```
     pub const fn word(self) -> u32 {
-        let Self { last, outputs: OutputChange { mask, levels, duty } } = self;
-        let duty = match duty {
-            Some(duty) => 1 << 1 | (duty as u32) << 20,
-            None => 0,
-        };
-        last as u32 | (mask as u32) << 4 | (levels as u32) << 12 | duty
+        self.last as u32 | self.outputs.word()
     }
 
     /// The commit in such a word.
     pub const fn of_word(word: u32) -> Self {
-        Self {
-            last: word & Self::LAST != 0,
-            outputs: OutputChange {
-                mask: (word >> 4) as u8,
-                levels: (word >> 12) as u8,
-                duty: if word >> 1 & 1 == 1 { Some((word >> 20) as u16) } else { None },
-            },
-        }
+        Self { last: word & Self::LAST != 0, outputs: OutputChange::of_word(word) }
     }
 }
 

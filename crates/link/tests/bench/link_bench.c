@@ -191,11 +191,12 @@ static void obey(char *words)
         put(yes(carrystep_write(&session, (uint8_t)a[0], (uint32_t)a[1])));
     } else if (strcmp(verb, "segment") == 0) {
         command *c = add();
-        unsigned last = 0;
+        uint32_t commit = 0;
         c->is_start = false;
-        sscanf(rest, "%" SCNu8 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %u", &c->axis, &c->segment.ticks,
-               &c->segment.v, &c->segment.a, &c->segment.j, &last);
-        c->segment.last = last == 1;
+        sscanf(rest, "%" SCNu8 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %" SCNu32, &c->axis, &c->segment.ticks,
+               &c->segment.v, &c->segment.a, &c->segment.j, &commit);
+        c->segment.last = (commit & 1u) != 0;
+        c->segment.outputs = commit & ~UINT32_C(1);
     } else if (strcmp(verb, "start") == 0) {
         command *c = add();
         c->is_start = true;
