@@ -25,7 +25,7 @@ const BUGS: &[Bug] = &[
         text: "none = newest == live_now",
         becomes: "none = newest == old_live",
     },
-    Bug { breaks: "promise_6_full", text: "full = spare == 5'd0", becomes: "full = spare == 5'd1" },
+    Bug { breaks: "promise_6_full", text: "full = spare == 5'd0", becomes: "full = spare == 5'd7" },
     Bug {
         breaks: "promise_6_words_in_order",
         text: "next_due = due + ONE",
