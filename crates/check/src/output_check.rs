@@ -29,7 +29,7 @@ pub struct OutputReport {
 impl fmt::Display for OutputReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { changes, wrong, first_wrong, .. } = self;
-        writeln!(f, "outputs: {changes} changes, each in its clock; {wrong} wrong")?;
+        writeln!(f, "changes of outputs in their clocks: {changes}; wrong: {wrong}")?;
         first_wrong.iter().try_for_each(|first| writeln!(f, "  {first}"))
     }
 }
