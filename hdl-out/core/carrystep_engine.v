@@ -113,12 +113,12 @@ module carrystep_adder (
     input  wire  [31:0] put,
     // The axis runs: beat 6 subtracts one from its remaining ticks.
     input  wire         counts,
-    // The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
-    // `counts`.
+    // In beat 5: the axis is at rest, and beat 6 adds one to its discarded steps. Never asserted
+    // with `counts`.
     input  wire         lost,
-    // Beat 7 adds one to the position.
+    // In beat 6: beat 7 adds one to the position.
     input  wire         up,
-    // Beat 7 subtracts one from the position.
+    // In beat 6: beat 7 subtracts one from the position.
     input  wire         down,
     // The sums that replace P are zero.
     input  wire         wipe,
@@ -305,17 +305,17 @@ module carrystep_control (
     // The address of the word to read.
     input  wire   [2:0] read_address,
     // The word at the address of the cycle before.
-    output wire  [23:0] read_data,
+    output wire  [30:0] read_data,
     // The address of the word to write.
     input  wire   [2:0] write_address,
     // The write enable of each bit.
-    input  wire  [23:0] write_bits,
+    input  wire  [30:0] write_bits,
     // The new values of the bits that are written.
-    input  wire  [23:0] write_data
+    input  wire  [30:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [23:0] words [0:7];
-    reg [23:0] value; // a block RAM gives no value before its first clock
+    (* no_rw_check, ram_style = "block" *) reg [30:0] words [0:7];
+    reg [30:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -335,16 +335,18 @@ module carrystep_lasts (
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [5:0] read_address,
+    input  wire   [7:0] read_address,
     // The word at the address of the cycle before.
     output wire         read_data,
     // The address of the word to write.
-    input  wire   [5:0] write_address,
+    input  wire   [7:0] write_address,
     // The write enable of each bit.
     input  wire         write_bits,
     // The new values of the bits that are written.
     input  wire         write_data
 );
+    wire unused = &{read_address[7:6], write_address[7:6]};
+
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg words [0:63];
     reg value; // a block RAM gives no value before its first clock
@@ -357,13 +359,16 @@ module carrystep_lasts (
     end
 
     always @(posedge clock) begin
-        value <= words[read_address];
-        if (write_bits) words[write_address] <= write_data;
+        value <= words[read_address[5:0]];
+        if (write_bits) words[write_address[5:0]] <= write_data;
     end
 endmodule
 
 // The segment queue of each axis: which segment runs, and which segments wait.
-module carrystep_queue (
+module carrystep_queue #(
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0
+) (
     // The clock.
     input  wire         clock,
     // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
@@ -385,9 +390,17 @@ module carrystep_queue (
     // The engine accepts the host's word in this clock.
     input  wire         take,
     // The number of that word.
-    input  wire   [2:0] put_word,
+    input  wire   [3:0] put_word,
+    // The lowest bits of that word: the slot of the last segment that a cut keeps.
+    input  wire   [4:0] put_slot,
     // The committed segment is the last of its move.
     input  wire         last,
+    // In this tick the queue examines the segment that was named for a cut.
+    input  wire         checks,
+    // In this tick the queue ends with the segment that was named, if one was.
+    input  wire         cuts,
+    // In this tick the queue forgets what was named.
+    input  wire         closes,
     // The running segment ends with this tick.
     input  wire         ended,
     // V + A does not fit in 64 bits.
@@ -398,24 +411,20 @@ module carrystep_queue (
     input  wire         turned,
     // V < 0.
     input  wire         back,
-    // In beat 12: P + V crosses a step, if the axis moves.
-    input  wire         crosses,
     // In beat 12: the next tick's words of the axis are those of its own hit.
     input  wire         meets,
-    // The low bits of the position, from the pulser.
-    input  wire   [2:0] pulses,
-    // The low bits of the discarded steps, from the pulser.
-    input  wire   [2:0] losses,
+    // In beat 12: what is kept in `counts` until the next time slot of the axis.
+    input  wire   [6:0] next_counts,
     // The slot of the running segment.
-    output wire   [2:0] live,
+    output wire   [4:0] live,
     // The slot that the host writes.
-    output wire   [2:0] fresh,
+    output wire   [4:0] fresh,
     // Fault: the word accepted in the clock before was not the one that was due.
     output wire         misplaced,
     // From beat 1: no slot is free for the host.
     output wire         full,
-    // The number of segments for which the queue has space, 0 to 7.
-    output wire   [2:0] room,
+    // From beat 1: the number of segments for which the queue has space.
+    output wire   [4:0] room,
     // No segment waits.
     output wire         empty,
     // The axis runs in this tick.
@@ -432,115 +441,123 @@ module carrystep_queue (
     output wire         moves,
     // In beat 12: the axis runs in the next tick too.
     output wire         goes_on,
+    // In beat 12: the next segment begins with the next tick.
+    output wire         advances,
     // In beat 12, fault: V is out of range.
     output wire         too_fast,
     // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     output wire         dry,
-    // From beat 5: a step forward is added to the position.
-    output wire         up,
-    // From beat 5: a step backward is subtracted from the position.
-    output wire         down,
-    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
-    output wire         lost,
+    // In beat 12, while a cut is examined: the named segment neither waits nor runs after this
+    // tick, or a segment is partly written.
+    output wire         misses,
     // The words of this tick are those of the axis' own hit.
     output wire         met,
-    // Carries since the last clear less counted steps, modulo 16.
-    output wire   [3:0] on_way
+    // `next_counts` of the time slot before of this axis, at first 0.
+    output wire   [6:0] counts
 );
+    localparam HAS_CUTS = CUTS[0];
+    localparam [4:0] SLOTS = 5'd7;
+    localparam [5:0] BEYOND = 6'd56;
+    localparam [4:0] ONE_SLOT = 5'd1;
+    localparam [4:0] NO_SLOT = 5'd0;
+    localparam [30:0] NAMED_BIT = 31'h40000000;
     localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
     localparam [2:0] ZERO = 3'd0;
-    localparam [23:0] NO = 24'd0;
-    localparam [23:0] RUNNING_BIT = 24'd64;
-    localparam [23:0] UNFIT_BIT = 24'd128;
-    localparam [23:0] BACK_BIT = 24'd16384;
-    localparam [23:0] KNOWN_BIT = 24'd32768;
-    localparam [23:0] ALL = 24'hffffff;
-    localparam [23:0] MET_BIT = 24'h80000;
-    localparam [3:0] NONE_ON_WAY = 4'd0;
-    localparam [3:0] ONE_MORE = 4'd1;
-    localparam [3:0] TWO_MORE = 4'd2;
-    localparam [3:0] ONE_LESS = 4'd15;
-    localparam [3:0] TWO_LESS = 4'd14;
+    localparam [30:0] NO = 31'd0;
+    localparam [30:0] RUNNING_BIT = 31'd1024;
+    localparam [30:0] UNFIT_BIT = 31'd2048;
+    localparam [30:0] BACK_BIT = 31'd4096;
+    localparam [30:0] KNOWN_BIT = 31'd8192;
+    localparam [30:0] ALL = 31'h7fffffff;
+    localparam [30:0] MET_BIT = 31'h20000;
     localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
     localparam [3:0] AT_3 = 4'd3;
-    localparam [3:0] AT_8 = 4'd8;
-    localparam [3:0] AT_11 = 4'd11;
-    localparam [4:0] AT_16 = 5'd16;
-    localparam [4:0] AT_20 = 5'd20;
+    localparam [3:0] AT_5 = 4'd5;
+    localparam [3:0] AT_14 = 4'd14;
+    localparam [4:0] AT_18 = 5'd18;
+    localparam [4:0] AT_25 = 5'd25;
 
-    reg filled = 1'b0;
+    reg [4:0] spare = 5'd0;
     reg took = 1'b0;
     reg wrong = 1'b0;
-    reg forward = 1'b0;
-    reg backward = 1'b0;
-    reg gone = 1'b0;
-    reg [2:0] live_now;
+    reg [4:0] newest;
+    reg [4:0] live_now;
     reg over;
     reg lasts_write_data;
     reg lasts_write_bits;
-    reg [2:0] next_live;
-    reg [2:0] next_newest;
+    reg [4:0] next_live;
+    reg [4:0] next_newest;
     reg [2:0] next_due;
-    reg [23:0] next_running;
-    reg [23:0] next_unfit;
-    reg [23:0] next_known;
-    reg [23:0] next_back;
-    reg [2:0] next_seen;
-    reg [2:0] next_lost;
-    reg [23:0] next_met;
-    reg [3:0] gain;
-    reg [3:0] next_on_way;
-    reg [23:0] control_write_bits;
+    reg [30:0] next_running;
+    reg [30:0] next_unfit;
+    reg [30:0] next_known;
+    reg [30:0] next_back;
+    reg [30:0] next_met;
+    reg [4:0] next_target;
+    reg [30:0] next_named;
+    reg [30:0] control_write_bits;
 
-    wire [23:0] control_read_data;
+    wire [30:0] control_read_data;
     wire lasts_read_data;
 
-    wire [23:0] word = control_read_data;
-    wire [2:0] old_live = word[2:0];
-    wire [2:0] newest = word[5:3];
-    wire [2:0] fresh_now = newest + ONE;
-    wire runs = (word[6] | starts) & !halted;
-    wire fits = runs & !word[7];
+    wire [30:0] word = control_read_data;
+    wire [4:0] old_live = word[4:0] & SLOTS;
+    wire [4:0] target = word[29:25] & SLOTS;
+    wire is_named = word[30] & (HAS_CUTS != 1'b0);
+    wire ends_here = cuts & is_named;
+    wire [4:0] fresh_now = (newest + ONE_SLOT) & SLOTS;
+    wire [4:0] space = (live_now + ~newest) & SLOTS;
+    wire runs = (word[10] | starts) & !halted;
+    wire fits = runs & !word[11];
     wire none = newest == live_now;
     wire last_one = lasts_read_data != 1'b0;
-    wire ramps = ramp & word[15];
+    wire ramps = ramp & word[13];
     wire follows = ended & !last_one & !none & !ramp;
     wire stays = moves & !over;
-    wire [2:0] missing = pulses - word[10:8];
-    wire [2:0] unseen = losses ^ word[13:11];
-    wire [2:0] due = word[18:16];
-    wire fits_in = put_word == due;
-    wire ahead = moves & crosses & !back;
-    wire behind = moves & crosses & back;
+    wire steps_on = moves & follows;
+    wire [4:0] distance = (target - live_now) & SLOTS;
+    wire [5:0] span = {1'b0, distance} + {1'b0, space};
+    wire is_live = distance == 5'd0;
+    wire waits = ((span & BEYOND) == 6'd0) & !is_live & !empties & !clear;
+    wire keeps = waits | (is_live & stays & !follows);
+    wire takes_word = take & !put_word[3];
+    wire names = take & put_word[3] & (HAS_CUTS != 1'b0);
+    wire [2:0] due = word[16:14];
+    wire fits_in = put_word[2:0] == due;
 
     assign live = live_now;
     assign fresh = fresh_now;
     assign misplaced = wrong;
-    assign full = filled;
-    assign room = live_now + ~newest;
+    assign full = spare == 5'd0;
+    assign room = spare;
     assign empty = none;
     assign running = runs;
     assign sound = fits;
     assign slows = ramps;
-    assign upward = word[14];
-    assign steady = ramp & !word[15];
+    assign upward = word[12];
+    assign steady = ramp & !word[13];
     assign moves = fits & !least;
     assign goes_on = stays;
-    assign too_fast = runs & (word[7] | least);
+    assign advances = steps_on;
+    assign too_fast = runs & (word[11] | least);
     assign dry = moves & ended & !last_one & none & !ramp;
-    assign up = forward;
-    assign down = backward;
-    assign lost = gone;
-    assign met = word[19];
-    assign on_way = word[23:20];
+    assign misses = checks & is_named & (!keeps | (next_due != 3'd0));
+    assign met = word[17];
+    assign counts = word[24:18];
+
+    always @(*) begin
+        newest = word[9:5] & SLOTS;
+        if (ends_here) begin
+            newest = target;
+        end
+    end
 
     always @(*) begin
         live_now = old_live;
         if (starts) begin
-            live_now = old_live + ONE;
+            live_now = (old_live + ONE_SLOT) & SLOTS;
         end
     end
 
@@ -560,15 +577,15 @@ module carrystep_queue (
 
     always @(*) begin
         lasts_write_bits = UNSET;
-        if (take) begin
+        if (takes_word) begin
             lasts_write_bits = SET;
         end
     end
 
     always @(*) begin
         next_live = live_now;
-        if (moves & follows) begin
-            next_live = live_now + ONE;
+        if (steps_on) begin
+            next_live = (live_now + ONE_SLOT) & SLOTS;
         end
         if (empties) begin
             next_live = newest;
@@ -582,8 +599,8 @@ module carrystep_queue (
             next_due = due + ONE;
         end
         if (clear) begin
-            next_live = ZERO;
-            next_newest = ZERO;
+            next_live = NO_SLOT;
+            next_newest = NO_SLOT;
             next_due = ZERO;
         end
     end
@@ -611,24 +628,8 @@ module carrystep_queue (
 
     always @(*) begin
         next_back = NO;
-        if ((ramps & word[14]) | (!ramps & back)) begin
+        if ((ramps & word[12]) | (!ramps & back)) begin
             next_back = BACK_BIT;
-        end
-    end
-
-    always @(*) begin
-        next_seen = word[10:8];
-        if (forward) begin
-            next_seen = word[10:8] + ONE;
-        end else if (backward) begin
-            next_seen = word[10:8] + MINUS_ONE;
-        end
-    end
-
-    always @(*) begin
-        next_lost = word[13:11];
-        if (gone) begin
-            next_lost = word[13:11] + ONE;
         end
     end
 
@@ -636,6 +637,125 @@ module carrystep_queue (
         next_met = NO;
         if (meets) begin
             next_met = MET_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_target = target;
+        next_named = NO;
+        if (is_named & !closes & !clear) begin
+            next_named = NAMED_BIT;
+        end
+        if (names) begin
+            next_target = put_slot & SLOTS;
+            next_named = NAMED_BIT;
+        end
+    end
+
+    always @(*) begin
+        control_write_bits = NO;
+        if (beat[12]) begin
+            control_write_bits = ALL;
+        end
+    end
+
+    carrystep_control control (
+        .clock(clock),
+        .read_address(axis_next),
+        .read_data(control_read_data),
+        .write_address(axis),
+        .write_bits(control_write_bits),
+        .write_data({26'b0, next_live} | ({26'b0, next_newest} << AT_5) | next_running | next_unfit | next_known | next_back | ({28'b0, next_due} << AT_14) | next_met | ({24'b0, next_counts} << AT_18) | ({26'b0, next_target} << AT_25) | next_named)
+    );
+
+    carrystep_lasts lasts (
+        .clock(clock),
+        .read_address(({3'b0, live_now} << AT_3) | {5'b0, axis}),
+        .read_data(lasts_read_data),
+        .write_address(({3'b0, fresh_now} << AT_3) | {5'b0, axis}),
+        .write_bits(lasts_write_bits),
+        .write_data(lasts_write_data)
+    );
+
+    always @(posedge clock) begin
+        wrong <= takes_word & !fits_in;
+        if (beat[0]) begin
+            took <= 1'b0;
+        end
+        if (takes_word & fits_in) begin
+            took <= 1'b1;
+        end
+        spare <= space;
+    end
+endmodule
+
+// Counts pulses and discarded steps in memory, and the steps that are on their way.
+module carrystep_step_counts (
+    // The clock.
+    input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The axis runs in this tick.
+    input  wire         running,
+    // In beat 12: the axis runs and its V is in range.
+    input  wire         moves,
+    // In beat 12: P + V crosses a step, if the axis moves.
+    input  wire         crosses,
+    // In beat 12: V < 0.
+    input  wire         back,
+    // No step is on its way any more.
+    input  wire         clear,
+    // The low bits of the position, from the pulser of the axis.
+    input  wire   [2:0] pulses,
+    // The low bits of the discarded steps, from the pulser of the axis.
+    input  wire   [2:0] losses,
+    // The lowest bits of the word that the memory returns. In beat 6 it is the position.
+    input  wire   [2:0] word,
+    // `next_counts` of the time slot before of this axis, at first 0.
+    input  wire   [6:0] counts,
+    // In beat 12: what is kept until the next time slot of the axis.
+    output wire   [6:0] next_counts,
+    // In beat 6: a step forward is added to the position.
+    output wire         up,
+    // In beat 6: a step backward is subtracted from the position.
+    output wire         down,
+    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
+    output wire         lost,
+    // Carries since the last clear less counted steps, modulo 16.
+    output wire   [3:0] on_way
+);
+    localparam [2:0] ONE = 3'd1;
+    localparam [3:0] NONE_ON_WAY = 4'd0;
+    localparam [3:0] ONE_MORE = 4'd1;
+    localparam [3:0] TWO_MORE = 4'd2;
+    localparam [3:0] ONE_LESS = 4'd15;
+    localparam [3:0] TWO_LESS = 4'd14;
+    localparam [2:0] AT_3 = 3'd3;
+
+    reg forward = 1'b0;
+    reg backward = 1'b0;
+    reg gone = 1'b0;
+    reg [2:0] next_lost;
+    reg [3:0] gain;
+    reg [3:0] next_on_way;
+
+    wire [2:0] missing = pulses - word;
+    wire more = (missing != 3'd0) & !missing[2];
+    wire less = missing[2];
+    wire [2:0] unseen = losses ^ counts[2:0];
+    wire ahead = moves & crosses & !back;
+    wire behind = moves & crosses & back;
+
+    assign next_counts = {4'b0, next_lost} | ({3'b0, next_on_way} << AT_3);
+    assign up = more;
+    assign down = less;
+    assign lost = gone;
+    assign on_way = counts[6:3];
+
+    always @(*) begin
+        next_lost = counts[2:0];
+        if (gone) begin
+            next_lost = counts[2:0] + ONE;
         end
     end
 
@@ -668,51 +788,94 @@ module carrystep_queue (
     end
 
     always @(*) begin
-        next_on_way = word[23:20] + gain;
+        next_on_way = counts[6:3] + gain;
         if (clear) begin
             next_on_way = NONE_ON_WAY;
         end
     end
 
-    always @(*) begin
-        control_write_bits = NO;
-        if (beat[12]) begin
-            control_write_bits = ALL;
+    always @(posedge clock) begin
+        if (beat[6]) begin
+            forward <= more;
+            backward <= less;
+        end
+        if (beat[4]) begin
+            gone <= (unseen != 3'd0) & !running;
         end
     end
+endmodule
 
-    carrystep_control control (
-        .clock(clock),
-        .read_address(axis_next),
-        .read_data(control_read_data),
-        .write_address(axis),
-        .write_bits(control_write_bits),
-        .write_data({21'b0, next_live} | ({21'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({21'b0, next_seen} << AT_8) | ({21'b0, next_lost} << AT_11) | ({21'b0, next_due} << AT_16) | next_met | ({20'b0, next_on_way} << AT_20))
-    );
+// The stages of a cut, which drops the segments behind a named one in several axes.
+module carrystep_cut_control #(
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // Asserted in the last clock of a tick.
+    input  wire         strobe,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The host requests a cut.
+    input  wire         request,
+    // In beat 12: the axis was named, and its segment neither waits nor runs after this tick.
+    input  wire         misses,
+    // A reset: no cut is requested.
+    input  wire         resetting,
+    // In this tick the time slots examine the named segments.
+    output wire         checks,
+    // In this tick the queues of the named axes end with the named segment.
+    output wire         cuts,
+    // In this tick the axes forget what was named.
+    output wire         closes,
+    // A cut was requested and is not decided yet.
+    output wire         busy,
+    // The last cut was refused.
+    output wire         refused
+);
+    localparam EXIST = CUTS[0];
 
-    carrystep_lasts lasts (
-        .clock(clock),
-        .read_address(({3'b0, axis} << AT_3) | {3'b0, live_now}),
-        .read_data(lasts_read_data),
-        .write_address(({3'b0, axis} << AT_3) | {3'b0, fresh_now}),
-        .write_bits(lasts_write_bits),
-        .write_data(lasts_write_data)
-    );
+    generate
+        if (CUTS > 32'd1) begin : cuts_out_of_range
+            carrystep_error_cuts_out_of_range error ();
+        end
+    endgenerate
+
+    reg asked = 1'b0;
+    reg checking = 1'b0;
+    reg closing = 1'b0;
+    reg missed = 1'b0;
+    reg denied = 1'b0;
+
+    assign checks = checking;
+    assign cuts = closing & !denied;
+    assign closes = closing;
+    assign busy = asked | checking;
+    assign refused = denied | (EXIST == 1'b0);
 
     always @(posedge clock) begin
-        if (beat[4]) begin
-            forward <= (missing != 3'd0) & !missing[2];
-            backward <= missing[2];
-            gone <= (unseen != 3'd0) & !runs;
+        if (beat[12] & misses) begin
+            missed <= 1'b1;
         end
-        wrong <= take & !fits_in;
-        if (beat[0]) begin
-            took <= 1'b0;
+        if (strobe) begin
+            asked <= 1'b0;
+            checking <= asked;
+            closing <= checking;
+            missed <= 1'b0;
+            if (checking) begin
+                denied <= missed;
+            end
         end
-        if (take & fits_in) begin
-            took <= 1'b1;
+        if (request & (EXIST != 1'b0)) begin
+            asked <= 1'b1;
         end
-        filled <= fresh_now == live_now;
+        if (resetting) begin
+            asked <= 1'b0;
+            checking <= 1'b0;
+            if (strobe) begin
+                denied <= 1'b0;
+            end
+        end
     end
 endmodule
 
@@ -731,17 +894,17 @@ module carrystep_segments #(
     // The clock.
     input  wire         clock,
     // The address of the word to read.
-    input  wire   [9:0] read_address,
+    input  wire  [10:0] read_address,
     // The word at the address of the cycle before.
     output wire  [31:0] read_data,
     // The address of the word to write.
-    input  wire   [9:0] write_address,
+    input  wire  [10:0] write_address,
     // The write enable of each bit.
     input  wire  [31:0] write_bits,
     // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
-    wire unused = &{read_address[9:9], write_address[9:9]};
+    wire unused = &{read_address[10:9], write_address[10:9]};
 
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
@@ -810,9 +973,9 @@ module carrystep_store #(
     // The axis of the time slot.
     input  wire   [2:0] axis,
     // The slot of the running segment of the axis.
-    input  wire   [2:0] live,
+    input  wire   [4:0] live,
     // The slot that the host writes.
-    input  wire   [2:0] fresh,
+    input  wire   [4:0] fresh,
     // The axis runs in this tick.
     input  wire         running,
     // The axis runs, and V is in range as far as is known.
@@ -845,17 +1008,18 @@ module carrystep_store #(
     localparam [2:0] J_LOW = 3'd5;
     localparam [2:0] J_HIGH = 3'd6;
     localparam [2:0] KEPT = 3'd7;
-    localparam [2:0] P_LOW = 3'd0;
-    localparam [2:0] P_HIGH = 3'd1;
-    localparam [2:0] POSITION = 3'd2;
-    localparam [2:0] DISCARDED = 3'd3;
-    localparam [2:0] DOWN_LOW = 3'd4;
-    localparam [2:0] DOWN_HIGH = 3'd5;
-    localparam [2:0] UP_LOW = 3'd6;
-    localparam [2:0] UP_HIGH = 3'd7;
+    localparam [4:0] P_LOW = 5'd0;
+    localparam [4:0] P_HIGH = 5'd1;
+    localparam [4:0] POSITION = 5'd2;
+    localparam [4:0] DISCARDED = 5'd3;
+    localparam [4:0] DOWN_LOW = 5'd4;
+    localparam [4:0] DOWN_HIGH = 5'd5;
+    localparam [4:0] UP_LOW = 5'd6;
+    localparam [4:0] UP_HIGH = 5'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
-    localparam [9:0] TICK_ADDRESS = 10'd1023;
+    localparam [3:0] AT_9 = 4'd9;
+    localparam [10:0] TICK_ADDRESS = 11'd2047;
     localparam [31:0] START_HIGH = START_HALF[0] ? 32'h80000000 : 32'd0;
     localparam [31:0] NO = 32'd0;
     localparam [31:0] ALL = 32'hffffffff;
@@ -885,13 +1049,13 @@ module carrystep_store #(
     endgenerate
 
     reg counted = 1'b0;
-    reg [2:0] read_slot;
+    reg [4:0] read_slot;
     reg [2:0] read_word;
-    reg [9:0] segments_read_address;
-    reg [2:0] write_slot;
+    reg [10:0] segments_read_address;
+    reg [4:0] write_slot;
     reg [2:0] write_word;
     reg writes;
-    reg [9:0] segments_write_address;
+    reg [10:0] segments_write_address;
     reg [31:0] segments_write_data;
     reg [31:0] segments_write_bits;
 
@@ -953,7 +1117,7 @@ module carrystep_store #(
     end
 
     always @(*) begin
-        segments_read_address = ({7'b0, axis} << AT_6) | ({7'b0, read_slot} << AT_3) | {7'b0, read_word};
+        segments_read_address = ({9'b0, read_slot[4:3]} << AT_9) | ({8'b0, axis} << AT_6) | ({8'b0, read_slot[2:0]} << AT_3) | {8'b0, read_word};
         if (beat[10] | beat[12]) begin
             segments_read_address = TICK_ADDRESS;
         end
@@ -1004,7 +1168,7 @@ module carrystep_store #(
             write_slot = P_HIGH;
             writes = moves | wipe;
         end
-        segments_write_address = ({7'b0, axis} << AT_6) | ({7'b0, write_slot} << AT_3) | {7'b0, write_word};
+        segments_write_address = ({9'b0, write_slot[4:3]} << AT_9) | ({8'b0, axis} << AT_6) | ({8'b0, write_slot[2:0]} << AT_3) | {8'b0, write_word};
         if (counted) begin
             segments_write_address = TICK_ADDRESS;
             writes = 1'b1;
@@ -1311,6 +1475,265 @@ module carrystep_event_wheel #(
             step_known <= 1'b0;
             when <= read[6:5] + ONE_TICK;
         end
+    end
+endmodule
+
+// Memory of the commits of axis 0: which outputs change, and their levels.
+module carrystep_output_words (
+    // The clock.
+    input  wire         clock,
+    // Reads a word in this cycle.
+    input  wire         read,
+    // The address of the word to read.
+    input  wire   [4:0] read_address,
+    // The word that was read last.
+    output wire  [15:0] read_data,
+    // Writes a word in this cycle.
+    input  wire         write,
+    // The address of the word to write.
+    input  wire   [4:0] write_address,
+    // The new word.
+    input  wire  [15:0] write_data
+);
+    wire unused = &{read_address[4:3], write_address[4:3]};
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
+    reg [15:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        if (read) value <= words[read_address[2:0]];
+        if (write) words[write_address[2:0]] <= write_data;
+    end
+endmodule
+
+// Memory of the commits of axis 0: the duty of the PWM.
+module carrystep_duty_words (
+    // The clock.
+    input  wire         clock,
+    // Reads a word in this cycle.
+    input  wire         read,
+    // The address of the word to read.
+    input  wire   [4:0] read_address,
+    // The word that was read last.
+    output wire  [12:0] read_data,
+    // Writes a word in this cycle.
+    input  wire         write,
+    // The address of the word to write.
+    input  wire   [4:0] write_address,
+    // The new word.
+    input  wire  [12:0] write_data
+);
+    wire unused = &{read_address[4:3], write_address[4:3]};
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = "block" *) reg [12:0] words [0:7];
+    reg [12:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        if (read) value <= words[read_address[2:0]];
+        if (write) words[write_address[2:0]] <= write_data;
+    end
+endmodule
+
+// The outputs, which change where a segment of axis 0 begins; and the new duties of the PWM.
+module carrystep_output_control #(
+    // The outputs at `outputs` that exist; a mask of 8 bits
+    parameter [31:0] OUTPUTS = 32'd0,
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
+    input  wire  [16:0] beat,
+    // The time slot is that of axis 0.
+    input  wire         first,
+    // The engine accepts a word of the host in this clock, for the axis of the time slot.
+    input  wire         take,
+    // The number of that word.
+    input  wire   [3:0] put_word,
+    // That word.
+    input  wire  [31:0] put_data,
+    // The slot that the host writes.
+    input  wire   [4:0] fresh,
+    // The slot of the running segment.
+    input  wire   [4:0] live,
+    // The axis starts in this tick.
+    input  wire         starts,
+    // In beat 12: the next segment of the axis begins with the next tick.
+    input  wire         follows,
+    // All outputs are off from the next clock on.
+    input  wire         off,
+    // The pins; 1 is active.
+    output wire   [7:0] pins,
+    // At a strobe: the duty of the PWM changes.
+    output wire         sets_duty,
+    // The new duty, valid with `sets_duty`.
+    output wire  [11:0] duty,
+    // Fault: the commit accepted in the clock before had bits that it must not have.
+    output wire         stray
+);
+    localparam [7:0] EXIST = OUTPUTS[7:0];
+    localparam HAS_PWM = PWM_DIVIDER != 32'd0;
+    localparam [31:0] LACKS = ((OUTPUTS != 32'd0) | (PWM_DIVIDER != 32'd0)) ? ~(((OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0)) | 32'd1) : 32'd0;
+    localparam [31:0] HAS = (OUTPUTS * 32'd4112) | ((PWM_DIVIDER != 32'd0) ? 32'hfff00002 : 32'd0);
+    localparam [3:0] COMMIT = 4'd7;
+    localparam [12:0] DUTY_VALID = 13'd4096;
+    localparam [12:0] NO_DUTY = 13'd0;
+    localparam [7:0] NO_LEVELS = 8'd0;
+
+    generate
+        if (OUTPUTS > 32'd255) begin : outputs_out_of_range
+            carrystep_error_outputs_out_of_range error ();
+        end
+    endgenerate
+
+    reg [7:0] levels = 8'd0;
+    reg [4:0] place = 5'd0;
+    reg follower = 1'b0;
+    reg begun = 1'b0;
+    reg due = 1'b0;
+    reg wrong = 1'b0;
+    reg [12:0] sets_bit;
+
+    wire [15:0] output_words_read_data;
+    wire [12:0] duty_words_read_data;
+
+    wire commits = take & (put_word == COMMIT);
+    wire stores = commits & first;
+    wire [31:0] never = put_data & LACKS;
+    wire [31:0] of_others = put_data & HAS;
+    wire applies = first & beat[0];
+    wire [7:0] mask = output_words_read_data[7:0] & EXIST;
+    wire [7:0] new_levels = output_words_read_data[15:8];
+
+    assign pins = levels;
+    assign sets_duty = due & duty_words_read_data[12] & (HAS_PWM != 1'b0);
+    assign duty = duty_words_read_data[11:0];
+    assign stray = wrong;
+
+    always @(*) begin
+        sets_bit = NO_DUTY;
+        if (put_data[1]) begin
+            sets_bit = DUTY_VALID;
+        end
+    end
+
+    carrystep_output_words output_words (
+        .clock(clock),
+        .read(applies),
+        .read_address(place),
+        .read_data(output_words_read_data),
+        .write(stores),
+        .write_address(fresh),
+        .write_data(put_data[19:4])
+    );
+
+    carrystep_duty_words duty_words (
+        .clock(clock),
+        .read(applies),
+        .read_address(place),
+        .read_data(duty_words_read_data),
+        .write(stores),
+        .write_address(fresh),
+        .write_data({1'b0, put_data[31:20]} | sets_bit)
+    );
+
+    always @(posedge clock) begin
+        wrong <= commits & ((never != 32'd0) | (!first & (of_others != 32'd0)));
+        if (first & beat[12]) begin
+            place <= live;
+            begun <= starts | follower;
+            follower <= follows;
+        end
+        if (applies) begin
+            due <= begun;
+        end
+        if (applies & due) begin
+            levels <= (levels & ~mask) | (new_levels & mask);
+        end
+        if (off) begin
+            levels <= NO_LEVELS;
+        end
+    end
+endmodule
+
+// The PWM: its pin is active for the duty, a part of each period.
+module carrystep_pulse_width #(
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0
+) (
+    // The clock.
+    input  wire         clock,
+    // The duty changes.
+    input  wire         set,
+    // The new duty, valid with `set`.
+    input  wire  [11:0] duty,
+    // The pin is off from the next clock on, and the duty is 0.
+    input  wire         off,
+    // The pin; 1 is active.
+    output wire         pin
+);
+    // A mask of the bits that a counter from 0 to `greatest` uses.
+    function [7:0] used_bits_8(input [7:0] greatest);
+        begin
+            used_bits_8 = greatest;
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 1);
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 2);
+            used_bits_8 = used_bits_8 | (used_bits_8 >> 4);
+        end
+    endfunction
+    localparam [7:0] LAST = (PWM_DIVIDER != 32'd0) ? (PWM_DIVIDER[7:0] - 8'd1) : 8'd0;
+    localparam [7:0] DIVIDER_BITS = used_bits_8((PWM_DIVIDER != 32'd0) ? (PWM_DIVIDER[7:0] - 8'd1) : 8'd0);
+    localparam [11:0] STEPS = (PWM_DIVIDER != 32'd0) ? 12'd4095 : 12'd0;
+    localparam [7:0] ONE_CLOCK = 8'd1;
+    localparam [7:0] NO_CLOCK = 8'd0;
+    localparam [11:0] ONE_STEP = 12'd1;
+    localparam [11:0] NO_DUTY = 12'd0;
+
+    generate
+        if (PWM_DIVIDER > 32'd256) begin : pwm_divider_out_of_range
+            carrystep_error_pwm_divider_out_of_range error ();
+        end
+    endgenerate
+
+    reg [7:0] divided = 8'd0;
+    reg [11:0] count = 12'd0;
+    reg [11:0] width = 12'd0;
+    reg high = 1'b0;
+
+    wire over = divided == LAST;
+
+    assign pin = high;
+
+    always @(posedge clock) begin
+        divided <= (divided + ONE_CLOCK) & DIVIDER_BITS;
+        if (over) begin
+            divided <= NO_CLOCK;
+            count <= (count + ONE_STEP) & STEPS;
+        end
+        if (set) begin
+            width <= duty & STEPS;
+        end
+        if (off) begin
+            width <= NO_DUTY;
+        end
+        high <= (count < width) & !off;
     end
 endmodule
 
@@ -1806,11 +2229,11 @@ module carrystep_readout (
     // The word that the memory returns.
     input  wire  [31:0] word,
     // The slot of the running segment.
-    input  wire   [2:0] live,
+    input  wire   [4:0] live,
     // The axis runs in this tick.
     input  wire         running,
     // The number of segments for which the queue has space.
-    input  wire   [2:0] room,
+    input  wire   [4:0] room,
     // Carries less counted steps, modulo 16.
     input  wire   [3:0] on_way,
     // A word of the state of the axis of this time slot is output.
@@ -1827,6 +2250,7 @@ module carrystep_readout (
     // tick that the latch does not need.
     output wire         meets
 );
+    localparam [4:0] SLOTS = 5'd7;
     localparam [31:0] HIGH_HALF = 32'hffff0000;
     localparam [15:0] NO_STATUS = 16'd0;
     localparam [15:0] RUNNING_BIT = 16'd32;
@@ -1859,8 +2283,8 @@ module carrystep_readout (
     wire ticks_left = beat[5];
     wire p_or_position = beat[4] | beat[10] | beat[6];
     wire odd = (ticks_left & running) | beat[10] | beat[11] | beat[12];
-    wire [2:0] waiting = ~room;
-    wire [15:0] status = {13'b0, live} | running_now | ({13'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
+    wire [4:0] waiting = ~room & SLOTS;
+    wire [15:0] status = {11'b0, live} | running_now | ({11'b0, waiting} << AT_6) | ({12'b0, on_way} << AT_12);
 
     assign valid = (ticks_left & (!captured | latches)) | of_switch | p_or_position | beat[11] | beat[12];
     assign state = (word & HIGH_HALF) | {16'b0, low};
@@ -2540,6 +2964,15 @@ module carrystep_engine #(
     parameter [31:0] LATCH_LOW = 32'd0,
     // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0,
+    // The outputs at `outputs` that exist; a mask of 8 bits
+    parameter [31:0] OUTPUTS = 32'd0,
+    // Effect of a stop by ramps on outputs and PWM: 0 none, 1 all off; a freeze turns them off; 0
+    // or 1
+    parameter [31:0] OUTPUTS_OFF_AT_RAMPS = 32'd0,
+    // Length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM; 0 to 256
+    parameter [31:0] PWM_DIVIDER = 32'd0,
+    // Cuts: 0 each is refused, 1 they exist; 0 or 1
+    parameter [31:0] CUTS = 32'd0,
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
@@ -2553,9 +2986,12 @@ module carrystep_engine #(
     input  wire   [2:0] put_axis,
     // The number of the word. The words of a segment come in order: 0 is its duration in ticks less
     // 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
-    // segment.
-    input  wire   [2:0] put_word,
-    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
+    // segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the last segment
+    // that the next cut keeps.
+    input  wire   [3:0] put_word,
+    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a commit
+    // of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19 to 12
+    // their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
     input  wire  [31:0] put_data,
     // The engine accepts an offered word in this clock.
     output wire         put_ready,
@@ -2566,6 +3002,13 @@ module carrystep_engine #(
     input  wire   [5:0] start_mask,
     // The engine accepts an offered start in this clock.
     output wire         start_ready,
+    // The host requests a cut in all axes for which it has offered a word 8; asserted for one
+    // clock.
+    input  wire         cut,
+    // A cut was requested and is not decided yet.
+    output wire         cut_busy,
+    // The last cut was refused: nothing was dropped.
+    output wire         cut_refused,
     // Clears a stop. The host holds it until `fault` falls.
     input  wire         clear,
     // Stops the engine and returns it to its state at configuration; the positions stay. It is
@@ -2628,14 +3071,18 @@ module carrystep_engine #(
     output wire  [31:0] state,
     // All live words of this tick have been output; asserted for one clock.
     output wire         refreshed,
-    // The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
-    output wire   [2:0] room,
+    // The number of segments for which the queue of the axis `put_axis` has space.
+    output wire   [4:0] room,
     // `room` is valid in this clock, once in the time slot of that axis.
     output wire         room_valid,
     // The STEP pins; bit i is axis i. A rising edge is a step.
     output wire   [5:0] step,
     // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The outputs, which change where a segment of axis 0 begins; 1 is active.
+    output wire   [7:0] outputs,
+    // The pin of the PWM; 1 is active.
+    output wire         pwm,
     // The motor drivers are to be powered.
     output wire         enabled,
     // All axes are at rest and no start is armed.
@@ -2677,12 +3124,16 @@ module carrystep_engine #(
     localparam [5:0] ONE_AXIS_3 = 6'd8;
     localparam [5:0] ONE_AXIS_4 = 6'd16;
     localparam [5:0] ONE_AXIS_5 = 6'd32;
-    localparam [2:0] COMMIT = 3'd7;
+    localparam [3:0] COMMIT = 4'd7;
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
+    localparam OFF_AT_RAMPS = OUTPUTS_OFF_AT_RAMPS[0];
 
     generate
+        if (OUTPUTS_OFF_AT_RAMPS > 32'd1) begin : outputs_off_at_ramps_out_of_range
+            carrystep_error_outputs_off_at_ramps_out_of_range error ();
+        end
         if (CLOCKS_PER_TICK < 32'd80) begin : clocks_per_tick_too_few_for_the_axes
             carrystep_error_clocks_per_tick_too_few_for_the_axes error ();
         end
@@ -2729,11 +3180,11 @@ module carrystep_engine #(
     wire adder_still;
     wire adder_least;
     wire [3:0] adder_q;
-    wire [2:0] queue_live;
-    wire [2:0] queue_fresh;
+    wire [4:0] queue_live;
+    wire [4:0] queue_fresh;
     wire queue_misplaced;
     wire queue_full;
-    wire [2:0] queue_room;
+    wire [4:0] queue_room;
     wire queue_empty;
     wire queue_running;
     wire queue_sound;
@@ -2742,18 +3193,32 @@ module carrystep_engine #(
     wire queue_steady;
     wire queue_moves;
     wire queue_goes_on;
+    wire queue_advances;
     wire queue_too_fast;
     wire queue_dry;
-    wire queue_up;
-    wire queue_down;
-    wire queue_lost;
+    wire queue_misses;
     wire queue_met;
-    wire [3:0] queue_on_way;
+    wire [6:0] queue_counts;
+    wire [6:0] step_counts_next_counts;
+    wire step_counts_up;
+    wire step_counts_down;
+    wire step_counts_lost;
+    wire [3:0] step_counts_on_way;
+    wire cut_control_checks;
+    wire cut_control_cuts;
+    wire cut_control_closes;
+    wire cut_control_busy;
+    wire cut_control_refused;
     wire [31:0] store_word;
     wire event_wheel_strobe;
     wire event_wheel_phase_start;
     wire [5:0] event_wheel_events;
     wire [5:0] event_wheel_backward;
+    wire [7:0] output_control_pins;
+    wire output_control_sets_duty;
+    wire [11:0] output_control_duty;
+    wire output_control_stray;
+    wire pulse_width_pin;
     wire switches_samples;
     wire switches_level;
     wire switches_earlier;
@@ -2830,16 +3295,21 @@ module carrystep_engine #(
     wire strobe = event_wheel_strobe;
     wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
-    wire listens = time_slot_beat[7] & (time_slot_axis == put_axis);
+    wire is_own = time_slot_axis == put_axis;
+    wire listens = time_slot_beat[7] & is_own;
+    wire names = put_word[3];
     wire take = put_valid & put_ready & !nobody;
     wire may_start = enable & supervisor_warm;
     wire free = !stops_fault & !stops_finds;
     wire decides = strobe & waits & free;
     wire go = decides & !unfed & !held & !drops;
     wire rests = rest_2 & !waits & !pins_busy;
+    wire outputs_off = stops_frozen | (stops_fault & (OFF_AT_RAMPS != 1'b0)) | !supervisor_enabled;
 
-    assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
+    assign put_ready = !stops_fault & (nobody | (listens & !names & !queue_full) | (time_slot_beat[12] & is_own & names & !cut_control_checks));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
+    assign cut_busy = cut_control_busy;
+    assign cut_refused = cut_control_refused;
     assign state_valid = readout_valid;
     assign state_page = readout_page;
     assign state_axis = time_slot_axis;
@@ -2860,6 +3330,8 @@ module carrystep_engine #(
     assign dir[3] = pulser_3_dir;
     assign dir[4] = pulser_4_dir;
     assign dir[5] = pulser_5_dir;
+    assign outputs = output_control_pins;
+    assign pwm = pulse_width_pin;
     assign enabled = supervisor_enabled;
     assign idle = rests;
     assign fault = stops_fault;
@@ -3005,9 +3477,9 @@ module carrystep_engine #(
         .word(store_word),
         .put(put_data),
         .counts(queue_running),
-        .lost(queue_lost),
-        .up(queue_up),
-        .down(queue_down),
+        .lost(step_counts_lost),
+        .up(step_counts_up),
+        .down(step_counts_down),
         .wipe(stops_clearing),
         .forgets(resets_stage_2),
         .sum(adder_sum),
@@ -3021,7 +3493,9 @@ module carrystep_engine #(
         .q(adder_q)
     );
 
-    carrystep_queue queue (
+    carrystep_queue #(
+        .CUTS(CUTS)
+    ) queue (
         .clock(clock),
         .beat(time_slot_beat),
         .axis(time_slot_axis),
@@ -3033,16 +3507,18 @@ module carrystep_engine #(
         .empties(seek_control_slows & !queue_goes_on),
         .take(take),
         .put_word(put_word),
+        .put_slot(put_data[4:0]),
         .last(put_data[0]),
+        .checks(cut_control_checks),
+        .cuts(cut_control_cuts),
+        .closes(cut_control_closes),
         .ended(adder_ended),
         .overflow(adder_overflow),
         .least(adder_least),
         .turned(adder_turned),
         .back(adder_back),
-        .crosses(adder_crosses),
         .meets(readout_meets),
-        .pulses(counts[2:0]),
-        .losses(counts[5:3]),
+        .next_counts(step_counts_next_counts),
         .live(queue_live),
         .fresh(queue_fresh),
         .misplaced(queue_misplaced),
@@ -3056,13 +3532,47 @@ module carrystep_engine #(
         .steady(queue_steady),
         .moves(queue_moves),
         .goes_on(queue_goes_on),
+        .advances(queue_advances),
         .too_fast(queue_too_fast),
         .dry(queue_dry),
-        .up(queue_up),
-        .down(queue_down),
-        .lost(queue_lost),
+        .misses(queue_misses),
         .met(queue_met),
-        .on_way(queue_on_way)
+        .counts(queue_counts)
+    );
+
+    carrystep_step_counts step_counts (
+        .clock(clock),
+        .beat(time_slot_beat),
+        .running(queue_running),
+        .moves(queue_moves),
+        .crosses(adder_crosses),
+        .back(adder_back),
+        .clear(stops_clearing),
+        .pulses(counts[2:0]),
+        .losses(counts[5:3]),
+        .word(store_word[2:0]),
+        .counts(queue_counts),
+        .next_counts(step_counts_next_counts),
+        .up(step_counts_up),
+        .down(step_counts_down),
+        .lost(step_counts_lost),
+        .on_way(step_counts_on_way)
+    );
+
+    carrystep_cut_control #(
+        .CUTS(CUTS)
+    ) cut_control (
+        .clock(clock),
+        .strobe(strobe),
+        .beat(time_slot_beat),
+        .request(cut),
+        .misses(queue_misses),
+        .resetting(resets_resetting),
+        .checks(cut_control_checks),
+        .cuts(cut_control_cuts),
+        .closes(cut_control_closes),
+        .busy(cut_control_busy),
+        .refused(cut_control_refused)
     );
 
     carrystep_store #(
@@ -3108,6 +3618,37 @@ module carrystep_engine #(
         .phase_start(event_wheel_phase_start),
         .events(event_wheel_events),
         .backward(event_wheel_backward)
+    );
+
+    carrystep_output_control #(
+        .OUTPUTS(OUTPUTS),
+        .PWM_DIVIDER(PWM_DIVIDER)
+    ) output_control (
+        .clock(clock),
+        .beat(time_slot_beat),
+        .first(time_slot_axis_one_hot[0]),
+        .take(take),
+        .put_word(put_word),
+        .put_data(put_data),
+        .fresh(queue_fresh),
+        .live(queue_live),
+        .starts(going & masked),
+        .follows(queue_advances),
+        .off(outputs_off),
+        .pins(output_control_pins),
+        .sets_duty(output_control_sets_duty),
+        .duty(output_control_duty),
+        .stray(output_control_stray)
+    );
+
+    carrystep_pulse_width #(
+        .PWM_DIVIDER(PWM_DIVIDER)
+    ) pulse_width (
+        .clock(clock),
+        .set(output_control_sets_duty & strobe),
+        .duty(output_control_duty),
+        .off(outputs_off),
+        .pin(pulse_width_pin)
     );
 
     carrystep_switches #(
@@ -3200,7 +3741,7 @@ module carrystep_engine #(
         .live(queue_live),
         .running(queue_running),
         .room(queue_room),
-        .on_way(queue_on_way),
+        .on_way(step_counts_on_way),
         .valid(readout_valid),
         .page(readout_page),
         .item(readout_item),
@@ -3222,7 +3763,7 @@ module carrystep_engine #(
         .dry(queue_dry),
         .late(late),
         .pressed(supervisor_pressed),
-        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed & !drops)),
+        .breaks((((put_valid & nobody) | broken | queue_misplaced | output_control_stray) & !stops_fault) | (decides & unfed & !drops)),
         .missed(supervisor_missed & !rest_2),
         .interlock(switches_interlock),
         .asked(stop),
@@ -3396,10 +3937,10 @@ module carrystep_engine #(
     always @(posedge clock) begin
         taken <= taken & !time_slot_beat[9];
         if (take) begin
-            taken <= put_word != COMMIT;
+            taken <= (put_word != COMMIT) & !names;
         end
         if (time_slot_beat[7]) begin
-            taken_word <= put_word;
+            taken_word <= put_word[2:0];
         end
         if (strobe) begin
             going <= go;
@@ -3428,7 +3969,7 @@ module carrystep_engine #(
             rest_1 <= !active;
             rest_2 <= !active & rest_1;
         end
-        if (take) begin
+        if (take & !names) begin
             rest_1 <= 1'b0;
             rest_2 <= 1'b0;
         end

@@ -51,17 +51,24 @@ carrystep_engine #(
     .LATCH_LOOKS(32'd0),
     .LATCH_LOW(32'd0),
     .ESTOP_LOW(32'd0),
+    .OUTPUTS(32'd0),
+    .OUTPUTS_OFF_AT_RAMPS(32'd0),
+    .PWM_DIVIDER(32'd0),
+    .CUTS(32'd0),
     .EVENT_MEMORY("block")
 ) engine (
     .clock(),             // input
     .put_valid(),         // input
     .put_axis(),          // input [2:0]
-    .put_word(),          // input [2:0]
+    .put_word(),          // input [3:0]
     .put_data(),          // input [31:0]
     .put_ready(),         // output
     .start_valid(),       // input
     .start_mask(),        // input [5:0]
     .start_ready(),       // output
+    .cut(),               // input
+    .cut_busy(),          // output
+    .cut_refused(),       // output
     .clear(),             // input
     .reset(),             // input
     .stop(),              // input
@@ -86,10 +93,12 @@ carrystep_engine #(
     .state_item(),        // output [2:0]
     .state(),             // output [31:0]
     .refreshed(),         // output
-    .room(),              // output [2:0]
+    .room(),              // output [4:0]
     .room_valid(),        // output
     .step(),              // output [5:0]
     .dir(),               // output [5:0]
+    .outputs(),           // output [7:0]
+    .pwm(),               // output
     .enabled(),           // output
     .idle(),              // output
     .fault(),             // output

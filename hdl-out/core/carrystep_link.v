@@ -17,7 +17,7 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     eb02f71d2d60fe51
+// Build id     5db5a34c719955df
 
 `default_nettype none
 
@@ -56,506 +56,507 @@ module carrystep_instructions (
         words[8] = 16'h2002;
         words[9] = 16'h4000;
         words[10] = 16'h8a0a;
-        words[11] = 16'h2223;
-        words[12] = 16'h8000;
-        words[13] = 16'h8a0b;
-        words[14] = 16'h2211;
-        words[15] = 16'h8000;
-        words[16] = 16'h2005;
-        words[17] = 16'h2811;
-        words[18] = 16'h8400;
-        words[19] = 16'h4000;
+        words[11] = 16'h221f;
+        words[12] = 16'h8a09;
+        words[13] = 16'h2210;
+        words[14] = 16'h8000;
+        words[15] = 16'h2005;
+        words[16] = 16'h2810;
+        words[17] = 16'h8400;
+        words[18] = 16'h8a0b;
+        words[19] = 16'h221b;
         words[20] = 16'h8a0c;
-        words[21] = 16'h221f;
-        words[22] = 16'h8000;
-        words[23] = 16'h8a0d;
-        words[24] = 16'h2221;
-        words[25] = 16'h8000;
-        words[26] = 16'h8a0a;
-        words[27] = 16'h2200;
-        words[28] = 16'h820e;
-        words[29] = 16'h1001;
-        words[30] = 16'h2002;
-        words[31] = 16'h820a;
-        words[32] = 16'h2005;
-        words[33] = 16'h820b;
-        words[34] = 16'h2005;
-        words[35] = 16'h8500;
-        words[36] = 16'h4001;
-        words[37] = 16'h820f;
-        words[38] = 16'h4003;
-        words[39] = 16'h8001;
-        words[40] = 16'h8a11;
-        words[41] = 16'h2245;
-        words[42] = 16'h8001;
-        words[43] = 16'h8a12;
-        words[44] = 16'h2245;
+        words[21] = 16'h221d;
+        words[22] = 16'h8a0d;
+        words[23] = 16'h2200;
+        words[24] = 16'h820e;
+        words[25] = 16'h1001;
+        words[26] = 16'h2002;
+        words[27] = 16'h820a;
+        words[28] = 16'h2005;
+        words[29] = 16'h820f;
+        words[30] = 16'h2005;
+        words[31] = 16'h8210;
+        words[32] = 16'h4003;
+        words[33] = 16'h400b;
+        words[34] = 16'h8500;
+        words[35] = 16'h4001;
+        words[36] = 16'h8a11;
+        words[37] = 16'h2240;
+        words[38] = 16'h8a12;
+        words[39] = 16'h2240;
+        words[40] = 16'h801c;
+        words[41] = 16'h1001;
+        words[42] = 16'h3400;
+        words[43] = 16'hc213;
+        words[44] = 16'h2239;
         words[45] = 16'h801c;
-        words[46] = 16'h1001;
-        words[47] = 16'h3400;
-        words[48] = 16'hc213;
-        words[49] = 16'h223e;
-        words[50] = 16'h801c;
-        words[51] = 16'h8a14;
-        words[52] = 16'h224d;
-        words[53] = 16'h8215;
-        words[54] = 16'h4010;
-        words[55] = 16'h8216;
-        words[56] = 16'h4011;
-        words[57] = 16'h8217;
+        words[46] = 16'h8a14;
+        words[47] = 16'h2248;
+        words[48] = 16'h8215;
+        words[49] = 16'h4010;
+        words[50] = 16'h8216;
+        words[51] = 16'h4011;
+        words[52] = 16'h8217;
+        words[53] = 16'h8801;
+        words[54] = 16'h3200;
+        words[55] = 16'h8218;
+        words[56] = 16'h2040;
+        words[57] = 16'h8219;
         words[58] = 16'h8801;
         words[59] = 16'h3200;
         words[60] = 16'h8218;
-        words[61] = 16'h2045;
-        words[62] = 16'h8219;
-        words[63] = 16'h8801;
-        words[64] = 16'h3200;
-        words[65] = 16'h8218;
-        words[66] = 16'h4002;
-        words[67] = 16'h820f;
-        words[68] = 16'h2048;
-        words[69] = 16'h4002;
-        words[70] = 16'h801c;
-        words[71] = 16'hc21a;
-        words[72] = 16'h8a1b;
-        words[73] = 16'h1001;
-        words[74] = 16'h8300;
+        words[61] = 16'h4002;
+        words[62] = 16'h8210;
+        words[63] = 16'h2043;
+        words[64] = 16'h4002;
+        words[65] = 16'h801c;
+        words[66] = 16'hc21a;
+        words[67] = 16'h8a1b;
+        words[68] = 16'h1001;
+        words[69] = 16'h8300;
+        words[70] = 16'h4008;
+        words[71] = 16'h2069;
+        words[72] = 16'h8218;
+        words[73] = 16'h4002;
+        words[74] = 16'h801f;
         words[75] = 16'h4008;
-        words[76] = 16'h206e;
-        words[77] = 16'h8218;
-        words[78] = 16'h4002;
-        words[79] = 16'h801f;
-        words[80] = 16'h4008;
-        words[81] = 16'h8212;
-        words[82] = 16'h4010;
-        words[83] = 16'h821c;
-        words[84] = 16'h4011;
-        words[85] = 16'h821b;
-        words[86] = 16'h4009;
+        words[76] = 16'h821c;
+        words[77] = 16'h4010;
+        words[78] = 16'h821d;
+        words[79] = 16'h4011;
+        words[80] = 16'h821b;
+        words[81] = 16'h4009;
+        words[82] = 16'h1001;
+        words[83] = 16'h8008;
+        words[84] = 16'hc300;
+        words[85] = 16'h225c;
+        words[86] = 16'h8011;
         words[87] = 16'h1001;
-        words[88] = 16'h8008;
-        words[89] = 16'hc300;
-        words[90] = 16'h2261;
-        words[91] = 16'h8011;
-        words[92] = 16'h1001;
-        words[93] = 16'h1002;
+        words[88] = 16'h1002;
+        words[89] = 16'h1002;
+        words[90] = 16'h8500;
+        words[91] = 16'h4011;
+        words[92] = 16'h8009;
+        words[93] = 16'h1001;
         words[94] = 16'h1002;
         words[95] = 16'h8500;
-        words[96] = 16'h4011;
-        words[97] = 16'h8009;
+        words[96] = 16'h2451;
+        words[97] = 16'h8011;
         words[98] = 16'h1001;
-        words[99] = 16'h1002;
-        words[100] = 16'h8500;
-        words[101] = 16'h2456;
-        words[102] = 16'h8011;
-        words[103] = 16'h1001;
-        words[104] = 16'h8300;
-        words[105] = 16'h8801;
-        words[106] = 16'h3200;
-        words[107] = 16'h1002;
-        words[108] = 16'h8300;
-        words[109] = 16'h4011;
-        words[110] = 16'h821d;
-        words[111] = 16'h1001;
-        words[112] = 16'h8600;
-        words[113] = 16'h8b00;
-        words[114] = 16'h3200;
-        words[115] = 16'h1006;
-        words[116] = 16'h3470;
-        words[117] = 16'h8002;
-        words[118] = 16'h227c;
-        words[119] = 16'h801c;
-        words[120] = 16'h8a1e;
-        words[121] = 16'h327f;
-        words[122] = 16'h1180;
-        words[123] = 16'h214c;
-        words[124] = 16'h8001;
-        words[125] = 16'h8a11;
-        words[126] = 16'h234c;
-        words[127] = 16'h801d;
-        words[128] = 16'h3283;
-        words[129] = 16'h801e;
-        words[130] = 16'h22a5;
-        words[131] = 16'h8002;
-        words[132] = 16'h2288;
-        words[133] = 16'h801c;
-        words[134] = 16'h8a1f;
-        words[135] = 16'h2292;
-        words[136] = 16'h801d;
-        words[137] = 16'h8805;
-        words[138] = 16'h32a5;
-        words[139] = 16'h801e;
-        words[140] = 16'h8806;
-        words[141] = 16'h32a5;
-        words[142] = 16'h1080;
-        words[143] = 16'h8002;
-        words[144] = 16'h234c;
-        words[145] = 16'h20ae;
-        words[146] = 16'h8700;
-        words[147] = 16'hc20a;
-        words[148] = 16'h229e;
-        words[149] = 16'h801d;
-        words[150] = 16'h4005;
-        words[151] = 16'h801e;
-        words[152] = 16'h4006;
-        words[153] = 16'h820f;
-        words[154] = 16'h4004;
-        words[155] = 16'h10c0;
-        words[156] = 16'h1080;
-        words[157] = 16'h214c;
-        words[158] = 16'h801f;
-        words[159] = 16'hc221;
-        words[160] = 16'h22a2;
-        words[161] = 16'h1180;
-        words[162] = 16'h8222;
-        words[163] = 16'h4003;
-        words[164] = 16'h214c;
-        words[165] = 16'h8223;
+        words[99] = 16'h8300;
+        words[100] = 16'h8801;
+        words[101] = 16'h3200;
+        words[102] = 16'h1002;
+        words[103] = 16'h8300;
+        words[104] = 16'h4011;
+        words[105] = 16'h821e;
+        words[106] = 16'h1001;
+        words[107] = 16'h8600;
+        words[108] = 16'h8b00;
+        words[109] = 16'h3200;
+        words[110] = 16'h1006;
+        words[111] = 16'h346b;
+        words[112] = 16'h8002;
+        words[113] = 16'h2277;
+        words[114] = 16'h801c;
+        words[115] = 16'h8a1f;
+        words[116] = 16'h327a;
+        words[117] = 16'h1180;
+        words[118] = 16'h2164;
+        words[119] = 16'h8001;
+        words[120] = 16'h8a11;
+        words[121] = 16'h2364;
+        words[122] = 16'h801d;
+        words[123] = 16'h327e;
+        words[124] = 16'h801e;
+        words[125] = 16'h22a5;
+        words[126] = 16'h8002;
+        words[127] = 16'h2283;
+        words[128] = 16'h801c;
+        words[129] = 16'h8a20;
+        words[130] = 16'h228d;
+        words[131] = 16'h801d;
+        words[132] = 16'h8805;
+        words[133] = 16'h32a5;
+        words[134] = 16'h801e;
+        words[135] = 16'h8806;
+        words[136] = 16'h32a5;
+        words[137] = 16'h1080;
+        words[138] = 16'h8002;
+        words[139] = 16'h2364;
+        words[140] = 16'h20a8;
+        words[141] = 16'h8700;
+        words[142] = 16'hc20a;
+        words[143] = 16'h2299;
+        words[144] = 16'h801d;
+        words[145] = 16'h4005;
+        words[146] = 16'h801e;
+        words[147] = 16'h4006;
+        words[148] = 16'h8210;
+        words[149] = 16'h4004;
+        words[150] = 16'h10c0;
+        words[151] = 16'h1080;
+        words[152] = 16'h2164;
+        words[153] = 16'h801f;
+        words[154] = 16'hc20c;
+        words[155] = 16'h229d;
+        words[156] = 16'h1180;
+        words[157] = 16'h8221;
+        words[158] = 16'h20a6;
+        words[159] = 16'h8222;
+        words[160] = 16'h20a6;
+        words[161] = 16'h8213;
+        words[162] = 16'h20a6;
+        words[163] = 16'h8224;
+        words[164] = 16'h20a6;
+        words[165] = 16'h8225;
         words[166] = 16'h4003;
-        words[167] = 16'h214c;
-        words[168] = 16'h8224;
-        words[169] = 16'h4003;
-        words[170] = 16'h214c;
-        words[171] = 16'h8213;
-        words[172] = 16'h4003;
-        words[173] = 16'h214c;
-        words[174] = 16'h801b;
-        words[175] = 16'h1001;
-        words[176] = 16'h8804;
-        words[177] = 16'h22bb;
-        words[178] = 16'h1002;
-        words[179] = 16'h8500;
-        words[180] = 16'h881b;
-        words[181] = 16'h8a1c;
-        words[182] = 16'h22a8;
-        words[183] = 16'h8500;
-        words[184] = 16'h8804;
-        words[185] = 16'h32b2;
-        words[186] = 16'h214c;
-        words[187] = 16'h801c;
-        words[188] = 16'hc213;
-        words[189] = 16'h32ee;
-        words[190] = 16'h801c;
-        words[191] = 16'h8a25;
-        words[192] = 16'h22cc;
-        words[193] = 16'h8a21;
-        words[194] = 16'h22e3;
-        words[195] = 16'h8a26;
-        words[196] = 16'h22d9;
-        words[197] = 16'h8a21;
-        words[198] = 16'h22d0;
-        words[199] = 16'h8a1a;
-        words[200] = 16'h22d7;
-        words[201] = 16'h8a26;
-        words[202] = 16'h22d5;
-        words[203] = 16'h2147;
-        words[204] = 16'h801f;
-        words[205] = 16'h4007;
-        words[206] = 16'h1040;
-        words[207] = 16'h2147;
-        words[208] = 16'h8020;
-        words[209] = 16'h11c0;
-        words[210] = 16'h801f;
-        words[211] = 16'h10c0;
-        words[212] = 16'h2147;
-        words[213] = 16'h1280;
-        words[214] = 16'h2147;
-        words[215] = 16'h1140;
-        words[216] = 16'h2147;
-        words[217] = 16'h8007;
-        words[218] = 16'h1240;
+        words[167] = 16'h2164;
+        words[168] = 16'h801b;
+        words[169] = 16'h1001;
+        words[170] = 16'h8804;
+        words[171] = 16'h22b5;
+        words[172] = 16'h1002;
+        words[173] = 16'h8500;
+        words[174] = 16'h881b;
+        words[175] = 16'h8a1d;
+        words[176] = 16'h229f;
+        words[177] = 16'h8500;
+        words[178] = 16'h8804;
+        words[179] = 16'h32ac;
+        words[180] = 16'h2164;
+        words[181] = 16'h801c;
+        words[182] = 16'h8a26;
+        words[183] = 16'h22ea;
+        words[184] = 16'hc213;
+        words[185] = 16'h2302;
+        words[186] = 16'h801c;
+        words[187] = 16'h8a28;
+        words[188] = 16'h22c8;
+        words[189] = 16'h8a0c;
+        words[190] = 16'h22df;
+        words[191] = 16'h8a29;
+        words[192] = 16'h22d5;
+        words[193] = 16'h8a0c;
+        words[194] = 16'h22cc;
+        words[195] = 16'h8a1a;
+        words[196] = 16'h22d3;
+        words[197] = 16'h8a29;
+        words[198] = 16'h22d1;
+        words[199] = 16'h215f;
+        words[200] = 16'h801f;
+        words[201] = 16'h4007;
+        words[202] = 16'h1040;
+        words[203] = 16'h215f;
+        words[204] = 16'h8020;
+        words[205] = 16'h11c0;
+        words[206] = 16'h801f;
+        words[207] = 16'h10c0;
+        words[208] = 16'h215f;
+        words[209] = 16'h1280;
+        words[210] = 16'h215f;
+        words[211] = 16'h1140;
+        words[212] = 16'h215f;
+        words[213] = 16'h8007;
+        words[214] = 16'h1240;
+        words[215] = 16'h1020;
+        words[216] = 16'h1020;
+        words[217] = 16'h1020;
+        words[218] = 16'h1020;
         words[219] = 16'h1020;
         words[220] = 16'h1020;
-        words[221] = 16'h1020;
-        words[222] = 16'h1020;
-        words[223] = 16'h1020;
-        words[224] = 16'h1020;
-        words[225] = 16'h1040;
-        words[226] = 16'h2147;
-        words[227] = 16'h2b47;
-        words[228] = 16'h8704;
-        words[229] = 16'hc01f;
-        words[230] = 16'h32ab;
-        words[231] = 16'h8700;
-        words[232] = 16'hc227;
-        words[233] = 16'h8a28;
-        words[234] = 16'h32a2;
-        words[235] = 16'h801f;
-        words[236] = 16'h1420;
-        words[237] = 16'h2147;
-        words[238] = 16'h2b47;
-        words[239] = 16'h8229;
-        words[240] = 16'h1001;
-        words[241] = 16'h8008;
-        words[242] = 16'h2312;
-        words[243] = 16'h1018;
-        words[244] = 16'h8600;
-        words[245] = 16'h1001;
-        words[246] = 16'h8008;
-        words[247] = 16'hc300;
-        words[248] = 16'h8808;
-        words[249] = 16'h3312;
-        words[250] = 16'h8704;
-        words[251] = 16'hc008;
-        words[252] = 16'h32ab;
-        words[253] = 16'h8010;
-        words[254] = 16'h1001;
-        words[255] = 16'h9102;
-        words[256] = 16'h400c;
-        words[257] = 16'h9102;
-        words[258] = 16'h400d;
-        words[259] = 16'h9102;
-        words[260] = 16'h400e;
-        words[261] = 16'h9102;
-        words[262] = 16'h400f;
-        words[263] = 16'h800c;
-        words[264] = 16'hc00d;
-        words[265] = 16'hc00e;
-        words[266] = 16'hc00f;
-        words[267] = 16'h8a2a;
-        words[268] = 16'h2312;
-        words[269] = 16'h820f;
-        words[270] = 16'h400b;
-        words[271] = 16'h2151;
-        words[272] = 16'h800a;
-        words[273] = 16'h3314;
-        words[274] = 16'h1100;
-        words[275] = 16'h2147;
-        words[276] = 16'h8011;
-        words[277] = 16'h1001;
-        words[278] = 16'h9102;
-        words[279] = 16'h40f0;
-        words[280] = 16'h9102;
-        words[281] = 16'h40f1;
-        words[282] = 16'h9102;
-        words[283] = 16'h40f2;
-        words[284] = 16'h9102;
-        words[285] = 16'h40f3;
-        words[286] = 16'h821b;
-        words[287] = 16'h4009;
-        words[288] = 16'h1001;
-        words[289] = 16'h8008;
-        words[290] = 16'hc300;
-        words[291] = 16'h2341;
-        words[292] = 16'h8010;
-        words[293] = 16'h1001;
-        words[294] = 16'h800c;
-        words[295] = 16'h5102;
-        words[296] = 16'h800d;
-        words[297] = 16'h5102;
-        words[298] = 16'h800e;
-        words[299] = 16'h5102;
-        words[300] = 16'h800f;
-        words[301] = 16'h5102;
-        words[302] = 16'h8010;
-        words[303] = 16'h1001;
-        words[304] = 16'h8500;
-        words[305] = 16'h4010;
-        words[306] = 16'h9102;
-        words[307] = 16'h1004;
-        words[308] = 16'h9102;
-        words[309] = 16'h1004;
-        words[310] = 16'h9102;
-        words[311] = 16'h1004;
-        words[312] = 16'h9102;
-        words[313] = 16'h1004;
-        words[314] = 16'h8009;
-        words[315] = 16'h1820;
-        words[316] = 16'h2741;
-        words[317] = 16'h3d30;
-        words[318] = 16'h820e;
-        words[319] = 16'h1001;
-        words[320] = 16'h2132;
-        words[321] = 16'h8009;
-        words[322] = 16'h1001;
-        words[323] = 16'h1002;
-        words[324] = 16'h8500;
-        words[325] = 16'h251f;
-        words[326] = 16'h2147;
-        words[327] = 16'h8004;
-        words[328] = 16'h1001;
-        words[329] = 16'h1002;
-        words[330] = 16'h8500;
-        words[331] = 16'h4004;
-        words[332] = 16'h8700;
-        words[333] = 16'h8802;
-        words[334] = 16'h40f3;
-        words[335] = 16'h8221;
-        words[336] = 16'h400b;
-        words[337] = 16'h822b;
-        words[338] = 16'h400a;
-        words[339] = 16'h821b;
-        words[340] = 16'h4009;
-        words[341] = 16'h1001;
-        words[342] = 16'h8008;
-        words[343] = 16'hc300;
-        words[344] = 16'h2362;
+        words[221] = 16'h1040;
+        words[222] = 16'h215f;
+        words[223] = 16'h2b5f;
+        words[224] = 16'h8704;
+        words[225] = 16'hc01f;
+        words[226] = 16'h32a1;
+        words[227] = 16'h8700;
+        words[228] = 16'hc22a;
+        words[229] = 16'h8a12;
+        words[230] = 16'h329d;
+        words[231] = 16'h801f;
+        words[232] = 16'h1420;
+        words[233] = 16'h215f;
+        words[234] = 16'h8215;
+        words[235] = 16'h1001;
+        words[236] = 16'h9102;
+        words[237] = 16'h1004;
+        words[238] = 16'h9102;
+        words[239] = 16'h1004;
+        words[240] = 16'h9102;
+        words[241] = 16'h1004;
+        words[242] = 16'h9102;
+        words[243] = 16'h1004;
+        words[244] = 16'h22f7;
+        words[245] = 16'h8300;
+        words[246] = 16'h1820;
+        words[247] = 16'h8300;
+        words[248] = 16'h3eec;
+        words[249] = 16'h1340;
+        words[250] = 16'h1020;
+        words[251] = 16'h1020;
+        words[252] = 16'h1020;
+        words[253] = 16'h2b5f;
+        words[254] = 16'h8700;
+        words[255] = 16'hc222;
+        words[256] = 16'h32a3;
+        words[257] = 16'h215f;
+        words[258] = 16'h2b5f;
+        words[259] = 16'h822c;
+        words[260] = 16'h1001;
+        words[261] = 16'h8008;
+        words[262] = 16'h2323;
+        words[263] = 16'h1018;
+        words[264] = 16'h8600;
+        words[265] = 16'h1001;
+        words[266] = 16'h8008;
+        words[267] = 16'hc300;
+        words[268] = 16'h8808;
+        words[269] = 16'h3323;
+        words[270] = 16'h8704;
+        words[271] = 16'hc008;
+        words[272] = 16'h32a1;
+        words[273] = 16'h8010;
+        words[274] = 16'h1001;
+        words[275] = 16'h9102;
+        words[276] = 16'h400c;
+        words[277] = 16'h9102;
+        words[278] = 16'h400d;
+        words[279] = 16'h9102;
+        words[280] = 16'h400e;
+        words[281] = 16'h9102;
+        words[282] = 16'h400f;
+        words[283] = 16'hc00c;
+        words[284] = 16'hc00d;
+        words[285] = 16'hc00e;
+        words[286] = 16'h8a2d;
+        words[287] = 16'h2323;
+        words[288] = 16'h2169;
+        words[289] = 16'h8701;
+        words[290] = 16'h3325;
+        words[291] = 16'h1100;
+        words[292] = 16'h215f;
+        words[293] = 16'h8011;
+        words[294] = 16'h1001;
+        words[295] = 16'h9102;
+        words[296] = 16'h40f0;
+        words[297] = 16'h9102;
+        words[298] = 16'h40f1;
+        words[299] = 16'h9102;
+        words[300] = 16'h40f2;
+        words[301] = 16'h9102;
+        words[302] = 16'h40f3;
+        words[303] = 16'h821b;
+        words[304] = 16'h4009;
+        words[305] = 16'h1001;
+        words[306] = 16'h8008;
+        words[307] = 16'hc300;
+        words[308] = 16'h2359;
+        words[309] = 16'h8010;
+        words[310] = 16'h1001;
+        words[311] = 16'h800c;
+        words[312] = 16'h5102;
+        words[313] = 16'h800d;
+        words[314] = 16'h5102;
+        words[315] = 16'h800e;
+        words[316] = 16'h5102;
+        words[317] = 16'h800f;
+        words[318] = 16'h5102;
+        words[319] = 16'h8010;
+        words[320] = 16'h1001;
+        words[321] = 16'h8500;
+        words[322] = 16'h4010;
+        words[323] = 16'h9102;
+        words[324] = 16'h1004;
+        words[325] = 16'h9102;
+        words[326] = 16'h1004;
+        words[327] = 16'h9102;
+        words[328] = 16'h1004;
+        words[329] = 16'h9102;
+        words[330] = 16'h1004;
+        words[331] = 16'h8009;
+        words[332] = 16'h1820;
+        words[333] = 16'h2752;
+        words[334] = 16'h3d41;
+        words[335] = 16'h820e;
+        words[336] = 16'h1001;
+        words[337] = 16'h2143;
+        words[338] = 16'h80f0;
+        words[339] = 16'hc20c;
+        words[340] = 16'h40f0;
+        words[341] = 16'h8210;
+        words[342] = 16'h40f1;
+        words[343] = 16'h40f2;
+        words[344] = 16'h40f3;
         words[345] = 16'h8009;
-        words[346] = 16'h1028;
-        words[347] = 16'h1028;
-        words[348] = 16'h8701;
-        words[349] = 16'hc22c;
-        words[350] = 16'h1001;
-        words[351] = 16'h800a;
-        words[352] = 16'hc300;
-        words[353] = 16'h400a;
-        words[354] = 16'h8009;
-        words[355] = 16'h1001;
-        words[356] = 16'h1002;
-        words[357] = 16'h8500;
-        words[358] = 16'h2554;
-        words[359] = 16'h800b;
-        words[360] = 16'h2310;
-        words[361] = 16'h820f;
-        words[362] = 16'h1001;
-        words[363] = 16'h8300;
-        words[364] = 16'h880a;
-        words[365] = 16'h2370;
-        words[366] = 16'h1002;
-        words[367] = 16'h216b;
-        words[368] = 16'h8500;
-        words[369] = 16'h40f4;
-        words[370] = 16'h8002;
-        words[371] = 16'h237f;
-        words[372] = 16'h801c;
-        words[373] = 16'h8a14;
-        words[374] = 16'h237d;
-        words[375] = 16'h801c;
-        words[376] = 16'hc213;
-        words[377] = 16'h237d;
-        words[378] = 16'h801c;
-        words[379] = 16'h8a2d;
-        words[380] = 16'h2180;
-        words[381] = 16'h822c;
-        words[382] = 16'h2180;
-        words[383] = 16'h801c;
-        words[384] = 16'h1001;
-        words[385] = 16'h1020;
-        words[386] = 16'h1020;
-        words[387] = 16'h80f3;
-        words[388] = 16'hc221;
-        words[389] = 16'h238b;
-        words[390] = 16'h8702;
-        words[391] = 16'h40f5;
-        words[392] = 16'h8701;
-        words[393] = 16'hc22e;
-        words[394] = 16'h218c;
-        words[395] = 16'h40f5;
-        words[396] = 16'h8803;
-        words[397] = 16'h40f7;
-        words[398] = 16'h8703;
-        words[399] = 16'h40f6;
-        words[400] = 16'h1018;
-        words[401] = 16'h8600;
-        words[402] = 16'h40f8;
-        words[403] = 16'h1004;
-        words[404] = 16'h8600;
-        words[405] = 16'h40f9;
-        words[406] = 16'h1004;
-        words[407] = 16'h8600;
-        words[408] = 16'h40fa;
-        words[409] = 16'h1004;
-        words[410] = 16'h8600;
-        words[411] = 16'h40fb;
-        words[412] = 16'h1004;
-        words[413] = 16'h8002;
-        words[414] = 16'h33d3;
-        words[415] = 16'h801c;
-        words[416] = 16'h8a2f;
-        words[417] = 16'h23a8;
-        words[418] = 16'h8a26;
-        words[419] = 16'h23ad;
-        words[420] = 16'h8a21;
-        words[421] = 16'h33d3;
-        words[422] = 16'h8213;
-        words[423] = 16'h21ae;
-        words[424] = 16'h8704;
-        words[425] = 16'h40f8;
-        words[426] = 16'h8705;
-        words[427] = 16'h40f9;
-        words[428] = 16'h21d3;
-        words[429] = 16'h821c;
-        words[430] = 16'h4012;
-        words[431] = 16'h8225;
-        words[432] = 16'h4013;
-        words[433] = 16'h820f;
-        words[434] = 16'h400a;
-        words[435] = 16'h821b;
-        words[436] = 16'h4009;
-        words[437] = 16'h8013;
-        words[438] = 16'h1001;
-        words[439] = 16'h8009;
-        words[440] = 16'h8b00;
-        words[441] = 16'h1001;
-        words[442] = 16'h1018;
-        words[443] = 16'h8009;
-        words[444] = 16'h1001;
-        words[445] = 16'h8600;
-        words[446] = 16'hc012;
-        words[447] = 16'h23c3;
-        words[448] = 16'h800a;
-        words[449] = 16'h8b00;
-        words[450] = 16'h400a;
-        words[451] = 16'h1002;
-        words[452] = 16'h8500;
-        words[453] = 16'h25b4;
-        words[454] = 16'h8013;
-        words[455] = 16'h8a31;
-        words[456] = 16'h1001;
-        words[457] = 16'h800a;
-        words[458] = 16'h5102;
+        words[346] = 16'h1001;
+        words[347] = 16'h1002;
+        words[348] = 16'h8500;
+        words[349] = 16'h2530;
+        words[350] = 16'h215f;
+        words[351] = 16'h8004;
+        words[352] = 16'h1001;
+        words[353] = 16'h1002;
+        words[354] = 16'h8500;
+        words[355] = 16'h4004;
+        words[356] = 16'h8700;
+        words[357] = 16'h8802;
+        words[358] = 16'h40f3;
+        words[359] = 16'h820c;
+        words[360] = 16'h400b;
+        words[361] = 16'h1010;
+        words[362] = 16'h821b;
+        words[363] = 16'h4009;
+        words[364] = 16'h1001;
+        words[365] = 16'h8008;
+        words[366] = 16'hc300;
+        words[367] = 16'h2373;
+        words[368] = 16'h8009;
+        words[369] = 16'h1028;
+        words[370] = 16'h1028;
+        words[371] = 16'h8009;
+        words[372] = 16'h1001;
+        words[373] = 16'h1002;
+        words[374] = 16'h8500;
+        words[375] = 16'h256b;
+        words[376] = 16'h800b;
+        words[377] = 16'h2321;
+        words[378] = 16'h8701;
+        words[379] = 16'h40f4;
+        words[380] = 16'h8002;
+        words[381] = 16'h2385;
+        words[382] = 16'h801c;
+        words[383] = 16'hc213;
+        words[384] = 16'h2383;
+        words[385] = 16'h801c;
+        words[386] = 16'hc21a;
+        words[387] = 16'h8a2e;
+        words[388] = 16'h2186;
+        words[389] = 16'h801c;
+        words[390] = 16'h1001;
+        words[391] = 16'h1020;
+        words[392] = 16'h1020;
+        words[393] = 16'h80f3;
+        words[394] = 16'hc20c;
+        words[395] = 16'h2390;
+        words[396] = 16'h8702;
+        words[397] = 16'h40f5;
+        words[398] = 16'h8706;
+        words[399] = 16'h2191;
+        words[400] = 16'h40f5;
+        words[401] = 16'h8803;
+        words[402] = 16'h40f7;
+        words[403] = 16'h8703;
+        words[404] = 16'h40f6;
+        words[405] = 16'h1018;
+        words[406] = 16'h8600;
+        words[407] = 16'h40f8;
+        words[408] = 16'h1004;
+        words[409] = 16'h8600;
+        words[410] = 16'h40f9;
+        words[411] = 16'h1004;
+        words[412] = 16'h8600;
+        words[413] = 16'h40fa;
+        words[414] = 16'h1004;
+        words[415] = 16'h8600;
+        words[416] = 16'h40fb;
+        words[417] = 16'h1004;
+        words[418] = 16'h8002;
+        words[419] = 16'h33d5;
+        words[420] = 16'h801c;
+        words[421] = 16'h8a30;
+        words[422] = 16'h23ad;
+        words[423] = 16'h8a29;
+        words[424] = 16'h23b2;
+        words[425] = 16'h8a0c;
+        words[426] = 16'h33d5;
+        words[427] = 16'h8213;
+        words[428] = 16'h21b3;
+        words[429] = 16'h8704;
+        words[430] = 16'h40f8;
+        words[431] = 16'h8705;
+        words[432] = 16'h40f9;
+        words[433] = 16'h21d5;
+        words[434] = 16'h821d;
+        words[435] = 16'h4012;
+        words[436] = 16'h8228;
+        words[437] = 16'h4013;
+        words[438] = 16'h8210;
+        words[439] = 16'h400a;
+        words[440] = 16'h821b;
+        words[441] = 16'h4009;
+        words[442] = 16'h8013;
+        words[443] = 16'h1001;
+        words[444] = 16'h8009;
+        words[445] = 16'h8b00;
+        words[446] = 16'h1001;
+        words[447] = 16'h1018;
+        words[448] = 16'h8009;
+        words[449] = 16'h1001;
+        words[450] = 16'h8600;
+        words[451] = 16'hc012;
+        words[452] = 16'h23c8;
+        words[453] = 16'h800a;
+        words[454] = 16'h8b00;
+        words[455] = 16'h400a;
+        words[456] = 16'h1002;
+        words[457] = 16'h8500;
+        words[458] = 16'h25b9;
         words[459] = 16'h8013;
-        words[460] = 16'h1001;
-        words[461] = 16'h1002;
-        words[462] = 16'h8500;
-        words[463] = 16'h8a32;
-        words[464] = 16'h23d3;
-        words[465] = 16'h8500;
-        words[466] = 16'h21b0;
-        words[467] = 16'h801b;
-        words[468] = 16'h40f0;
-        words[469] = 16'h801c;
-        words[470] = 16'h40f1;
-        words[471] = 16'h8004;
-        words[472] = 16'h40f2;
-        words[473] = 16'h820e;
-        words[474] = 16'h1011;
-        words[475] = 16'h9102;
-        words[476] = 16'h100c;
-        words[477] = 16'h8500;
-        words[478] = 16'h8a33;
-        words[479] = 16'h33db;
-        words[480] = 16'h8600;
-        words[481] = 16'h8a2a;
-        words[482] = 16'h5102;
-        words[483] = 16'h1004;
-        words[484] = 16'h25e0;
-        words[485] = 16'h820e;
-        words[486] = 16'h1001;
-        words[487] = 16'h820a;
-        words[488] = 16'h1220;
-        words[489] = 16'h35fc;
-        words[490] = 16'h9102;
-        words[491] = 16'h3fe8;
-        words[492] = 16'h4000;
-        words[493] = 16'h8a0a;
-        words[494] = 16'h23f4;
-        words[495] = 16'h8000;
-        words[496] = 16'h8a0b;
-        words[497] = 16'h23f8;
-        words[498] = 16'h8000;
-        words[499] = 16'h21e8;
-        words[500] = 16'h820b;
-        words[501] = 16'h1220;
-        words[502] = 16'h820c;
-        words[503] = 16'h21e8;
-        words[504] = 16'h820b;
-        words[505] = 16'h1220;
-        words[506] = 16'h820d;
-        words[507] = 16'h21e8;
-        words[508] = 16'h820a;
-        words[509] = 16'h1220;
-        words[510] = 16'h2000;
+        words[460] = 16'h8a31;
+        words[461] = 16'h1001;
+        words[462] = 16'h800a;
+        words[463] = 16'h5102;
+        words[464] = 16'h8500;
+        words[465] = 16'h8a32;
+        words[466] = 16'h23d5;
+        words[467] = 16'h8a34;
+        words[468] = 16'h21b5;
+        words[469] = 16'h801b;
+        words[470] = 16'h40f0;
+        words[471] = 16'h801c;
+        words[472] = 16'h40f1;
+        words[473] = 16'h8004;
+        words[474] = 16'h40f2;
+        words[475] = 16'h820e;
+        words[476] = 16'h1011;
+        words[477] = 16'h9102;
+        words[478] = 16'h100c;
+        words[479] = 16'h8500;
+        words[480] = 16'h8a32;
+        words[481] = 16'h33dd;
+        words[482] = 16'h8600;
+        words[483] = 16'h8a2d;
+        words[484] = 16'h5102;
+        words[485] = 16'h1004;
+        words[486] = 16'h25e2;
+        words[487] = 16'h820e;
+        words[488] = 16'h1001;
+        words[489] = 16'h820a;
+        words[490] = 16'h1220;
+        words[491] = 16'h35fd;
+        words[492] = 16'h9102;
+        words[493] = 16'h3fea;
+        words[494] = 16'h4000;
+        words[495] = 16'h8a0a;
+        words[496] = 16'h23f5;
+        words[497] = 16'h8a09;
+        words[498] = 16'h23f9;
+        words[499] = 16'h8000;
+        words[500] = 16'h21ea;
+        words[501] = 16'h820f;
+        words[502] = 16'h1220;
+        words[503] = 16'h820b;
+        words[504] = 16'h21ea;
+        words[505] = 16'h820f;
+        words[506] = 16'h1220;
+        words[507] = 16'h8235;
+        words[508] = 16'h21ea;
+        words[509] = 16'h820a;
+        words[510] = 16'h1220;
+        words[511] = 16'h2000;
     end
 
     always @(posedge clock) begin
@@ -598,13 +599,13 @@ module carrystep_data (
         words[264] = 8'hff;
         words[265] = 8'h1b;
         words[266] = 8'hc0;
-        words[267] = 8'hdb;
-        words[268] = 8'hdc;
-        words[269] = 8'hdd;
+        words[267] = 8'hdc;
+        words[268] = 8'h1;
+        words[269] = 8'h1d;
         words[270] = 8'hf0;
-        words[272] = 8'h1;
+        words[271] = 8'hdb;
         words[273] = 8'h21;
-        words[274] = 8'h23;
+        words[274] = 8'h2;
         words[275] = 8'h40;
         words[276] = 8'hc8;
         words[277] = 8'h1f;
@@ -614,34 +615,34 @@ module carrystep_data (
         words[281] = 8'h27;
         words[282] = 8'h7;
         words[283] = 8'hf8;
-        words[284] = 8'h80;
-        words[285] = 8'h7c;
-        words[286] = 8'ha6;
-        words[287] = 8'ha5;
-        words[288] = 8'h3;
-        words[289] = 8'h1;
-        words[290] = 8'h20;
-        words[291] = 8'h30;
-        words[292] = 8'h10;
-        words[293] = 8'ha0;
-        words[294] = 8'h3;
-        words[295] = 8'h6;
-        words[296] = 8'h2;
-        words[297] = 8'h4;
-        words[298] = 8'hff;
-        words[299] = 8'h7f;
-        words[300] = 8'h70;
-        words[301] = 8'hb0;
-        words[302] = 8'hf;
-        words[303] = 8'h9;
-        words[304] = 8'h7;
+        words[284] = 8'h23;
+        words[285] = 8'h80;
+        words[286] = 8'h7c;
+        words[287] = 8'ha6;
+        words[288] = 8'ha5;
+        words[289] = 8'h20;
+        words[290] = 8'h10;
+        words[292] = 8'h50;
+        words[293] = 8'h30;
+        words[294] = 8'hd0;
+        words[295] = 8'h1;
+        words[296] = 8'ha0;
+        words[297] = 8'h3;
+        words[298] = 8'h6;
+        words[299] = 8'h2;
+        words[300] = 8'h4;
+        words[301] = 8'hff;
+        words[302] = 8'h70;
+        words[303] = 8'h3;
+        words[304] = 8'h9;
         words[305] = 8'h58;
-        words[306] = 8'ha4;
-        words[307] = 8'hfc;
-        words[320] = 8'hf;
-        words[336] = 8'h1f;
-        words[352] = 8'h3f;
-        words[368] = 8'h7f;
+        words[306] = 8'hfc;
+        words[307] = 8'h4;
+        words[308] = 8'ha4;
+        words[309] = 8'hdd;
+        words[311] = 8'h5;
+        words[315] = 8'h6;
+        words[319] = 8'hc7;
         words[380] = 8'he3;
         words[381] = 8'h20;
         words[382] = 8'hbb;
@@ -794,8 +795,8 @@ module carrystep_processor (
     input  wire  [31:0] facts,
     // The machine offers a word of a segment to the engine.
     output wire         put_valid,
-    // The number of the offered word in its segment.
-    output wire   [2:0] put_word,
+    // The number of the offered word: 0 to 7 in its segment, or 8 where it names the slot of a cut.
+    output reg    [3:0] put_word,
     // The offered word.
     output wire  [31:0] put_data,
     // The engine accepts the offered word in this clock.
@@ -816,6 +817,8 @@ module carrystep_processor (
     output wire         latch_arm,
     // The host requests a snapshot.
     output wire         snapshot,
+    // The host requests a cut.
+    output wire         cut,
     // The owner of the session has sent a valid request.
     output wire         kick,
     // The host requests power for the motor drivers.
@@ -824,6 +827,8 @@ module carrystep_processor (
     output wire         stop,
     // The engine has output all live words of a tick.
     input  wire         refreshed,
+    // The engine has refused the last cut.
+    input  wire         cut_refused,
     // The engine has latched a stop.
     input  wire         fault,
     // No axis moves any more after a stop.
@@ -839,7 +844,7 @@ module carrystep_processor (
     // meaning.
     input  wire   [3:0] cause,
     // The number of segments for which the queue of the axis in A has space.
-    input  wire   [2:0] room,
+    input  wire   [4:0] room,
     // `room` is valid in this clock.
     input  wire         room_valid,
     // The axes that caused the stop; bit i is axis i.
@@ -866,7 +871,8 @@ module carrystep_processor (
     localparam [8:0] NO_PLACE = 9'd0;
     localparam [15:0] NO_CODE = 16'd0;
     localparam [7:0] ALL = 8'd255;
-    localparam [2:0] AT_4 = 3'd4;
+    localparam [4:0] ANY_SPACE = 5'd31;
+    localparam [3:0] SLOT_OF_CUT = 4'd8;
     localparam [3:0] TOP = 4'd15;
     localparam [7:0] BIT_0 = 8'd1;
     localparam [7:0] BIT_1 = 8'd2;
@@ -889,7 +895,7 @@ module carrystep_processor (
     reg [8:0] written = 9'd0;
     reg [8:0] read = 9'd0;
     reg [2:0] word = 3'd0;
-    reg [2:0] space = 3'd0;
+    reg [4:0] space = 5'd0;
     reg power = 1'b0;
     reg clears = 1'b0;
     reg [7:0] state;
@@ -915,17 +921,19 @@ module carrystep_processor (
     wire stores = executes & code[14] & !code[15];
     wire jumps = code[13];
     wire acts = executes & code[12] & !code[13];
-    wire does = executes & !code[13] & !code[14] & !code[15];
+    wire only_acts = !code[13] & !code[14] & !code[15];
+    wire does = executes & only_acts;
     wire steps = does & code[2];
     wire waits = does & code[5];
     wire over = (!waits | waited) & (!steps | crc_over);
     wire empty = read == written;
+    wire reports = only_acts & code[5] & code[3] & room_valid;
+    wire is_segment = sum[3];
 
     assign answer_valid = waits & code[9];
     assign x = index;
     assign a = sum;
     assign put_valid = does & code[11];
-    assign put_word = word;
     assign put_data = crc_word_out;
     assign start_valid = does & code[10];
     assign clear = clears;
@@ -933,7 +941,8 @@ module carrystep_processor (
     assign seek_source_valid = does & code[6] & code[7] & code[8];
     assign seek_valid = does & code[6] & code[7] & !code[8];
     assign latch_arm = does & code[7] & code[9] & !code[6] & !code[8];
-    assign snapshot = does & code[8] & code[6] & !code[7];
+    assign snapshot = does & code[8] & code[6] & !code[7] & !code[9];
+    assign cut = does & code[8] & code[6] & !code[7] & code[9];
     assign kick = does & code[7] & !code[6] & !code[8];
     assign enable = power;
     assign stop = does & code[7] & code[8] & !code[6];
@@ -948,6 +957,9 @@ module carrystep_processor (
         end
         if (armed) begin
             state = state | BIT_2;
+        end
+        if (cut_refused) begin
+            state = state | BIT_4;
         end
         if (idle) begin
             state = state | BIT_6;
@@ -998,10 +1010,7 @@ module carrystep_processor (
     always @(*) begin
         port = state;
         if (code[0]) begin
-            port = {5'b0, space} << AT_4;
-            if (fault) begin
-                port = ({5'b0, space} << AT_4) | {4'b0, cause};
-            end
+            port = {3'b0, space};
         end
         if (code[1]) begin
             port = NONE;
@@ -1019,6 +1028,9 @@ module carrystep_processor (
                 if (latch_armed) begin
                     port = {4'b0, latch_edges} | BIT_4;
                 end
+            end
+            if (code[1]) begin
+                port = {4'b0, cause};
             end
         end
     end
@@ -1068,6 +1080,13 @@ module carrystep_processor (
         ring_write_bits = NONE;
         if (received) begin
             ring_write_bits = ALL;
+        end
+    end
+
+    always @(*) begin
+        put_word = SLOT_OF_CUT;
+        if (is_segment) begin
+            put_word = {1'b0, word};
         end
     end
 
@@ -1142,14 +1161,17 @@ module carrystep_processor (
         if (received) begin
             written <= written + NEXT_PLACE;
         end
-        if (room_valid) begin
+        if (does & code[4]) begin
+            space <= ANY_SPACE;
+        end
+        if (reports & (room < space)) begin
             space <= room;
         end
         if (does & code[6] & !code[7] & !code[8]) begin
             power <= sum[0];
             clears <= code[9];
         end
-        if (put_valid & over) begin
+        if (put_valid & over & is_segment) begin
             word <= word + NEXT_WORD;
         end
     end
@@ -1158,7 +1180,7 @@ endmodule
 // Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1199,6 +1221,7 @@ module carrystep_known #(
         words[6] = TICK_NS;
         words[7] = 32'h10;
         words[8] = WATCHDOG_ROUNDS * ROUND_TICKS;
+        words[12] = 32'h7;
     end
 
     always @(posedge clock) begin
@@ -1211,7 +1234,7 @@ endmodule
 // What the host can read: constants of the build, and the last words of state of each axis.
 module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1287,7 +1310,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'heb02f71d2d60fe51,
+    parameter [63:0] BUILD_ID = 64'h5db5a34c719955df,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -1313,14 +1336,15 @@ module carrystep_link #(
     output wire         put_valid,
     // The axis of the offered word. Also the axis whose free queue space the link reads.
     output wire   [2:0] put_axis,
-    // The number of the offered word in its segment; 7 commits the segment.
-    output wire   [2:0] put_word,
+    // The number of the offered word in its segment, 7 of which commits it; 8 names the slot of a
+    // cut.
+    output wire   [3:0] put_word,
     // The offered word.
     output wire  [31:0] put_data,
     // The engine accepts the offered word in this clock.
     input  wire         put_ready,
     // The number of segments for which the queue of the axis `put_axis` has space.
-    input  wire   [2:0] room,
+    input  wire   [4:0] room,
     // `room` is valid in this clock.
     input  wire         room_valid,
     // The link offers a start to the engine.
@@ -1329,6 +1353,12 @@ module carrystep_link #(
     output wire   [5:0] start_mask,
     // The engine accepts an offered start in this clock.
     input  wire         start_ready,
+    // The host requests a cut in the axes whose slots were named; asserted for one clock.
+    output wire         cut,
+    // A cut was requested and is not decided yet.
+    input  wire         cut_busy,
+    // The last cut was refused: nothing was dropped.
+    input  wire         cut_refused,
     // The engine clears a stop.
     output wire         clear,
     // The host requests a controlled stop.
@@ -1392,7 +1422,7 @@ module carrystep_link #(
     wire [7:0] processor_x;
     wire [7:0] processor_a;
     wire processor_put_valid;
-    wire [2:0] processor_put_word;
+    wire [3:0] processor_put_word;
     wire [31:0] processor_put_data;
     wire processor_start_valid;
     wire processor_clear;
@@ -1401,6 +1431,7 @@ module carrystep_link #(
     wire processor_seek_valid;
     wire processor_latch_arm;
     wire processor_snapshot;
+    wire processor_cut;
     wire processor_kick;
     wire processor_enable;
     wire processor_stop;
@@ -1414,6 +1445,7 @@ module carrystep_link #(
     assign put_data = processor_put_data;
     assign start_valid = processor_start_valid;
     assign start_mask = processor_a[5:0];
+    assign cut = processor_cut;
     assign clear = processor_clear;
     assign stop = processor_stop;
     assign broken = processor_broken;
@@ -1447,10 +1479,12 @@ module carrystep_link #(
         .seek_valid(processor_seek_valid),
         .latch_arm(processor_latch_arm),
         .snapshot(processor_snapshot),
+        .cut(processor_cut),
         .kick(processor_kick),
         .enable(processor_enable),
         .stop(processor_stop),
         .refreshed(refreshed),
+        .cut_refused(cut_refused),
         .fault(fault),
         .halted(halted),
         .idle(idle),

@@ -5,7 +5,7 @@
 // in carrystep_link.v describe the ports. An output that is not used stays empty; each input needs
 // a value. This file is generated: change the generator instead.
 carrystep_link #(
-    .BUILD_ID(64'heb02f71d2d60fe51),
+    .BUILD_ID(64'h5db5a34c719955df),
     .CLOCK_HZ(32'h4c4b400),
     .TICK_NS(32'd1000),
     .ROUND_TICKS(32'd32),
@@ -19,14 +19,17 @@ carrystep_link #(
     .answer_take(),       // input
     .put_valid(),         // output
     .put_axis(),          // output [2:0]
-    .put_word(),          // output [2:0]
+    .put_word(),          // output [3:0]
     .put_data(),          // output [31:0]
     .put_ready(),         // input
-    .room(),              // input [2:0]
+    .room(),              // input [4:0]
     .room_valid(),        // input
     .start_valid(),       // output
     .start_mask(),        // output [5:0]
     .start_ready(),       // input
+    .cut(),               // output
+    .cut_busy(),          // input
+    .cut_refused(),       // input
     .clear(),             // output
     .stop(),              // output
     .broken(),            // output

@@ -8,10 +8,9 @@ set -eu
 cd "$(dirname "$0")"
 yosys=${YOSYS:-yosys} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-icepack}
 
-# The eight cells of a tile share one clock enable. -dffe_min_ce_use 4 makes the enables of fewer
-# than four flip-flops of logic; without it the design does not fit in an HX1K. autoname runs before
-# the logic is mapped, so that the registers can be found in the netlist by name.
-"$yosys" -q -l yosys.log -p 'read_verilog carrystep_icesugar_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_ice40 -dffe_min_ce_use 4 -top carrystep_icesugar_top -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top carrystep_icesugar_top -run map_luts: -json carrystep_icesugar_top.json'
+# autoname runs before the logic is mapped, so that the registers can be found in the netlist by
+# name.
+"$yosys" -q -l yosys.log -p 'read_verilog carrystep_icesugar_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_ice40 -top carrystep_icesugar_top -run begin:map_luts; autoname; synth_ice40 -top carrystep_icesugar_top -run map_luts: -json carrystep_icesugar_top.json'
 # If nextpnr finds no placement, or none that reaches 30 MHz, the loop tries another seed:
 # near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do

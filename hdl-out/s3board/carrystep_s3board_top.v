@@ -29,14 +29,17 @@ module carrystep_s3board_top (
     wire answer_take;
     wire put_valid;
     wire [2:0] put_axis;
-    wire [2:0] put_word;
+    wire [3:0] put_word;
     wire [31:0] put_data;
     wire put_ready;
-    wire [2:0] room;
+    wire [4:0] room;
     wire room_valid;
     wire start_valid;
     wire [5:0] start_mask;
     wire start_ready;
+    wire cut;
+    wire cut_busy;
+    wire cut_refused;
     wire clear;
     wire stop;
     wire broken;
@@ -80,7 +83,7 @@ module carrystep_s3board_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h740568a18832342e),
+        .BUILD_ID(64'hea19617820757e15),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -101,6 +104,9 @@ module carrystep_s3board_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -181,6 +187,10 @@ module carrystep_s3board_top (
         .LATCH_LOOKS(32'd0),
         .LATCH_LOW(32'd0),
         .ESTOP_LOW(32'd0),
+        .OUTPUTS(32'd0),
+        .OUTPUTS_OFF_AT_RAMPS(32'd0),
+        .PWM_DIVIDER(32'd0),
+        .CUTS(32'd0),
         .EVENT_MEMORY("distributed")
     ) engine (
         .put_valid(put_valid),
@@ -193,6 +203,9 @@ module carrystep_s3board_top (
         .start_valid(start_valid),
         .start_mask(start_mask),
         .start_ready(start_ready),
+        .cut(cut),
+        .cut_busy(cut_busy),
+        .cut_refused(cut_refused),
         .clear(clear),
         .stop(stop),
         .broken(broken),
@@ -226,11 +239,13 @@ module carrystep_s3board_top (
         .latch(1'b0),
         .limit_min(limit_min),
         .limit_max(6'd0),
-        .inputs_0(6'd0),
-        .inputs_1(6'd0),
+        .inputs_0({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
+        .inputs_1({1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0}),
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs(),
+        .pwm(),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

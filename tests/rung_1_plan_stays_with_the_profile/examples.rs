@@ -166,7 +166,7 @@ fn program_lists_commands_in_the_order_in_which_they_are_needed() {
                 assert_eq!(mask, 0b11);
                 assert!(ticks.iter().all(|&t| t > reached), "all masked axes have a segment");
             }
-            Command::Wait { .. } | Command::Clear => panic!("{command:?}"),
+            Command::Wait { .. } | Command::Clear | Command::Outputs(_) => panic!("{command:?}"),
         }
     }
     assert_eq!((starts, ticks), (2, [plan.total_ticks(); 2]));

@@ -17,7 +17,7 @@ fn assert_equal(
 ) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
-    let mut host = EngineHost::new(&build.guard, program, events);
+    let mut host = EngineHost::new(build, program, events);
     let mut fault = false;
     let mut quiet = 0;
     for cycle in 0..200_000_u64 {

@@ -1,7 +1,7 @@
 //! The exported engine in Icarus and in Verilator is the engine's model, every output in every
 //! clock.
 
-use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE};
+use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE_DEPTHS};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -49,6 +49,12 @@ struct Seen {
     hits: u64,
     /// Edges of the latch that it did not latch.
     further: u64,
+    /// Changes of outputs, and edges of the PWM.
+    switched: u64,
+    modulated: u64,
+    /// Cuts that were executed, and those that were refused.
+    cuts: u64,
+    refused: u64,
 }
 
 impl Seen {
@@ -61,6 +67,11 @@ impl Seen {
             self.together += u64::from(rising > 1);
             self.hits += u64::from(now.hits & !before.hits != 0);
             self.further += u64::from(now.latch_edges > before.latch_edges);
+            self.switched += u64::from(now.outputs != before.outputs);
+            self.modulated += u64::from(now.pwm != before.pwm);
+            let decided = before.cut_busy && !now.cut_busy;
+            self.cuts += u64::from(decided && !now.cut_refused);
+            self.refused += u64::from(decided && now.cut_refused);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
                 (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
@@ -72,8 +83,10 @@ impl Seen {
     }
 
     fn assert_everything(&self) {
-        let Self { clocks, edges, together, causes, ramped, cleared, hits, further } = *self;
-        let counts = [clocks, edges, together, ramped, cleared, hits, further];
+        let Self { clocks, edges, together, causes, ramped, cleared, hits, further, .. } = *self;
+        let Self { switched, modulated, cuts, refused, .. } = *self;
+        let moved = [clocks, edges, together, ramped, cleared, hits, further];
+        let counts = [moved.as_slice(), &[switched, modulated, cuts, refused]].concat();
         let all = [counts.as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
         let stops: u64 = causes.iter().sum();
@@ -236,7 +249,7 @@ fn golden_program(cases: &[&Case]) -> Program {
     };
     let start = Command::Start { mask: (1 << cases.len()) - 1 };
     let rows = segments.iter().map(Vec::len).max().unwrap_or(0);
-    [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
+    [part(0..QUEUE_DEPTHS[0]), vec![start], part(QUEUE_DEPTHS[0]..rows)].concat()
 }
 
 /// The edges of an axis as tick, phase and direction.

@@ -1,11 +1,11 @@
 //! Random programs for the engine: queues that are filled and run dry, joint moves whose axes
 //! reverse and end in one tick, and all programs of the other cores. E-stop, limits, stops, seeks,
-//! edges of the latch and silence of the host occur in any clock.
+//! edges of the latch and silence of the host occur in any clock, and segments change outputs.
 
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
 use carrystep_core::engine::{
-    Guard, InputRow, Latch, LimitWiring, MAX_AXES, QUEUE, SWITCH_ROWS, SeekSource,
+    Guard, InputRow, Latch, LimitWiring, MAX_AXES, Outputs, QUEUE_DEPTHS, SWITCH_ROWS, SeekSource,
 };
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use carrystep_simulators::engine::{Event, Events};
@@ -102,7 +102,7 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         5 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask | 1), Event::Inputs1(0))),
         3 => Just((Event::Latch(true), Event::Latch(false))),
         2 => Just((Event::LatchArm, Event::LatchArm)),
-        3 => Just((Event::Stop(true), Event::Stop(false))),
+        6 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
         4 => (1..=all(axes)).prop_map(|mask| (Event::Seek(mask), Event::Seek(0))),
         2 => (source(axes), source(axes))
@@ -111,6 +111,7 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         1 => Just((Event::Broken, Event::Kick)),
         2 => Just((Event::Reset(true), Event::Reset(false))),
         1 => (1_u8..8).prop_map(|mask| (Event::WordError(mask), Event::WordError(0))),
+        1 => (0_u32..32).prop_map(|bit| (Event::Stray(1 << bit), Event::Stray(0))),
     ];
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length)
@@ -177,7 +178,7 @@ pub fn queued_first(mut program: Program) -> Program {
     program.retain(|command| !matches!(command, Command::Start { .. }));
     let segments =
         program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
-    program.insert(segments.min(QUEUE * AXES), Command::Start { mask: all(AXES) });
+    program.insert(segments.min(QUEUE_DEPTHS[0] * AXES), Command::Start { mask: all(AXES) });
     program
 }
 
@@ -189,13 +190,42 @@ fn signs_of_life() -> impl Strategy<Value = Events> {
     )
 }
 
+/// The host changes what its commits say about the outputs.
+fn outputs() -> impl Strategy<Value = Events> {
+    let bits = prop_oneof![
+        1 => Just(0_u32),
+        3 => any::<u32>(),
+        1 => any::<u32>().prop_map(|bits| bits & 0x000f_fff0),
+        1 => (0_u32..4096).prop_map(|duty| duty << 20 | 2),
+    ];
+    let change = (0_u64..60_000, bits).prop_map(|(at, bits)| (at, Event::Outputs(bits)));
+    prop::collection::vec(change, 0..12)
+}
+
+/// The host names slots in some axes, which may be any, and requests a cut.
+fn cuts(axes: usize) -> impl Strategy<Value = Events> {
+    let slots = prop_oneof![
+        3 => (0_u8..32).prop_map(move |slot| vec![slot; axes]),
+        1 => prop::collection::vec(0_u8..32, axes),
+    ];
+    let mask = prop_oneof![2 => Just(all(axes)), 3 => (0..axes).prop_map(|axis| 1 << axis), 1 => 0..=all(axes)];
+    let later = prop_oneof![4 => 600_u64..2500, 1 => 0_u64..600];
+    (0_u64..60_000, slots, mask, later).prop_map(|(at, slots, mask, later)| {
+        let named = (0..).zip(slots).filter(|(axis, _)| mask >> axis & 1 == 1);
+        let mut events: Events = named.map(|(axis, slot)| (at, Event::Name(axis, slot))).collect();
+        events.push((at + later, Event::Cut));
+        events
+    })
+}
+
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes)];
+    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 2 => cuts(axes)];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
-    (episodes, signs_of_life()).prop_map(|(episodes, life)| {
+    (episodes, signs_of_life(), outputs()).prop_map(|(episodes, life, outputs)| {
         let mut events = episodes.concat();
         events.extend(life);
+        events.extend(outputs);
         events.sort_by_key(|(cycle, _)| *cycle);
         events
     })
@@ -219,7 +249,8 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
 
 /// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
 /// them are too slow for a step in every other tick. Ramps take ten to some hundred ticks. The
-/// guard's rounds are so short that all of its functions occur.
+/// guard's rounds are so short that all of its functions occur. The depth of the queues depends on
+/// the number of axes; it is the least for three and six.
 pub fn build(
     axes: usize,
     clock_hz: u64,
@@ -235,6 +266,10 @@ pub fn build(
     build.pins = build.pins.iter().copied().cycle().take(axes).collect();
     let low = limits == LimitWiring::Pair;
     let all = InputRow { exist: all(axes), low: 0 };
+    build.queue = QUEUE_DEPTHS[axes % QUEUE_DEPTHS.len()];
+    build.cuts = true;
+    // A period of the PWM has fewer clocks than a program.
+    build.outputs = Outputs { exist: 0xff, pwm_divider: 2, off_at_ramps: low };
     build.guard = Guard {
         round: 4,
         inputs: [all; 2],
@@ -265,6 +300,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         latch: Some(Latch { low: true, looks: 16 }),
         ..third.guard
     };
+    third.outputs = Outputs { exist: 0xa5, pwm_divider: 1, off_at_ramps: false };
     third.pins.reverse();
     third.guard.stop.reverse();
     let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, LimitWiring::One);
@@ -277,6 +313,8 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         latch: Some(Latch { low: true, looks: 1 }),
         ..fourth.guard
     };
+    fourth.cuts = false;
+    fourth.outputs = Outputs { exist: 0x00, pwm_divider: 0, off_at_ramps: true };
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
     [first, second, third, fourth]

@@ -51,10 +51,8 @@ pub fn run(
     most: u64,
 ) -> Result<Came, String> {
     let (mut fast, mut slow) = (FastEngine::new(build), Engine::new(build));
-    let (mut fast_host, mut slow_host) = (
-        EngineHost::new(&build.guard, program, events),
-        EngineHost::new(&build.guard, program, events),
-    );
+    let (mut fast_host, mut slow_host) =
+        (EngineHost::new(build, program, events), EngineHost::new(build, program, events));
     let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
     let mut came = Came::default();
     let mut leaps = leaps.iter().cycle();

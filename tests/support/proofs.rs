@@ -18,13 +18,16 @@
 mod adder;
 mod axis;
 pub(crate) mod builds;
+mod cut_control;
 mod edge;
 mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
+mod output_control;
 mod parallel_core;
 mod promises;
+mod pulse_width;
 mod pulser;
 mod queue;
 mod readout;
@@ -33,6 +36,7 @@ mod seek_control;
 mod sequencer;
 mod shaper;
 mod solver;
+mod step_counts;
 mod stops;
 mod supervisor;
 mod switches;
@@ -137,11 +141,15 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         stops::proof(engine),
         supervisor::proof(engine),
         queue::proof(engine),
+        step_counts::proof(engine),
         readout::proof(engine),
         switches::proof(engine),
         seek_control::proof(engine),
         edge_latch::proof(engine),
         resets::proof(engine),
+        cut_control::proof(engine),
+        output_control::proof(engine),
+        pulse_width::proof(engine),
         time_slot::proof(engine),
         event_wheel::proof(engine),
         adder::proof(engine),

@@ -48,6 +48,8 @@ impl Twins {
                     let inputs = Inputs { start: Some(mask), ..Inputs::default() };
                     self.offer(&inputs, |slow| slow.outputs(&inputs).start_ready)?;
                 }
+                // The parallel core has no outputs.
+                Command::Outputs(_) => {}
                 Command::Wait { clocks } => self.pass(&Inputs::default(), clocks.into())?,
                 Command::Clear => {
                     let inputs = Inputs { clear: true, ..Inputs::default() };

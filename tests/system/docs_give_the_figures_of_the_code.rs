@@ -3,8 +3,8 @@
 
 use carrystep_core::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
 use carrystep_core::engine::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT, QUEUE,
-    TIME_SLOT_CLOCKS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PUT_BEAT,
+    QUEUE_DEPTHS, TIME_SLOT_CLOCKS,
 };
 use carrystep_core::fixed::{FRACTION_BITS, StartPhase};
 use carrystep_core::link::registers::MOST_AXES;
@@ -65,7 +65,8 @@ fn pages_give_clock_and_tick_of_a_machine_file_without_them() {
 #[test]
 fn pages_give_the_dimensions_of_the_engine() {
     let (slot, last) = (TIME_SLOT_CLOCKS, TIME_SLOT_CLOCKS - 1);
-    let queue = word(QUEUE as u64);
+    let [least, middle, most_queue] = QUEUE_DEPTHS;
+    let queue = word(least as u64);
     let [most, in_file] = [MAX_CLOCKS, MAX_CLOCKS - 1].map(|clocks| grouped(clocks.into()));
     let time = Timebase::new(FIXED_CLOCK_HZ, 1000, 16).expect("a timebase");
     let (latency, tick) = (time.latency_clocks(), u64::from(time.clocks_per_tick()));
@@ -77,8 +78,7 @@ fn pages_give_the_dimensions_of_the_engine() {
             format!("The {slot} clocks of a time slot are its *beats* 0 .. {last}."),
             format!("`{slot} N + 2 <= C`"),
             format!("a phase has at least {MIN_CLOCKS_PER_PHASE} clocks"),
-            format!("a queue of up to {QUEUE} segments"),
-            format!("room = {QUEUE} - the segments in the queue"),
+            format!("a queue of up to Q segments (Q = {least}, {middle} or {most_queue},"),
             format!("(beat {PUT_BEAT} of that axis' time slot"),
             format!("With `B` samples to debounce, 1 to {MAX_DEBOUNCE_SAMPLES}"),
             format!("L = {} C + {}", latency / tick, latency % tick),
@@ -275,7 +275,11 @@ fn protocol_page_gives_lengths_and_numbers_of_frames() {
             format!(
                 "a read has {asked} to {owner_asked} bytes and its answer {answered}, so reads that are sent back to back arrive twice as fast"
             ),
-            format!("has room, 0 to {QUEUE}"),
+            "has room, 0 to `QUEUE_DEPTH`".to_owned(),
+            format!(
+                "(`QUEUE_DEPTH`, {}, {} or {})",
+                QUEUE_DEPTHS[0], QUEUE_DEPTHS[1], QUEUE_DEPTHS[2]
+            ),
         ],
     );
     // Ten bits a byte on a UART.

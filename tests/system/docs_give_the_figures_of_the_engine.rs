@@ -85,7 +85,11 @@ fn specification_gives_the_beats_of_the_layout() {
             output("BEAT_STATE_P_HIGH", StateItem::PHigh) + " P, high half |",
             output("BEAT_STATE_TICK", StateItem::Ticks) + " `ticks` |",
             output("BEAT_STATE_STATUS", StateItem::Status) + " the status;",
-            format!("In beat {} of each time slot, the axis compares them", at("BEAT_COMPARE")),
+            format!(
+                "`discarded` in beat {} and `counted` in beat {}:",
+                at("BEAT_COMPARE_DISCARDED"),
+                at("BEAT_LOAD_POSITION")
+            ),
         ],
     );
     let bits = moves::demo().build.timebase.phase_bits() as usize;
@@ -255,8 +259,8 @@ fn machine_file_page_gives_the_clocks_of_a_whole_number_of_ns() {
 fn promises_page_gives_what_the_proofs_assume() {
     let promises = |module: &str| format!("crates/hdl/src/{module}/promises.sv");
     let sum = behind(&promises("parallel/axis"), "reg signed [") + 1.0;
-    let ahead = whole(behind(&promises("engine/queue"), "given_up - written_off != "));
-    let behind_pins = whole(behind(&promises("engine/queue"), "behind >= -3 && behind <= "));
+    let ahead = whole(behind(&promises("engine/step_counts"), "given_up - written_off != "));
+    let behind_pins = whole(behind(&promises("engine/step_counts"), "behind >= -3 && behind <= "));
     says(
         "docs/promises.md",
         &[

@@ -1,9 +1,10 @@
 //! Figures of the documentation that describe the host link: frames, addresses, block RAMs, and the
 //! times of the clients.
 
-use carrystep_core::engine::{ENGINE_PORTS, QUEUE};
+use carrystep_core::engine::{ENGINE_PORTS, QUEUE_DEPTHS};
 use carrystep_core::link::registers::{
-    AXES_AT, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP, of_axis,
+    AXES_AT, CONTROL_ENABLE, CUT, MOST_AXES, OPEN, POSITION, SEGMENT, SEGMENTS, START, STOP,
+    of_axis,
 };
 use carrystep_core::link::{
     ANSWER, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, DEFAULT_BAUD, REFUSALS, REQUEST_HEAD,
@@ -33,7 +34,11 @@ fn protocol_page_gives_the_addresses_of_the_register_map() {
                 "- **Segment**: address `{segment:02X} + axis` and {} words:",
                 word(SEGMENT_FRAME_WORDS as u64)
             ),
-            format!("Addresses from `{:02X}` on are not for writes.", segment + MOST_AXES + 1),
+            format!(
+                "Addresses from `{:02X}` on are not for writes, except `{:02X}`.",
+                segment + MOST_AXES + 1,
+                WRITE | CUT
+            ),
             format!("- **Segments of several axes**: address `{:02X}`.", WRITE | SEGMENTS),
             format!(
                 "{} + {} k bytes: {} for six axes",
@@ -65,13 +70,11 @@ fn protocol_page_gives_the_numbers_of_writes_and_ticks() {
     let data = ENGINE_PORTS.iter().find(|port| port.name == "put_data").expect("a port");
     let Width::Bits(bits) = data.width else { panic!("{:?}", data.width) };
     let most = (1_u64 << bits) - 1;
-    let queue = word(QUEUE as u64);
     says(
         "docs/protocol.md",
         &[
             format!("Writes are numbered modulo {}.", 1 << next.bits),
             format!("A segment has 1 to 2^{bits} - 1 ticks: `ticks - 1` = `{most:X}` is a segment"),
-            format!("the {queue} segments and the running one must together"),
         ],
     );
 }
@@ -193,6 +196,7 @@ fn architecture_page_gives_the_rate_that_the_test_tries() {
     );
     let of_spi = constant(rates, "OVER_SPI");
     let mhz = behind(rates, "Bus::<ModelBoard>::new(") / 1e6;
+    let depth = QUEUE_DEPTHS[0];
     let writes = whole(behind(
         "crates/virtual-board/tests/support/bus.rs",
         "Host<SpiLine<Bus<B>>, Bus<B>, ",
@@ -200,10 +204,10 @@ fn architecture_page_gives_the_rate_that_the_test_tries() {
     says(
         "docs/performance.md",
         &[
-            format!("| 3 000 000 baud | {rate} | {fast} of {QUEUE} |"),
-            format!("| 921 600 baud | {other} | {slow} of {QUEUE} |"),
+            format!("| 3 000 000 baud | {rate} | {fast} of {depth} |"),
+            format!("| 921 600 baud | {other} | {slow} of {depth} |"),
             format!(
-                "| SPI at {mhz} MHz, {} unacknowledged writes | {spi} | {of_spi} of {QUEUE} |",
+                "| SPI at {mhz} MHz, {} unacknowledged writes | {spi} | {of_spi} of {depth} |",
                 word(writes)
             ),
         ],

@@ -1,7 +1,7 @@
 //! Pages show the schedule of a time slot, the words of the memories and the fields of an answer as
 //! they stand in the code.
 
-use carrystep_core::engine::{MAX_AXES, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{MAX_AXES, QUEUE_DEPTHS, SEGMENT_WORDS};
 use carrystep_core::link::ANSWER;
 use carrystep_hdl::engine::layout::{self, INDICES};
 use carrystep_tests::pages::{self, says, word};
@@ -159,8 +159,10 @@ fn engine_page_draws_the_words_of_the_memory() {
     // The widths of the three numbers in an address.
     let word = layout::state_address(0, 0).count_ones();
     let slot = layout::state_address(1, 0).ilog2() - word;
-    // One more bit tells the number of the tick from the words of the eighth axis.
-    let axis = memory("store.rs", "segments").0 - 1 - slot - word;
+    let axis = MAX_AXES.ilog2();
+    // The two highest bits belong to deeper queues; with eight axes, one of them tells the number of
+    // the tick from the words of the eighth axis.
+    assert_eq!(memory("store.rs", "segments").0, 2 + axis + slot + word);
     assert_eq!(layout::state_address(0, 1).ilog2(), word);
     says("docs/engine.md", &[format!("address axis {axis} | slot {slot} | word {word} word 0")]);
 }
@@ -178,11 +180,14 @@ fn engine_page_counts_the_block_rams() {
     const RAM: (u32, u32) = (256, 16);
     let rams =
         |(address, bits): (u32, u32)| (1_u32 << address).div_ceil(RAM.0) * bits.div_ceil(RAM.1);
-    // With up to seven axes, the highest bit of the address has no effect.
+    // With queues of seven segments, the two highest bits of the address have no effect.
     let (address, bits) = memory("store.rs", "segments");
-    let address = address - 1;
+    let address = address - 2;
     let (wide, deep) = (bits / RAM.1, (1 << address) / RAM.0);
-    assert_eq!(1 << address, MAX_AXES as u32 * (QUEUE as u32 + 1) * (SEGMENT_WORDS as u32 + 1));
+    assert_eq!(
+        1 << address,
+        MAX_AXES as u32 * (QUEUE_DEPTHS[0] as u32 + 1) * (SEGMENT_WORDS as u32 + 1)
+    );
     let control = memory("queue.rs", "control");
     let others = [
         memory("queue.rs", "lasts"),
@@ -208,7 +213,7 @@ fn engine_page_counts_the_block_rams() {
             format!(
                 "{} axes, {} slots per axis, {} words per slot",
                 word(MAX_AXES as u64),
-                word(QUEUE as u64 + 1),
+                word(QUEUE_DEPTHS[0] as u64 + 1),
                 word(u64::from(SEGMENT_WORDS) + 1)
             ),
             format!("has {} bits and takes {} more block RAMs", control.1, number(rams(control))),
@@ -221,7 +226,7 @@ fn engine_page_counts_the_block_rams() {
 fn protocol_page_gives_the_fields_of_the_answer() {
     let page = pages::file("docs/protocol.md");
     let (_, table) = page.split_once("## The answer\n").expect("the answer");
-    let (table, _) = table.split_once("\n\nBits 4 and 5").expect("the end of the table");
+    let (table, _) = table.split_once("\n\nBit 5 of byte 3").expect("the end of the table");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| ")).skip(1);
     let shown: Vec<[String; 3]> = rows
         .filter(|row| !row.starts_with("-"))

@@ -1,7 +1,7 @@
 //! The engine produces the pulses of six parallel axes: the same edges in the same clocks after the
 //! start, on random joint moves in which all axes reverse and change segment in the same tick.
 
-use carrystep_core::engine::QUEUE;
+use carrystep_core::engine::QUEUE_DEPTHS;
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -19,7 +19,7 @@ fn rows() -> impl Strategy<Value = Vec<Row>> {
     let change = |bits: u32| prop_oneof![Just(0), -(1_i64 << bits)..(1 << bits)];
     let axis = (-(1_i64 << 61)..(1 << 61), change(50), change(40));
     let ticks = prop_oneof![Just(1_u32), 1_u32..8, 8_u32..200];
-    prop::collection::vec((ticks, prop::collection::vec(axis, AXES)), 1..=QUEUE)
+    prop::collection::vec((ticks, prop::collection::vec(axis, AXES)), 1..=QUEUE_DEPTHS[0])
 }
 
 /// A program whose start comes after the first row (the parallel axes hold one waiting segment) or

@@ -6,7 +6,7 @@ use carrystep_tests::effort;
 use carrystep_tools::resources::{
     self, EIGHT_TO_SIX, EngineRow, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS,
 };
-use carrystep_tools::{ice40, kept, xilinx};
+use carrystep_tools::{kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
 #[test]
@@ -14,11 +14,9 @@ fn every_engine_build_fits_its_budget_of_logic_cells() {
     let mut netlists = Vec::new();
     for row in &ROWS {
         // Rows with the same axes, clock and tick share one netlist.
-        let build = (row.axes, row.clock_hz, row.tick_ns);
+        let build = (row.axes, row.clock_hz, row.tick_ns, row.queue, row.all);
         if !netlists.iter().any(|(other, _)| *other == build) {
-            let verilog = resources::verilog(row).expect("a fine engine");
-            netlists
-                .push((build, ice40::synthesise_tight(&verilog, ENGINE_NAME).expect("a netlist")));
+            netlists.push((build, resources::synthesised(row).expect("a netlist")));
         }
         let (_, netlist) = netlists.iter().find(|(other, _)| *other == build).expect("a netlist");
         let found = netlist.size(row.part).expect("a size");
@@ -34,8 +32,7 @@ fn every_engine_build_fits_its_budget_of_logic_cells() {
 fn eight_axes_need_few_more_logic_cells_than_six() {
     let (eight, six, most) = EIGHT_TO_SIX;
     let [eight, six] = [eight, six].map(|row| {
-        let verilog = resources::verilog(&row).expect("a fine engine");
-        let netlist = ice40::synthesise_tight(&verilog, ENGINE_NAME).expect("a netlist");
+        let netlist = resources::synthesised(&row).expect("a netlist");
         f64::from(netlist.size(row.part).expect("a size").logic_cells)
     });
     effort::say(&format!(

@@ -143,7 +143,7 @@ fn start_after_the_hit_is_cancelled_until_the_seek_is_ended() {
 fn state_at_the_limit_is_that_of_the_next_tick() {
     let build = build(LimitWiring::Pair);
     let mut engine = EngineSim::new(&build).expect("a fine build");
-    let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
+    let mut host = EngineHost::new(&build, &cruise(), &events(THEN));
     let mut at_limit = Vec::new();
     let (mut live, mut waited, mut ticks_when_found) = (None, false, None);
     while at_limit.len() < 5 {

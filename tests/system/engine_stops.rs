@@ -192,10 +192,10 @@ fn verilog_stops_in_the_same_clock_as_the_model() {
 }
 
 const BUGS: [planted::Bug; 6] = [
-    ("a ramp speeds up", "assign upward = word[14];", "assign upward = !word[14];"),
+    ("a ramp speeds up", "assign upward = word[12];", "assign upward = !word[12];"),
     (
         "a ramp begins before it knows the way",
-        "assign steady = ramp & !word[15];",
+        "assign steady = ramp & !word[13];",
         "assign steady = 1'b0;",
     ),
     (

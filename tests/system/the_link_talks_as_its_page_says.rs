@@ -21,6 +21,7 @@ fn build() -> EngineBuild {
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, 1 << 54);
     build.guard.limits = LimitWiring::Pair;
+    build.cuts = true;
     build
 }
 

@@ -61,15 +61,20 @@ pub enum BoardError {
         /// Name of the port.
         port: String,
     },
-    /// The machine has an input for which no board has a pin yet.
+    /// The board has no pins, or too few, for an input or an output.
     #[error(
-        "{board} has no pin for {input}: leave it out of [machine.inputs], or instantiate the engine in a design of your own"
+        "{board} has {has} of the {wanted} pins that this machine needs for {what}: leave some out of [machine.inputs] or [machine.outputs]{}, take another board, or instantiate the engine in a design of your own",
+        if *has == 0 { ", use the UART if the machine has an SPI" } else { "" }
     )]
-    Input {
+    Unconnected {
         /// Name of the board.
         board: String,
-        /// The input, in words.
-        input: &'static str,
+        /// What has no pin, in words.
+        what: &'static str,
+        /// Number of pins that the board has for it.
+        has: usize,
+        /// Number of pins that the machine needs.
+        wanted: usize,
     },
     /// The board's serial chip does not support this baud rate.
     #[error(

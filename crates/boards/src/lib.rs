@@ -7,7 +7,8 @@
 //! needs these too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
-use carrystep_core::engine::{Guard, LimitWiring};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{BaudError, Uart};
 use carrystep_files::error::{InputError, SourceText};
 use schemars::JsonSchema;
@@ -153,6 +154,10 @@ pub struct Wire {
     /// Place of the pin on a connector, if it is on one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Place>,
+    /// Whether the pin may be that of an SPI port, so that the port exists only if the host uses
+    /// the UART.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub beside_uart: bool,
 }
 
 /// A pin of a connector.
@@ -303,23 +308,32 @@ impl Board {
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 
-    /// Checks that the machine has no input besides e-stop and limits, because no board has pins for
-    /// others yet.
+    /// Checks that the board has pins for all inputs and outputs of this build besides e-stop and
+    /// limits. `uart` says whether the host uses the UART: then they may be the pins of the SPI.
     ///
     /// # Errors
-    /// [`BoardError::Input`] names the first such input.
-    pub fn connects_inputs(&self, guard: &Guard) -> Result<(), BoardError> {
-        let [first, second] = guard.inputs.map(|row| row.exist);
-        let inputs = [
-            (first & 1 != 0, "the probe"),
-            (second & 1 != 0, "the interlock"),
-            ((first | second) & !1 != 0, "general inputs"),
-            (guard.latch.is_some(), "the latch"),
+    /// [`BoardError::Unconnected`] names the first one for which it has none.
+    pub fn connects(&self, build: &EngineBuild, uart: bool) -> Result<(), BoardError> {
+        let [first, second] = build.guard.inputs.map(|row| row.exist);
+        let general = ((first & !1).count_ones() + (second & !1).count_ones()) as usize;
+        let outputs = build.outputs.exist.count_ones() as usize;
+        let needs = [
+            ("probe", (first & 1).into(), "the probe"),
+            ("interlock", (second & 1).into(), "the interlock"),
+            ("general", general, "general inputs"),
+            ("latch", build.guard.latch.is_some().into(), "the latch"),
+            ("outputs", outputs, "outputs"),
+            ("pwm", (build.outputs.pwm_divider != 0).into(), "the PWM"),
         ];
-        match inputs.into_iter().find(|(exists, _)| *exists) {
-            None => Ok(()),
-            Some((_, input)) => Err(BoardError::Input { board: self.name.clone(), input }),
+        for (port, wanted, what) in needs {
+            let wires = self.wires.iter().filter(|wire| uart || !wire.beside_uart);
+            let has = wires.filter(|wire| wire.port.split('[').next() == Some(port)).count();
+            if has < wanted {
+                let board = self.name.clone();
+                return Err(BoardError::Unconnected { board, what, has, wanted });
+            }
         }
+        Ok(())
     }
 
     /// The wire of one bit of a port, such as `step[0]`.
@@ -338,6 +352,15 @@ impl Board {
 }
 
 impl Part {
+    /// Options of yosys' `synth_ice40` for the iCE40 of this name.
+    ///
+    /// The eight logic cells of a tile share one clock enable. The option replaces enables of fewer
+    /// than four flip-flops by logic; without it the design does not fit in an HX1K. In an
+    /// UltraPlus, which has more cells and is half as fast, it costs speed.
+    pub fn synthesis(name: &str) -> &'static str {
+        if name.starts_with("up") { "" } else { "-dffe_min_ce_use 4" }
+    }
+
     /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
     /// iCE40, its name and package.
     pub fn ordered(&self) -> String {

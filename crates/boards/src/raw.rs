@@ -49,6 +49,8 @@ struct RawBoard {
     timebase: Vec<Spanned<RawTimebase>>,
     pins: Ports,
     #[serde(default)]
+    pins_beside_uart: Ports,
+    #[serde(default)]
     onboard: Ports,
     #[serde(default)]
     tie: Vec<RawTie>,
@@ -140,7 +142,7 @@ impl Reader<'_> {
             }
             ties.push(Tie { port, pin: pin.into_inner(), level: level.into_inner(), why });
         }
-        let wires = self.wires(raw.pins, raw.onboard, &raw.connectors)?;
+        let wires = self.wires(raw.pins, raw.pins_beside_uart, raw.onboard, &raw.connectors)?;
         let gate = raw.gate.map(|gate| self.gate(gate, &wires)).transpose()?;
         let (shared, configuration_sources) =
             self.configuration(&raw.package, &raw.configured, &raw.exception, &raw.part, &parts)?;

@@ -4,7 +4,8 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_boards::{Board, ConfigurationMode, OSCILLATOR, PORTS, board, boards};
-use carrystep_core::engine::{Guard, InputRow, Latch, LimitWiring};
+use carrystep_core::engine::{Latch, LimitWiring, Outputs};
+use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::{InputError, SourceText};
 use std::path::Path;
 
@@ -46,13 +47,18 @@ fn every_board_carries_six_axes_at_each_proposed_clock() {
 #[test]
 fn no_pin_is_used_twice_and_every_wire_belongs_to_a_port() {
     for board in boards() {
-        let pins =
-            board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
-        let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
-        let all = pins.len();
-        pins.sort();
-        pins.dedup();
-        assert_eq!(pins.len(), all, "{}", board.name);
+        // With the UART, the pins of the SPI may be those of other ports.
+        for uart in [false, true] {
+            let wires = board.wires.iter().filter(|wire| {
+                if uart { !wire.port.starts_with("spi_") } else { !wire.beside_uart }
+            });
+            let pins = wires.map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
+            let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
+            let all = pins.len();
+            pins.sort();
+            pins.dedup();
+            assert_eq!(pins.len(), all, "{}", board.name);
+        }
         for wire in &board.wires {
             let name = wire.port.split('[').next().unwrap();
             assert!(PORTS.iter().any(|port| port.name == name) && name != OSCILLATOR);
@@ -189,7 +195,7 @@ fn mistake_in_a_board_file_is_refused_at_its_place() {
             ICESTICK,
             "led = \"95\"",
             "led = \"95\"\nestop = \"96\"",
-            "estop stands in [pins] and in [onboard]",
+            "estop stands in two tables of pins",
             "estop = \"96\"",
         ),
         (PAPILIO_PRO, "vccaux = \"3.3\"\n", "", "a Spartan-6 needs `vccaux`", "\"spartan6\""),
@@ -326,25 +332,6 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
         "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
          limits = \"each\" or \"one\" would do"
     );
-    let guard = Guard::minimal(vec![1]);
-    assert_eq!(icestick.connects_inputs(&guard), Ok(()));
-    let latch = Some(Latch { low: false, looks: 1 });
-    let row = |exist| InputRow { exist, low: 0 };
-    for (inputs, latch, input) in [
-        ([row(1), row(3)], latch, "the probe"),
-        ([row(2), row(1)], None, "the interlock"),
-        ([row(0), row(4)], latch, "general inputs"),
-        ([row(0), row(0)], latch, "the latch"),
-    ] {
-        let refused = icestick.connects_inputs(&Guard { inputs, latch, ..guard.clone() });
-        assert_eq!(
-            said(&refused.unwrap_err()),
-            format!(
-                "icestick has no pin for {input}: leave it out of [machine.inputs], or instantiate the engine in a \
-                 design of your own"
-            )
-        );
-    }
     assert_eq!(
         said(&icestick.wire("limit_max[0]").unwrap_err()),
         "icestick has no pin for limit_max[0]"
@@ -376,4 +363,40 @@ fn default_baud_rate_of_a_board_is_the_fastest_that_its_clock_makes() {
         );
     }
     assert!(board("s3board").unwrap().uart(500_000).is_err());
+}
+
+/// The pins of the SPI are those of inputs and outputs where the host uses the UART.
+#[test]
+fn boards_connect_inputs_and_outputs_that_they_have_pins_for() {
+    let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+    let build = |probe: bool, general: u8, latch: bool, exist: u8, pwm_divider: u32| {
+        let mut build = EngineBuild::minimal(&build, 1);
+        build.guard.inputs[0].exist = u8::from(probe) | general << 1;
+        build.guard.latch = latch.then_some(Latch { low: false, looks: 1 });
+        build.outputs = Outputs { exist, pwm_divider, off_at_ramps: true };
+        build
+    };
+    let (icestick, hx8k) = (board("icestick").unwrap(), board("hx8k-evn").unwrap());
+    let small = build(true, 0, false, 3, 0);
+    assert_eq!(icestick.connects(&small, true), Ok(()));
+    assert_eq!(hx8k.connects(&build(true, 15, true, 15, 1), false), Ok(()));
+    for (build, uart, missing) in [
+        (small, false, "0 of the 1 pins that this machine needs for the probe"),
+        (
+            build(false, 1, false, 0, 0),
+            true,
+            "0 of the 1 pins that this machine needs for general inputs",
+        ),
+        (
+            build(false, 0, true, 0, 0),
+            true,
+            "0 of the 1 pins that this machine needs for the latch",
+        ),
+        (build(false, 0, false, 7, 0), true, "2 of the 3 pins that this machine needs for outputs"),
+        (build(false, 0, false, 0, 1), true, "0 of the 1 pins that this machine needs for the PWM"),
+    ] {
+        let refused = icestick.connects(&build, uart).unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("icestick has {missing}: leave")), "{refused}");
+    }
 }

@@ -36,8 +36,8 @@ pub struct PinChange {
 /// A consumer of pin changes. Its memory stays bounded, however long the capture is.
 ///
 /// The calls come in this order: any number of [`initial`](Self::initial), any number of
-/// [`change`](Self::change) and [`changes`](Self::changes) in which `ps` never falls, and one
-/// [`end`](Self::end).
+/// [`change`](Self::change), [`changes`](Self::changes) and [`outputs`](Self::outputs) in which `ps`
+/// never falls, and one [`end`](Self::end).
 pub trait PinSink {
     /// Sets the level of a pin at the start of the capture. This is not an edge; a pin without such
     /// a call is low.
@@ -63,6 +63,16 @@ pub trait PinSink {
         changes.iter().try_for_each(|change| self.change(*change))
     }
 
+    /// Sets the levels of the output pins from `ps` on, one bit each; 1 is active. Before the first
+    /// call all are inactive.
+    ///
+    /// # Errors
+    /// A [`TraceError`] if the sink cannot write.
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        let _ = (ps, levels);
+        Ok(())
+    }
+
     /// Ends the capture at `ps`.
     ///
     /// # Errors
@@ -84,6 +94,10 @@ impl<S: PinSink + ?Sized> PinSink for &mut S {
 
     fn changes(&mut self, changes: &[PinChange]) -> Result<(), TraceError> {
         (**self).changes(changes)
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        (**self).outputs(ps, levels)
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
@@ -128,6 +142,10 @@ impl PinSink for Tee<'_> {
 
     fn changes(&mut self, changes: &[PinChange]) -> Result<(), TraceError> {
         self.sinks.iter_mut().try_for_each(|sink| sink.changes(changes))
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        self.sinks.iter_mut().try_for_each(|sink| sink.outputs(ps, levels))
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {

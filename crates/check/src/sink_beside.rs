@@ -15,6 +15,7 @@ const BATCH: usize = 1 << 13;
 enum Message {
     Initial(PinChange),
     Changes(Vec<PinChange>),
+    Outputs(u64, u8),
     End(u64),
 }
 
@@ -34,6 +35,7 @@ pub fn sink_beside<S: PinSink + Send, R>(
                 match message {
                     Message::Initial(level) => sink.initial(level)?,
                     Message::Changes(changes) => sink.changes(&changes)?,
+                    Message::Outputs(ps, levels) => sink.outputs(ps, levels)?,
                     Message::End(ps) => sink.end(ps)?,
                 }
             }
@@ -79,6 +81,12 @@ impl PinSink for Sender {
         if self.batch.len() >= BATCH {
             self.flush();
         }
+        Ok(())
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        self.flush();
+        self.send(Message::Outputs(ps, levels));
         Ok(())
     }
 

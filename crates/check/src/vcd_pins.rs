@@ -1,4 +1,5 @@
-//! Writes a VCD of pins and positions only, for a board whose moves are not known to the writer.
+//! Writes a VCD of pins, positions and outputs only, for a board whose moves are not known to the
+//! writer, and for jobs.
 //!
 //! The names of the signals are those of `waves.rs`.
 
@@ -17,6 +18,8 @@ const BITS: u32 = 32;
 pub struct PinsVcd<W: Write> {
     out: Writer<W>,
     axes: Vec<Axis>,
+    /// The output pins, each with its number and its level.
+    outputs: Vec<(u8, IdCode, bool)>,
     time: u64,
 }
 
@@ -35,8 +38,8 @@ impl<W: Write> fmt::Debug for PinsVcd<W> {
 }
 
 impl<W: Write> PinsVcd<W> {
-    /// Begins a capture of these axes, in the order of their numbers. All pins are low and all
-    /// positions 0.
+    /// Begins a capture of these axes, in the order of their numbers, and of the outputs in this
+    /// mask. All pins are low and all positions 0.
     ///
     /// # Errors
     /// [`TraceError::Write`] if the file cannot be written.
@@ -44,14 +47,16 @@ impl<W: Write> PinsVcd<W> {
         out: W,
         own: OwnCapture,
         names: impl Iterator<Item = &'n str>,
+        outputs: u8,
     ) -> Result<Self, TraceError> {
-        Self::begin(Writer::new(out), own, names).map_err(failed)
+        Self::begin(Writer::new(out), own, names, outputs).map_err(failed)
     }
 
     fn begin<'n>(
         mut out: Writer<W>,
         own: OwnCapture,
         names: impl Iterator<Item = &'n str>,
+        outputs: u8,
     ) -> io::Result<Self> {
         out.version(VERSION)?;
         out.comment(&own.to_string())?;
@@ -70,6 +75,10 @@ impl<W: Write> PinsVcd<W> {
             });
             out.upscope()?;
         }
+        let exist = (0..8_u8).filter(|number| outputs >> number & 1 == 1);
+        let outputs = exist
+            .map(|number| Ok((number, out.add_wire(1, &format!("output_{number}"))?, false)))
+            .collect::<io::Result<Vec<_>>>()?;
         out.upscope()?;
         out.enddefinitions()?;
         out.timestamp(0)?;
@@ -79,8 +88,11 @@ impl<W: Write> PinsVcd<W> {
             out.change_scalar(axis.dir, false)?;
             change_position(&mut out, axis)?;
         }
+        for (_, code, level) in &outputs {
+            out.change_scalar(*code, *level)?;
+        }
         out.end()?;
-        Ok(Self { out, axes, time: 0 })
+        Ok(Self { out, axes, outputs, time: 0 })
     }
 
     fn stamp(&mut self, ps: u64) -> io::Result<()> {
@@ -110,6 +122,17 @@ impl<W: Write> PinsVcd<W> {
         }
     }
 
+    fn write_outputs(&mut self, ps: u64, levels: u8) -> io::Result<()> {
+        self.stamp(ps)?;
+        for (number, code, level) in &mut self.outputs {
+            let now = levels >> *number & 1 == 1;
+            if std::mem::replace(level, now) != now {
+                self.out.change_scalar(*code, now)?;
+            }
+        }
+        Ok(())
+    }
+
     fn close(&mut self, ps: u64) -> io::Result<()> {
         self.stamp(ps)?;
         self.out.comment(vcd_own::END)?;
@@ -129,6 +152,10 @@ fn failed(source: io::Error) -> TraceError {
 impl<W: Write> PinSink for PinsVcd<W> {
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
         self.write(change).map_err(failed)
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        self.write_outputs(ps, levels).map_err(failed)
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {

@@ -38,7 +38,8 @@ impl Streamed {
     pub fn new(source: MoveSource) -> Result<Self, Failure> {
         let (machine, path) = (&source.machine, source.path.display().to_string());
         let axes = machine.axes.len() as u8;
-        let mut supply = Some(Supply::new(axes, machine.timebase.tick_ns(), machine.baud));
+        let mut supply =
+            Some(Supply::new(axes, machine.timebase.tick_ns(), machine.queue, machine.baud));
         // A move that cannot be made is told before a line that is too slow.
         let mut starved = None;
         let survey = job::survey(source, |planned| {

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_check::PinSink;
-use carrystep_core::engine::{Cause, EngineError};
+use carrystep_core::engine::{Cause, EngineError, EngineOutputs};
 use carrystep_core::{EngineBuild, Timebase};
 use carrystep_files::Machine;
 use carrystep_simulators::engine::run::EngineJob;
@@ -17,6 +17,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub enum CorePlan<'a> {
     Parallel(Job<'a>),
     Engine(EngineJob<'a>),
+}
+
+/// The pins of a core in a cycle: STEP and DIR of each axis, and its outputs, one bit each.
+#[derive(Clone, Copy)]
+struct Pins {
+    step: u8,
+    dir: u8,
+    outputs: u8,
 }
 
 /// The end of a run.
@@ -52,9 +60,10 @@ impl CorePlan<'_> {
         (how_far, deaf): (&HowFar, &AtomicBool),
     ) -> Result<RunEnd, Failure> {
         let mut feed = PinFeed::new(timebase, axes, sink);
-        let end = self.run(level, &mut |cycle, step, dir| {
+        let end = self.run(level, &mut |cycle, pins| {
             how_far.at(cycle);
-            feed.pins(cycle, step, dir);
+            feed.pins(cycle, pins.step, pins.dir);
+            feed.outputs(cycle, pins.outputs);
             if feed.has_failed() {
                 deaf.store(true, Ordering::Relaxed);
             }
@@ -69,13 +78,13 @@ impl CorePlan<'_> {
         Ok(end)
     }
 
-    /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
-    /// which any output has changed.
-    fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<RunEnd, LevelError> {
+    /// Runs the plan. `watch` is called with the cycle and the pins in each cycle in which any of the
+    /// core's outputs has changed.
+    fn run(&self, level: Level, watch: &mut dyn FnMut(u64, Pins)) -> Result<RunEnd, LevelError> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
-                    watch(cycle, outputs.step, outputs.dir);
+                    watch(cycle, Pins { step: outputs.step, dir: outputs.dir, outputs: 0 });
                 })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
                 Ok(RunEnd {
@@ -85,8 +94,10 @@ impl CorePlan<'_> {
                 })
             }
             Self::Engine(job) => {
-                let outcome =
-                    job.run(level, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
+                let outcome = job.run(level, &mut |cycle, outputs| {
+                    let EngineOutputs { step, dir, outputs, .. } = *outputs;
+                    watch(cycle, Pins { step, dir, outputs });
+                })?;
                 Ok(RunEnd {
                     clocks: outcome.clocks,
                     positions: outcome.positions,

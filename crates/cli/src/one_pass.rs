@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::job;
 use crate::pass::{Kept, RowsAhead};
 use crate::recorded::{Recorded, RecordedRows};
+use carrystep_check::DueChange;
 use carrystep_core::{Command, Timebase};
 use carrystep_program::{ProgramFile, Row, Survey};
 use carrystep_report::Detail;
@@ -34,6 +35,8 @@ pub struct OnePass<'a> {
     clocks: AtomicU64,
     /// Number of segments; 0 if it is not known.
     segments: u64,
+    /// [`OnePass::next_due`].
+    due: Mutex<VecDeque<DueChange>>,
 }
 
 /// The rows, as far as they have been read.
@@ -41,7 +44,9 @@ struct Pulled {
     ahead: RowsAhead<RecordedRows>,
     /// Rows that have been looked at and not taken.
     seen: VecDeque<Row>,
+    /// Ticks of the rows that have been read, and of those that have been taken.
     ticks: u64,
+    taken: u64,
 }
 
 impl<'a> OnePass<'a> {
@@ -57,9 +62,10 @@ impl<'a> OnePass<'a> {
         Ok(Self {
             kept,
             timebase: file.machine().timebase,
-            pulled: Mutex::new(Pulled { ahead, seen: VecDeque::new(), ticks: 0 }),
+            pulled: Mutex::new(Pulled { ahead, seen: VecDeque::new(), ticks: 0, taken: 0 }),
             clocks: AtomicU64::new(0),
             segments,
+            due: Mutex::new(VecDeque::new()),
         })
     }
 
@@ -80,6 +86,12 @@ impl<'a> OnePass<'a> {
     /// The same commands from the first row that has not been taken, which stays in its place.
     pub fn looked_at(&self) -> LookedAt<'_> {
         LookedAt(self)
+    }
+
+    /// The next change of outputs in the rows that the run has taken, and has not been returned yet:
+    /// its time from the beginning of the first row, ps.
+    pub fn next_due(&self) -> Option<DueChange> {
+        self.due.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
     }
 
     /// Plans what is left, and returns the figures.
@@ -124,7 +136,18 @@ impl<'a> OnePass<'a> {
     /// Takes the next row.
     fn take(&self) -> Option<Result<Row, Failure>> {
         let mut pulled = self.lock();
-        pulled.seen.pop_front().map(Ok).or_else(|| self.pull(&mut pulled))
+        let row = pulled.seen.pop_front().map(Ok).or_else(|| self.pull(&mut pulled))?;
+        if let Ok(row) = &row {
+            let change = carrystep_program::outputs(row);
+            if !change.is_none() {
+                let tick_ps = self.timebase.tick_ns() * 1000;
+                let ps = pulled.taken.saturating_mul(tick_ps);
+                let mut due = self.due.lock().unwrap_or_else(PoisonError::into_inner);
+                due.push_back(DueChange { ps, change });
+            }
+            pulled.taken = pulled.taken.saturating_add(row.ticks.into());
+        }
+        Some(row)
     }
 
     /// Looks at a row, counted from the first that has not been taken.
@@ -178,7 +201,9 @@ fn commands<'r>(rows: impl Iterator<Item = Row> + 'r) -> impl Iterator<Item = Co
     rows.flat_map(move |row| {
         let count = row.segments.len();
         let segment = |(axis, segment)| Command::Segment { axis, segment };
-        let segments = (0..).zip(row.segments).map(segment);
+        let outputs = carrystep_program::outputs(&row);
+        let outputs = Some(outputs).filter(|change| !change.is_none()).map(Command::Outputs);
+        let segments = outputs.into_iter().chain((0..).zip(row.segments).map(segment));
         // All axes start when each has its first segment.
         let first = !std::mem::replace(&mut begun, true);
         segments.chain(first.then(|| Command::Start { mask: ((1_u16 << count) - 1) as u8 }))

@@ -14,8 +14,8 @@ use crate::progress::RunProgress;
 use crate::recorded;
 use crate::wanted::Wanted;
 use carrystep_check::{
-    OwnCapture, PathAxis, PathChecker, PathReport, PathSetup, PinSink, PinsVcd, Tee, csv_writer,
-    sink_beside,
+    DueChange, OutputCheck, OutputReport, OwnCapture, PathAxis, PathChecker, PathReport, PathSetup,
+    PinSink, PinsVcd, Tee, csv_writer, sink_beside,
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
@@ -51,6 +51,9 @@ pub struct ProgramResult {
     pub plan: ProgramFigures,
     /// The pulses against the program.
     pub check: PathReport,
+    /// The output pins against the plan, if the machine has outputs and the core is the engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outputs: Option<OutputReport>,
     /// The files that were written.
     pub files: Vec<PathBuf>,
 }
@@ -65,6 +68,7 @@ impl ProgramResult {
 impl fmt::Display for ProgramResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", self.plan, self.check)?;
+        self.outputs.iter().try_for_each(|outputs| write!(f, "{outputs}"))?;
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
@@ -90,6 +94,11 @@ pub fn run(
     let build = machine.build().map_err(too_many)?;
     let engine = match core {
         Core::Engine => Some(gateware::engine(machine, &title)?),
+        Core::Parallel if machine.outputs.is_any() => {
+            let message = "the parallel core has no outputs; leave out --core parallel, or \
+                           [machine.outputs]";
+            return Err(Failure::input(message.to_owned()));
+        }
         Core::Parallel => None,
     };
     carrystep_simulators::available(level)?;
@@ -134,8 +143,9 @@ pub fn run(
     let checker =
         PathChecker::new(setup(file, origin_ps), Box::new(kept.until_an_error(Legs::new(file)?)));
     let names = || machine.axes.iter().map(|axis| axis.name.as_str());
+    let exist = engine.as_ref().map_or(0, |engine| engine.outputs.exist);
     let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };
-    let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names())).transpose()?;
+    let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names(), exist)).transpose()?;
     let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();
     writers.extend(vcd.map(|vcd| Box::new(vcd) as Box<dyn PinSink>));
     // A job has no profile, so that the column of errors is empty.
@@ -146,11 +156,18 @@ pub fn run(
         csv_writer(out, &timebase, build.phase, origin_ps.cast_signed(), axes)
     }));
 
+    let mut outputs = (exist != 0).then(|| {
+        let from = &program;
+        let since = move |due: DueChange| DueChange { ps: due.ps.saturating_add(origin_ps), ..due };
+        OutputCheck::new(move || from.next_due().map(since))
+    });
+
     let started = Instant::now();
     // The checker follows the path in a thread of its own.
     let (outcome, mut checker) = sink_beside(checker, |checker| -> Result<_, Failure> {
         let mut tee = Tee::new();
         tee.add(checker);
+        outputs.iter_mut().for_each(|outputs| tee.add(outputs));
         writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
         on(&program).run_into(level, timebase, axes, &mut tee, (progress.how_far(), &deaf))
     })?;
@@ -162,6 +179,7 @@ pub fn run(
     drop(progress);
     drop(writers);
 
+    let outputs = outputs.map(OutputCheck::finish);
     let (survey, recorded) = program.finish(file)?;
     interrupt::check()?;
     checker.ends(length_ps(&survey, &timebase), survey.axes.iter().map(AxisSurvey::steps));
@@ -171,7 +189,11 @@ pub fn run(
     let landed =
         positions.iter().zip(&survey.axes).all(|(&found, axis)| i64::from(found) == axis.steps());
     let done = ProgramResult {
-        passed: check.passed && plan.landed() && outcome.fault.is_none() && landed,
+        passed: check.passed
+            && outputs.as_ref().is_none_or(|outputs| outputs.passed)
+            && plan.landed()
+            && outcome.fault.is_none()
+            && landed,
         core: core.name(),
         level: level.name(),
         clocks: outcome.clocks,
@@ -180,6 +202,7 @@ pub fn run(
         positions,
         plan,
         check,
+        outputs,
         files: files.paths(),
     };
     if let Some(out) = &mut files.report {

@@ -15,6 +15,7 @@ use crate::tick::Ticks;
 
 mod build;
 mod cause;
+mod commit;
 mod error;
 mod figures;
 mod ports;
@@ -23,6 +24,7 @@ mod state;
 
 pub use build::{EngineBuild, Guard, InputRow, Latch, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
+pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 pub use ports::{ENGINE_PORTS, is_recorded, ports_of};
@@ -42,14 +44,19 @@ pub const MAX_AXES: usize = 8;
 /// The clock within a time slot, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
 
-/// Segments that an axis' queue holds, not counting the one that runs.
-pub const QUEUE: usize = 7;
+/// Numbers of segments that an axis' queue can hold, not counting the one that runs. An axis has
+/// one slot more in memory, a power of two.
+pub const QUEUE_DEPTHS: [usize; 3] = [7, 15, 31];
 
 /// Data words of a segment: ticks minus one, then V, A and J, each with its low half first.
 pub const SEGMENT_WORDS: u8 = 7;
 
-/// Number of the word that commits a segment to the queue; bit 0 of its data is `last`.
+/// Number of the word that commits a segment to the queue; its data is a [`Commit`].
 pub const COMMIT: u8 = 7;
+
+/// Number of a word that belongs to no segment: its data is the slot of the last segment that the
+/// next cut keeps in the queue of its axis.
+pub const CUT_WORD: u8 = 8;
 
 /// Greatest length of a round, in ticks. The guard samples limits and counts time in rounds.
 pub const MAX_ROUND: u32 = 1024;
@@ -112,7 +119,7 @@ pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
 pub struct Put {
     /// Number of the axis.
     pub axis: u8,
-    /// Number of the word, 0 to 6, or [`COMMIT`].
+    /// Number of the word, 0 to 6, or [`COMMIT`], or [`CUT_WORD`].
     pub word: u8,
     /// Value of the word.
     pub data: u32,
@@ -127,6 +134,8 @@ pub struct EngineInputs {
     pub room_of: u8,
     /// Mask of the axes whose start is offered, held until the engine accepts it.
     pub start: Option<u8>,
+    /// The host requests a cut in all axes for which it has put a [`CUT_WORD`].
+    pub cut: bool,
     /// Resume after a stop.
     pub clear: bool,
     /// Stop the engine and return it to its state at configuration.
@@ -189,10 +198,18 @@ pub struct EngineOutputs {
     pub put_ready: bool,
     /// The engine accepts an offered start in this cycle.
     pub start_ready: bool,
+    /// A cut was requested and is not decided yet.
+    pub cut_busy: bool,
+    /// The last cut was refused.
+    pub cut_refused: bool,
     /// Levels of the STEP pins; bit i is axis i.
     pub step: u8,
     /// Levels of the DIR pins; bit i is axis i, 1 is backward.
     pub dir: u8,
+    /// Levels of the outputs that change with the motion; bit k is output k, 1 is active.
+    pub outputs: u8,
+    /// Level of the PWM's pin; true is active.
+    pub pwm: bool,
     /// Level of the ENABLE output: the drivers are to have power.
     pub enabled: bool,
     /// All axes have finished and no start is armed.

@@ -23,6 +23,7 @@ pub mod fault;
 pub mod fixed;
 #[cfg(feature = "alloc")]
 pub mod link;
+mod output_change;
 #[cfg(feature = "alloc")]
 pub mod ports;
 #[cfg(feature = "alloc")]
@@ -43,4 +44,5 @@ pub use self::{
     segment::{Command, Program},
     tick::ChosenTick,
 };
+pub use output_change::OutputChange;
 pub use segment::Segment;

@@ -1,5 +1,6 @@
 //! What the host sends to the gateware: segments, and the commands that carry them.
 
+use crate::output_change::OutputChange;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
@@ -33,6 +34,9 @@ pub enum Command {
         /// The segment.
         segment: Segment,
     },
+    /// Change outputs where the next segment of axis 0 begins. Several of these before one segment
+    /// have the effect of one after the other. The parallel core has no outputs and ignores it.
+    Outputs(OutputChange),
     /// Start the axes of this mask on the same tick.
     Start {
         /// Bit i starts axis i.

@@ -8,7 +8,7 @@ use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use carrystep_core::EngineBuild;
 use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, TimebaseError};
-use carrystep_core::engine::{Guard, MAX_AXES};
+use carrystep_core::engine::{Guard, MAX_AXES, Outputs};
 use carrystep_core::fixed::StartPhase;
 use carrystep_core::link::{BaudError, LineKind, Uart};
 use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
@@ -16,6 +16,8 @@ use guard::RawGuard;
 use home::{RawOrder, RawPlace};
 use inputs::RawInputs;
 use link::RawLink;
+pub use outputs::OutputUses;
+use outputs::RawOutputs;
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
@@ -27,6 +29,8 @@ mod guard;
 mod home;
 mod inputs;
 mod link;
+mod outputs;
+mod queue;
 mod stop;
 mod units;
 
@@ -45,6 +49,14 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// Settings of the engine's guard.
     pub guard: Guard,
+    /// The outputs that change with the motion.
+    pub outputs: Outputs,
+    /// What G-code programs do with them.
+    pub output_uses: OutputUses,
+    /// Number of segments that the queue of an axis holds besides the one that runs.
+    pub queue: usize,
+    /// Whether a host can cut queues.
+    pub cuts: bool,
     /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
     /// together.
     pub home_order: Vec<Vec<usize>>,
@@ -96,7 +108,16 @@ impl Machine {
     /// The engine of this machine, with the machine's number of axes.
     pub fn engine(&self) -> EngineBuild {
         let pins = self.axes.iter().map(|axis| axis.pins).collect();
-        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard: self.guard.clone() }
+        let guard = self.guard.clone();
+        EngineBuild {
+            timebase: self.timebase,
+            phase: self.phase,
+            pins,
+            guard,
+            outputs: self.outputs,
+            queue: self.queue,
+            cuts: self.cuts,
+        }
     }
 
     /// Reads a machine file, which has a `[machine]` table.
@@ -176,7 +197,12 @@ pub(crate) struct RawMachine {
     #[serde(default)]
     inputs: RawInputs,
     #[serde(default)]
+    outputs: RawOutputs,
+    #[serde(default)]
     link: RawLink,
+    queue_depth: Option<Spanned<usize>>,
+    #[serde(default)]
+    cuts: bool,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
@@ -223,8 +249,22 @@ impl RawMachine {
         let guard = self.guard.check(source, &timebase, inputs, stop)?;
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
+        let outputs = self.outputs.check(source)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
-        Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
+        Ok(Machine {
+            timebase,
+            chosen_tick,
+            phase: self.phase,
+            axes,
+            guard,
+            outputs,
+            output_uses: self.outputs.uses(source, outputs)?,
+            queue: queue::check(source, self.queue_depth.as_ref())?,
+            cuts: self.cuts,
+            home_order,
+            baud,
+            spi,
+        })
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.

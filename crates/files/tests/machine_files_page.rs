@@ -84,7 +84,7 @@ fn page_gives_the_defaults_of_the_reader() {
     let [top, axis, guard, link] =
         ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
             .map(given);
-    assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (4, 1, 7, 2));
+    assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (6, 1, 7, 2));
     let bare = format!("{:?}", machine(&format!("[machine]\n{AXIS}")));
     let full = format!(
         "[machine]\n{}[machine.guard]\n{}[machine.link]\n{}{AXIS}{}",
@@ -164,7 +164,7 @@ fn examples_are_valid_and_the_first_has_every_key() {
     ] {
         for row in rows(heading) {
             let key = quoted(row[0]);
-            let table = ["guard", "inputs", "link", "axis"].contains(&key);
+            let table = ["guard", "inputs", "outputs", "link", "axis"].contains(&key);
             let there = blocks[0].contains(&if table {
                 format!("machine.{key}]")
             } else {

@@ -20,10 +20,10 @@
 //! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
-//! Interface: the host writes segments word by word (`put`) into a queue of seven segments per axis
-//! and starts axes by a mask. The engine outputs the state of all axes in every tick (`state`), on
-//! request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`, `inputs_1` and
-//! `latch` come directly from pins.
+//! Interface: the host writes segments word by word (`put`) into a queue of 7, 15 or 31 segments
+//! per axis and starts axes by a mask. The engine outputs the state of all axes in every tick
+//! (`state`), on request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`,
+//! `inputs_1` and `latch` come directly from pins.
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
@@ -35,7 +35,7 @@
 //! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
-use crate::parameters::CLOCKS_PER_TICK;
+use crate::parameters::{CLOCKS_PER_TICK, OUTPUTS_OFF_AT_RAMPS};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::per_axis::PerAxis;
@@ -46,15 +46,19 @@ use carrystep_core::engine::{CAUSE_BITS, least_clocks};
 use rust_hdl::prelude::*;
 
 pub mod adder;
+pub mod cut_control;
 pub mod edge_latch;
 pub mod event_wheel;
 pub mod layout;
+pub mod output_control;
+pub mod pulse_width;
 pub mod pulser;
 pub mod queue;
 pub mod readout;
 pub mod resets;
 pub mod seek_control;
 mod sim;
+pub mod step_counts;
 pub mod stops;
 pub mod store;
 pub mod supervisor;
@@ -65,13 +69,17 @@ mod wiring;
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
+use cut_control::CutControl;
 use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
+use output_control::OutputControl;
+use pulse_width::PulseWidth;
 use pulser::Pulser;
 use queue::Queue;
 use readout::Readout;
 use resets::Resets;
 use seek_control::SeekControl;
+use step_counts::StepCounts;
 use stops::Stops;
 use store::Store;
 use supervisor::Supervisor;
@@ -91,9 +99,12 @@ pub struct Engine<const N: usize> {
     pub put_axis: Input<Word<3>>,
     /// The number of the word. The words of a segment come in order: 0 is its duration in ticks
     /// less 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7
-    /// commits the segment.
-    pub put_word: Input<Word<3>>,
-    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
+    /// commits the segment. A word 8 belongs to no segment: its bits 4 to 0 are the slot of the
+    /// last segment that the next cut keeps.
+    pub put_word: Input<Word<4>>,
+    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move. In a
+    /// commit of axis 0, bits 11 to 4 are the outputs that change where the segment begins, bits 19
+    /// to 12 their levels, and bits 31 to 20 the duty of the PWM, which changes if bit 1 is 1.
     pub put_data: Input<Word<32>>,
     /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
@@ -104,6 +115,13 @@ pub struct Engine<const N: usize> {
     pub start_mask: Input<Word<N>>,
     /// The engine accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
+    /// The host requests a cut in all axes for which it has offered a word 8; asserted for one
+    /// clock.
+    pub cut: Input<Bit>,
+    /// A cut was requested and is not decided yet.
+    pub cut_busy: Signal<Out, Bit>,
+    /// The last cut was refused: nothing was dropped.
+    pub cut_refused: Signal<Out, Bit>,
     /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
     /// Stops the engine and returns it to its state at configuration; the positions stay. It is
@@ -166,14 +184,18 @@ pub struct Engine<const N: usize> {
     pub state: Signal<Out, Word<32>>,
     /// All live words of this tick have been output; asserted for one clock.
     pub refreshed: Signal<Out, Bit>,
-    /// The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
-    pub room: Signal<Out, Word<3>>,
+    /// The number of segments for which the queue of the axis `put_axis` has space.
+    pub room: Signal<Out, Word<5>>,
     /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
     /// The STEP pins; bit i is axis i. A rising edge is a step.
     pub step: PerAxis<Signal<Out, Bit>, N>,
     /// The DIR pins; bit i is axis i; 1 is backward.
     pub dir: PerAxis<Signal<Out, Bit>, N>,
+    /// The outputs, which change where a segment of axis 0 begins; 1 is active.
+    pub outputs: Signal<Out, Word<8>>,
+    /// The pin of the PWM; 1 is active.
+    pub pwm: Signal<Out, Bit>,
     /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
     /// All axes are at rest and no start is armed.
@@ -209,8 +231,12 @@ pub struct Engine<const N: usize> {
     time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
+    step_counts: StepCounts,
+    cut_control: CutControl,
     pub(crate) store: Store,
     event_wheel: EventWheel<N>,
+    output_control: OutputControl,
+    pulse_width: PulseWidth,
     switches: Switches<N>,
     seek_control: SeekControl<N>,
     edge_latch: EdgeLatch,
@@ -238,7 +264,10 @@ pub struct Engine<const N: usize> {
     nobody: Signal<Local, Bit>,
     // The axis `put_axis` accepts a word in this clock if its queue has space.
     listens: Signal<Local, Bit>,
+    is_own: Signal<Local, Bit>, // the time slot is that of the axis `put_axis`
     take: Signal<Local, Bit>,
+    names: Signal<Local, Bit>, // the offered word names the slot of a cut
+    outputs_off: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
     decides: Signal<Local, Bit>,
@@ -252,10 +281,12 @@ pub struct Engine<const N: usize> {
     none: Literal<6, 0>,
     no_axes: Literal<N, 0>,
     one_axis: PerAxis<Parameter<N>, N>,
-    commit: Literal<3, 7>,
+    commit: Literal<4, 7>,
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
+    off_at_ramps: Parameter<1>,
+    outputs_off_at_ramps_out_of_range: ParameterRefusal,
     clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
@@ -269,10 +300,17 @@ impl<const N: usize> Engine<N> {
         }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
+        let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
+        let slots = build.slots();
         Ok(Self {
             time_slot: TimeSlot::new(),
-            store: Store::new(build.phase, &build.guard.stop),
+            store: Store::new(build.phase, &build.guard.stop, slots),
+            queue: Queue::new(slots, build.cuts),
+            cut_control: CutControl::new(build.cuts),
+            readout: Readout::new(slots),
             event_wheel: EventWheel::new(&build.timebase),
+            output_control: OutputControl::new(&build.outputs, slots),
+            pulse_width: PulseWidth::new(build.outputs.pwm_divider),
             switches: Switches::new(&build.guard),
             seek_control: SeekControl::new(),
             edge_latch: EdgeLatch::new(&build.guard),
@@ -280,6 +318,8 @@ impl<const N: usize> Engine<N> {
             supervisor: Supervisor::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
+            off_at_ramps: Parameter::of(&off_at_ramps.bits(0)),
+            outputs_off_at_ramps_out_of_range: ParameterRefusal::of(&off_at_ramps.is_outside(0, 1)),
             clocks_per_tick_too_few_for_the_axes: ParameterRefusal::of(
                 &clocks.whole().is_less(&Formula::number(least)),
             ),

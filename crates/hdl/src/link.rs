@@ -61,14 +61,15 @@ pub struct Link<const N: usize> {
     pub put_valid: Signal<Out, Bit>,
     /// The axis of the offered word. Also the axis whose free queue space the link reads.
     pub put_axis: Signal<Out, Word<3>>,
-    /// The number of the offered word in its segment; 7 commits the segment.
-    pub put_word: Signal<Out, Word<3>>,
+    /// The number of the offered word in its segment, 7 of which commits it; 8 names the slot of a
+    /// cut.
+    pub put_word: Signal<Out, Word<4>>,
     /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
     /// The engine accepts the offered word in this clock.
     pub put_ready: Input<Bit>,
     /// The number of segments for which the queue of the axis `put_axis` has space.
-    pub room: Input<Word<3>>,
+    pub room: Input<Word<5>>,
     /// `room` is valid in this clock.
     pub room_valid: Input<Bit>,
     /// The link offers a start to the engine.
@@ -77,6 +78,12 @@ pub struct Link<const N: usize> {
     pub start_mask: Signal<Out, Word<N>>,
     /// The engine accepts an offered start in this clock.
     pub start_ready: Input<Bit>,
+    /// The host requests a cut in the axes whose slots were named; asserted for one clock.
+    pub cut: Signal<Out, Bit>,
+    /// A cut was requested and is not decided yet.
+    pub cut_busy: Input<Bit>,
+    /// The last cut was refused: nothing was dropped.
+    pub cut_refused: Input<Bit>,
     /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
     /// The host requests a controlled stop.
@@ -199,6 +206,8 @@ impl<const N: usize> Logic for Link<N> {
         self.stop.next = self.processor.stop.val();
         self.broken.next = self.processor.broken.val();
         self.snapshot.next = self.processor.snapshot.val();
+        self.cut.next = self.processor.cut.val();
+        self.processor.cut_refused.next = self.cut_refused.val();
         self.kick.next = self.processor.kick.val();
         self.enable.next = self.processor.enable.val();
 

@@ -150,6 +150,24 @@ pub const LIMIT_FREEZES: Described = Described::new(
 /// The active level of the e-stop.
 pub const ESTOP_LOW: Described =
     Described::new("ESTOP_LOW", "0 or 1", "active level of the e-stop: 0 high, 1 low");
+/// The outputs that exist.
+pub const OUTPUTS: Described =
+    Described::new("OUTPUTS", "a mask of 8 bits", "the outputs at `outputs` that exist");
+/// Whether ramps turn the outputs off.
+pub const OUTPUTS_OFF_AT_RAMPS: Described = Described::new(
+    "OUTPUTS_OFF_AT_RAMPS",
+    "0 or 1",
+    "effect of a stop by ramps on outputs and PWM: 0 none, 1 all off; a freeze turns them off",
+);
+/// The length of a step of the PWM.
+pub const PWM_DIVIDER: Described = Described::new(
+    "PWM_DIVIDER",
+    "0 to 256",
+    "length of each of the 4096 steps of a period of the PWM, in clocks; 0: no PWM",
+);
+/// Whether cuts exist.
+pub const CUTS: Described =
+    Described::new("CUTS", "0 or 1", "cuts: 0 each is refused, 1 they exist");
 /// The kind of memory in which the event wheel keeps its events. The wheel writes single bits of a
 /// word, for which a block RAM needs a write mask.
 pub const EVENT_MEMORY: Described = Described::new(
@@ -177,7 +195,7 @@ pub const BIT_CLOCKS: Described = Described::new(
 );
 
 /// All parameters, in the order in which a module lists them.
-pub const PARAMETERS: [Described; 26] = [
+pub const PARAMETERS: [Described; 30] = [
     BUILD_ID,
     CLOCK_HZ,
     TICK_NS,
@@ -203,6 +221,10 @@ pub const PARAMETERS: [Described; 26] = [
     LATCH_LOOKS,
     LATCH_LOW,
     ESTOP_LOW,
+    OUTPUTS,
+    OUTPUTS_OFF_AT_RAMPS,
+    PWM_DIVIDER,
+    CUTS,
     EVENT_MEMORY,
 ];
 

@@ -3,6 +3,7 @@
 
 pub mod constant;
 pub mod formula;
+pub mod held_memory;
 pub mod memory;
 pub mod per_axis;
 pub mod register;

@@ -63,7 +63,12 @@ size_t carrystep_encode(uint8_t *line, uint8_t sequence, uint16_t session, const
         length = put_long(frame, length, segment->v);
         length = put_long(frame, length, segment->a);
         length = put_long(frame, length, segment->j);
-        length = put_word(frame, length, segment->last ? 1u : 0u);
+        length = put_word(frame, length, (segment->last ? 1u : 0u) | segment->outputs);
+    } else if (request->writes && request->address == (CARRYSTEP_WRITE | CARRYSTEP_CUT)) {
+        for (uint8_t axis = 0; axis < CARRYSTEP_MOST_AXES; axis++) {
+            bool named = (request->mask >> axis & 1u) != 0;
+            length = put_word(frame, length, named ? 1u << 24 | (request->slots[axis] & 0x1fu) : 0u);
+        }
     } else if (request->writes) {
         length = put_word(frame, length, request->word);
     }
@@ -95,6 +100,7 @@ static bool take(const uint8_t *frame, uint8_t length, carrystep_answer *answer)
     answer->address = CARRYSTEP_ANSWER_ADDRESS(frame);
     answer->next = CARRYSTEP_ANSWER_NEXT(frame);
     answer->fault = CARRYSTEP_ANSWER_FAULT(frame) != 0;
+    answer->cut_refused = CARRYSTEP_ANSWER_CUT_REFUSED(frame) != 0;
     answer->halted = CARRYSTEP_ANSWER_HALTED(frame) != 0;
     answer->idle = CARRYSTEP_ANSWER_IDLE(frame) != 0;
     answer->ready = CARRYSTEP_ANSWER_READY(frame) != 0;

@@ -24,15 +24,28 @@ typedef struct {
     int64_t a;      /* 2^-64 step per tick^2 */
     int64_t j;      /* 2^-64 step per tick^3 */
     bool last;      /* the axis stops when it is over */
+    /* What changes at the outputs where it begins: CARRYSTEP_OUTPUTS and CARRYSTEP_DUTY, or both
+     * joined by |, or 0 for nothing. Only segments of axis 0 change outputs. */
+    uint32_t outputs;
 } carrystep_segment;
 
-/* A request: a read, a write of one word (address CARRYSTEP_WRITE | register), or a segment
- * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
+/* The outputs of `mask`, one bit each, get these levels; 1 is active. */
+#define CARRYSTEP_OUTPUTS(mask, levels) ((uint32_t)((mask) & 0xffu) << 4 | (uint32_t)((levels) & 0xffu) << 12)
+
+/* The PWM gets this duty, 0 to 4095 of 4096. */
+#define CARRYSTEP_DUTY(duty) (1u << 1 | (uint32_t)((duty) & 0xfffu) << 20)
+
+/* A request: a read, a write of one word (address CARRYSTEP_WRITE | register), a segment
+ * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)), or a cut (address
+ * CARRYSTEP_WRITE | CARRYSTEP_CUT). */
 typedef struct {
     bool writes;
     uint8_t address;
     uint32_t word;             /* of a write */
     carrystep_segment segment; /* of a segment */
+    /* of a cut: the axes that take part, one bit each, and the slot that each of them keeps */
+    uint8_t mask;
+    uint8_t slots[CARRYSTEP_MOST_AXES];
 } carrystep_request;
 
 /* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. `reason`
@@ -42,6 +55,7 @@ typedef struct {
     uint8_t address;
     uint8_t next;
     bool fault;
+    bool cut_refused; /* the last cut was refused */
     bool halted;
     bool idle;
     bool ready;

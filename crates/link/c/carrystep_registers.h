@@ -62,8 +62,8 @@
 #define CARRYSTEP_STATUS_ON_WAY UINT32_C(0x0000f000)
 /* Greatest number of axes of a build. */
 #define CARRYSTEP_MOST_AXES 0x08u
-/* Number of segments that can wait for an axis, in addition to the one that runs. */
-#define CARRYSTEP_QUEUE_SEGMENTS 0x07u
+/* Number of segments that can wait for an axis of any build, besides the one that runs. */
+#define CARRYSTEP_LEAST_QUEUE 0x07u
 
 /* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
 #define CARRYSTEP_OF_AXIS(register, axis) ((register) + (axis))
@@ -92,6 +92,8 @@
 #define CARRYSTEP_INPUTS 0x0au
 /* Levels of the same pins, 1 active, when they were sampled last (read) */
 #define CARRYSTEP_INPUT_LEVELS 0x0bu
+/* Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31 (read) */
+#define CARRYSTEP_QUEUE_DEPTH 0x0cu
 /* Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0) */
 #define CARRYSTEP_LIMIT_MIN_SWITCH 0x10u
 /* Limit at the high end, likewise (read, axis 0) */
@@ -172,6 +174,8 @@
 #define CARRYSTEP_SEGMENT 0x40u
 /* Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis) */
 #define CARRYSTEP_SEGMENTS 0x48u
+/* A word for each axis from 0 to 7: bits 4..0 the slot of the last segment that it keeps; bits 31..24 are 0 if the axis takes no part (write, 8 words) */
+#define CARRYSTEP_CUT 0x50u
 
 /* The causes of a stop, by their number in the field `cause` of an answer. */
 #define CARRYSTEP_CAUSE_ESTOP 0u
@@ -194,6 +198,8 @@
 #define CARRYSTEP_REASON_SESSION 3u
 /* An axis that it names has hit the source of its seek, and the host has not ended the seek. */
 #define CARRYSTEP_REASON_SEEK_ENDED 4u
+/* A segment that the CUT names neither waits nor runs any more: no axis has dropped any. */
+#define CARRYSTEP_REASON_CUT 5u
 
 /* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
@@ -211,6 +217,8 @@
 #define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
 /* the request was a write; a read of the same address has 0 here */
 #define CARRYSTEP_ANSWER_WRITTEN(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
+/* the last CUT was refused; always 1 in a build without cuts */
+#define CARRYSTEP_ANSWER_CUT_REFUSED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
 /* no axis moves, no queue holds a segment, and no start is armed */
 #define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 6 & 1u))
 /* the stop is complete: no axis moves any more */

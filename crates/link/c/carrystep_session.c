@@ -39,6 +39,7 @@ static void own(carrystep_session *session, uint16_t number)
     session->starting = false;
     session->powering = false;
     session->seek_ended = false;
+    session->cut_refused = false;
     memset(session->under_way, 0, sizeof session->under_way);
     memset(session->room, 0, sizeof session->room);
 }
@@ -96,6 +97,8 @@ static bool push(carrystep_session *session, const carrystep_request *request)
         session->starting = true;
     } else if (request->address == WRITES(CARRYSTEP_SEEK)) {
         session->seek_ended = false;
+    } else if (request->address == WRITES(CARRYSTEP_CUT)) {
+        session->cut_refused = false;
     } else if (request->address == WRITES(CARRYSTEP_CONTROL)) {
         session->powering = (request->word & CARRYSTEP_CONTROL_ENABLE) != 0;
     }
@@ -123,6 +126,22 @@ bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_seg
     request.address = (uint8_t)WRITES(CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis));
     request.segment = *segment;
     return push(session, &request);
+}
+
+bool carrystep_cut(carrystep_session *session, uint8_t mask, const uint8_t slots[CARRYSTEP_MOST_AXES])
+{
+    carrystep_request request;
+    memset(&request, 0, sizeof request);
+    request.writes = true;
+    request.address = (uint8_t)WRITES(CARRYSTEP_CUT);
+    request.mask = mask;
+    memcpy(request.slots, slots, sizeof request.slots);
+    return push(session, &request);
+}
+
+bool carrystep_cut_refused(const carrystep_session *session)
+{
+    return session->cut_refused;
 }
 
 void carrystep_withdraw(carrystep_session *session)
@@ -190,7 +209,9 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
     uint8_t advance = (uint8_t)(answer->next - session->first);
     bool busy = answer->reason == CARRYSTEP_REASON_BUSY;
     bool refused = (busy || answer->reason == CARRYSTEP_REASON_SEQUENCE) && answers(session, answer);
-    bool ends_seek = answer->reason == CARRYSTEP_REASON_SEEK_ENDED && answers(session, answer);
+    bool ended = answers(session, answer);
+    bool ends_seek = answer->reason == CARRYSTEP_REASON_SEEK_ENDED && ended;
+    bool refuses_cut = answer->reason == CARRYSTEP_REASON_CUT && ended;
     if (advance > session->reached) {
         return;
     }
@@ -207,14 +228,15 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
         session->has_refused = false;
         session->busy = false;
     }
-    if (ends_seek) {
+    if (ends_seek || refuses_cut) {
         /* The gateware has executed none of these writes, and the next one has the number of the
          * first of them. */
         session->reached = 0;
         session->sent = 0;
         session->has_refused = false;
         carrystep_withdraw(session);
-        session->seek_ended = true;
+        session->seek_ended = session->seek_ended || ends_seek;
+        session->cut_refused = refuses_cut;
     }
     if (refused) {
         refusal(session, (uint8_t)(answer->sequence - answer->next), busy, now);

@@ -66,6 +66,7 @@ typedef struct {
     bool unpowered; /* the last answer came from drivers without power */
     bool powering;  /* this host has asked for power */
     bool seek_ended;
+    bool cut_refused;
 } carrystep_session;
 
 typedef enum {
@@ -135,6 +136,15 @@ bool carrystep_writing(const carrystep_session *session);
  * of its seek. That write and all behind it were removed, since none of them can be executed, and
  * carrystep_feed queues nothing until this host writes SEEK. */
 bool carrystep_seek_ended(const carrystep_session *session);
+
+/* Queues a cut: the axes of `mask`, one bit each, drop all segments behind that in the slot
+ * slots[axis], all of them in one tick or none. Segments that are queued behind it are executed
+ * only if it is granted. False if there is no room for a write or if this host owns no session. */
+bool carrystep_cut(carrystep_session *session, uint8_t mask, const uint8_t slots[CARRYSTEP_MOST_AXES]);
+
+/* Whether the gateware has refused the last cut, because a segment that it names neither waits nor
+ * runs any more. The cut and all writes behind it were removed; none was executed. */
+bool carrystep_cut_refused(const carrystep_session *session);
 
 /* Removes the writes that were never sent, so that the next one is sent at once. */
 void carrystep_withdraw(carrystep_session *session);

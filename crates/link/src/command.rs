@@ -4,7 +4,7 @@
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
-pub use carrystep_core::Segment;
+pub use carrystep_core::{OutputChange, Segment};
 
 /// Segments of several axes with the same ticks, which one frame carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -17,12 +17,34 @@ pub struct WideSegment {
     pub cubics: [[i64; 3]; MOST_AXES as usize],
     /// Whether the axes stop when the segment is over.
     pub last: bool,
+    /// What changes at the outputs where the segment begins, if axis 0 is one of the axes.
+    pub outputs: OutputChange,
 }
 
 impl WideSegment {
     /// Number, and V, A and J, of each of its axes in ascending order.
     pub fn axes(&self) -> impl Iterator<Item = (u8, [i64; 3])> + '_ {
         (0..MOST_AXES).zip(self.cubics).filter(|(axis, _)| self.mask >> axis & 1 == 1)
+    }
+}
+
+/// A cut: the slot of the last segment that each axis keeps, and `None` for an axis that takes no
+/// part. In all other axes, the segments behind it are dropped in one tick, or in none of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct CutSlots(pub [Option<u8>; MOST_AXES as usize]);
+
+impl CutSlots {
+    /// Bit of an axis' word: the axis takes part.
+    const NAMED: u32 = 1 << 24;
+
+    /// The words of the frame, one for each axis.
+    pub(crate) fn words(&self) -> [u32; MOST_AXES as usize] {
+        self.0.map(|slot| slot.map_or(0, |slot| Self::NAMED | u32::from(slot)))
+    }
+
+    /// The slots in these words.
+    pub(crate) fn of_words(words: [u32; MOST_AXES as usize]) -> Self {
+        Self(words.map(|word| (word >> 24 != 0).then_some(word as u8 & 0x1f)))
     }
 }
 
@@ -36,6 +58,9 @@ pub enum Command {
         /// The segment.
         segment: Segment,
     },
+    /// Changes outputs where the next segment of axis 0 begins. Several of these before one segment
+    /// have the effect of one after the other.
+    Outputs(OutputChange),
     /// Starts axes on the same tick.
     Start {
         /// Bit i starts axis i.
@@ -80,6 +105,9 @@ pub enum ProgramError {
         /// Number of the axis, from 0.
         axis: u8,
     },
+    /// A change of outputs has no segment of axis 0 behind it.
+    #[error("outputs change, and no segment of axis 0 follows with which they could")]
+    NoSegment,
     /// A start while the drivers have no power. The gateware would refuse it as long as they have
     /// none.
     #[error(
@@ -92,6 +120,11 @@ pub enum ProgramError {
 pub trait SegmentSource {
     /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
+    /// What changes at the outputs where the segment of axis 0 begins that was returned last. It is
+    /// asked once for each.
+    fn outputs(&mut self) -> OutputChange {
+        OutputChange::NONE
+    }
     /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
 }
@@ -101,6 +134,7 @@ pub trait SegmentSource {
 pub struct Program<'a> {
     commands: &'a [Command],
     segment: [usize; MOST_AXES as usize],
+    outputs: OutputChange,
     start: usize,
 }
 
@@ -130,7 +164,7 @@ impl<'a> Program<'a> {
                         }
                         started += 1;
                     }
-                    Command::Segment { .. } | Command::Start { .. } => {}
+                    Command::Segment { .. } | Command::Outputs(_) | Command::Start { .. } => {}
                 }
             }
             if open {
@@ -146,7 +180,13 @@ impl<'a> Program<'a> {
                 return Err(ProgramError::NoStart { axis });
             }
         }
-        Ok(Self { commands, segment: [0; MOST_AXES as usize], start: 0 })
+        let last = |is: fn(&Command) -> bool| commands.iter().rposition(is);
+        let of_first = last(|command| matches!(command, Command::Segment { axis: 0, .. }));
+        if last(|command| matches!(command, Command::Outputs(_))) > of_first {
+            return Err(ProgramError::NoSegment);
+        }
+        let outputs = OutputChange::NONE;
+        Ok(Self { commands, segment: [0; MOST_AXES as usize], outputs, start: 0 })
     }
 }
 
@@ -157,10 +197,15 @@ impl SegmentSource for Program<'_> {
             *at += 1;
             match *command {
                 Command::Segment { axis: own, segment } if own == axis => return Some(segment),
+                Command::Outputs(change) if axis == 0 => self.outputs = self.outputs.then(change),
                 _ => {}
             }
         }
         None
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        core::mem::take(&mut self.outputs)
     }
 
     fn start(&mut self) -> Option<u8> {
@@ -188,6 +233,7 @@ mod from_core {
                     Some(Self::Segment { axis, segment })
                 }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
+                planned::Command::Outputs(change) => Some(Self::Outputs(change)),
                 planned::Command::Wait { .. } | planned::Command::Clear => None,
             }
         }

@@ -24,6 +24,8 @@ pub struct BuildFacts {
     /// Time without a valid request after which the watchdog stops all axes, in ticks; 0 if it is
     /// off.
     pub watchdog_ticks: u32,
+    /// Number of segments that can wait for an axis, besides the one that runs.
+    pub queue_depth: u32,
 }
 
 /// Why a host refuses to drive this gateware.

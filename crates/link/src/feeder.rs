@@ -2,7 +2,7 @@
 //! start as early as possible.
 
 pub use crate::command::SegmentSource;
-use crate::command::{ProgramError, Segment, WideSegment};
+use crate::command::{OutputChange, ProgramError, Segment, WideSegment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
 
@@ -31,6 +31,8 @@ pub struct Feeder<S> {
     source: S,
     wide: bool,
     axes: [Axis; MOST_AXES as usize],
+    /// What changes with the next segment of axis 0.
+    outputs: OutputChange,
     start: Option<u8>,
     last_start: bool,
 }
@@ -39,7 +41,8 @@ impl<S: SegmentSource> Feeder<S> {
     /// A feeder that has sent nothing yet, and sends a frame for each segment.
     pub fn new(source: S) -> Self {
         let axes = [Axis::default(); MOST_AXES as usize];
-        Self { source, wide: false, axes, start: None, last_start: false }
+        let outputs = OutputChange::NONE;
+        Self { source, wide: false, axes, outputs, start: None, last_start: false }
     }
 
     /// A wide feeder.
@@ -53,6 +56,9 @@ impl<S: SegmentSource> Feeder<S> {
             if axis.ahead.is_none() && !axis.dry {
                 axis.ahead = self.source.segment(number);
                 axis.dry = axis.ahead.is_none();
+                if number == 0 {
+                    self.outputs = self.source.outputs();
+                }
             }
         }
         if self.start.is_none() && !self.last_start {
@@ -98,8 +104,11 @@ impl<S: SegmentSource> Feeder<S> {
                     axis.ticks += u64::from(segment.ticks);
                 }
             }
+            if wide.mask & 1 == 1 {
+                wide.outputs = core::mem::take(&mut self.outputs);
+            }
             return Ok(Some(if wide.mask == 1 << number {
-                Body::Segment { axis: number, segment }
+                Body::Segment { axis: number, segment, outputs: wide.outputs }
             } else {
                 Body::Segments(wide)
             }));

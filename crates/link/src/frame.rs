@@ -1,11 +1,11 @@
 //! Requests and answers, and their conversion to and from the bytes of a frame.
 
-use crate::command::{Segment, WideSegment};
+use crate::command::{CutSlots, OutputChange, Segment, WideSegment};
 use crate::registers::{
     self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE,
 };
 use crate::registers::{
-    AXES_AT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS, SEGMENTS, SEGMENTS_AXIS_WORDS,
+    AXES_AT, CUT, MOST_AXES, SEGMENT, SEGMENT_FRAME_WORDS, SEGMENTS, SEGMENTS_AXIS_WORDS,
     SEGMENTS_HEAD_WORDS, SESSION_BYTES,
 };
 use core::fmt;
@@ -50,9 +50,13 @@ pub enum Body {
         axis: u8,
         /// The segment; it has at least 1 tick.
         segment: Segment,
+        /// What changes at the outputs where it begins; for other axes than axis 0, nothing.
+        outputs: OutputChange,
     },
     /// Appends a segment to the queue of each of several axes.
     Segments(WideSegment),
+    /// Drops the segments behind the named ones.
+    Cut(CutSlots),
 }
 
 impl Body {
@@ -63,6 +67,7 @@ impl Body {
             Self::Write { address, .. } => address | WRITE,
             Self::Segment { axis, .. } => WRITE | of_axis(SEGMENT, axis),
             Self::Segments(_) => WRITE | SEGMENTS,
+            Self::Cut(_) => WRITE | CUT,
         }
     }
 
@@ -76,7 +81,7 @@ impl Body {
         match *self {
             Self::Segment { axis, .. } => 1 << (axis & (MOST_AXES - 1)),
             Self::Segments(wide) => wide.mask,
-            Self::Read { .. } | Self::Write { .. } => 0,
+            Self::Read { .. } | Self::Write { .. } | Self::Cut(_) => 0,
         }
     }
 }
@@ -141,16 +146,19 @@ impl Request {
         match self.body {
             Body::Read { .. } => {}
             Body::Write { word, .. } => frame.put(&word.to_le_bytes()),
-            Body::Segment { segment: Segment { ticks, v, a, j, last }, .. } => {
+            Body::Segment { segment: Segment { ticks, v, a, j, last }, outputs, .. } => {
                 frame.put(&ticks.wrapping_sub(1).to_le_bytes());
                 frame.put_cubic([v, a, j]);
-                frame.put(&u32::from(last).to_le_bytes());
+                frame.put(&(u32::from(last) | outputs.word()).to_le_bytes());
             }
             Body::Segments(wide) => {
                 frame.put(&u32::from(wide.mask).to_le_bytes());
                 frame.put(&wide.ticks.wrapping_sub(1).to_le_bytes());
                 wide.axes().for_each(|(_, cubic)| frame.put_cubic(cubic));
-                frame.put(&u32::from(wide.last).to_le_bytes());
+                frame.put(&(u32::from(wide.last) | wide.outputs.word()).to_le_bytes());
+            }
+            Body::Cut(slots) => {
+                slots.words().iter().for_each(|word| frame.put(&word.to_le_bytes()));
             }
         }
         let crc = CRC.checksum(frame.as_slice());
@@ -180,6 +188,7 @@ impl Request {
                 SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * axes + 1
             }
             _ if axis_of_segment(address).is_some() => SEGMENT_FRAME_WORDS,
+            _ if address == WRITE | CUT => MOST_AXES.into(),
             _ => 1,
         };
         if words.len() != 4 * expected || matches!(session.len(), 1) {
@@ -194,13 +203,15 @@ impl Request {
             _ if words.is_empty() => Body::Read { address },
             Some(axis) => {
                 let ([v, a, j], ticks) = (cubic(1), word(0).wrapping_add(1));
-                Body::Segment { axis, segment: Segment { ticks, v, a, j, last: word(7) & 1 == 1 } }
+                let (last, outputs) = (word(7) & 1 == 1, OutputChange::of_word(word(7)));
+                Body::Segment { axis, segment: Segment { ticks, v, a, j, last }, outputs }
             }
             None if address == WRITE | SEGMENTS => {
                 let mut wide = WideSegment {
                     mask: word(0) as u8,
                     ticks: word(1).wrapping_add(1),
                     last: word(expected - 1) & 1 == 1,
+                    outputs: OutputChange::of_word(word(expected - 1)),
                     ..WideSegment::default()
                 };
                 let mut at = SEGMENTS_HEAD_WORDS;
@@ -211,6 +222,9 @@ impl Request {
                     }
                 }
                 Body::Segments(wide)
+            }
+            None if address == WRITE | CUT => {
+                Body::Cut(CutSlots::of_words(core::array::from_fn(word)))
             }
             None if address < WRITE | SEGMENT => {
                 Body::Write { address: address & !WRITE, word: word(0) }
@@ -233,6 +247,8 @@ pub enum Refusal {
     Session,
     /// The request names an axis that has hit the source of its seek, and the seek is not ended.
     SeekEnded,
+    /// A segment that a CUT names neither waits nor runs any more: nothing was dropped.
+    Cut,
     /// A reason that this version does not know, by its number.
     Other(u8),
 }
@@ -246,6 +262,7 @@ impl Refusal {
             map::REASON_BUSY => Some(Self::Busy),
             map::REASON_SESSION => Some(Self::Session),
             map::REASON_SEEK_ENDED => Some(Self::SeekEnded),
+            map::REASON_CUT => Some(Self::Cut),
             other => Some(Self::Other(other)),
         }
     }
@@ -257,6 +274,7 @@ impl Refusal {
             Self::Busy => map::REASON_BUSY,
             Self::Session => map::REASON_SESSION,
             Self::SeekEnded => map::REASON_SEEK_ENDED,
+            Self::Cut => map::REASON_CUT,
             Self::Other(number) => number,
         }
     }
@@ -279,6 +297,8 @@ pub struct Answer {
     pub next: u8,
     /// A stop is in force.
     pub fault: bool,
+    /// The last CUT was refused.
+    pub cut_refused: bool,
     /// The stop is over: no axis moves any more.
     pub halted: bool,
     /// All axes have finished and no start is armed.
@@ -317,6 +337,7 @@ impl Answer {
             address: map::address(bytes),
             next: map::next(bytes),
             fault: map::fault(bytes),
+            cut_refused: map::cut_refused(bytes),
             halted: map::halted(bytes),
             idle: map::idle(bytes),
             ready: map::ready(bytes),

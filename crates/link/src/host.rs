@@ -98,8 +98,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if identity == map::IDENTITY_VALUE {
             let first = [map::PROTOCOL, map::BUILD_LOW, map::BUILD_HIGH, map::AXIS_COUNT];
             let [protocol, low, high, axes] = host.registers(first)?;
-            let rest = [map::CLOCK_HZ, map::TICK_NS, map::PHASES, map::WATCHDOG_TICKS];
-            let [clock_hz, tick_ns, phases, watchdog_ticks] = host.registers(rest)?;
+            let rest =
+                [map::CLOCK_HZ, map::TICK_NS, map::PHASES, map::WATCHDOG_TICKS, map::QUEUE_DEPTH];
+            let [clock_hz, tick_ns, phases, watchdog_ticks, queue_depth] = host.registers(rest)?;
             let build = u64::from(high) << 32 | u64::from(low);
             host.facts = BuildFacts {
                 identity,
@@ -110,6 +111,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 tick_ns,
                 phases,
                 watchdog_ticks,
+                queue_depth,
             };
         }
         host.facts.check(wanted)?;

@@ -33,7 +33,7 @@ pub mod ticks;
 pub mod travel;
 pub mod window;
 
-pub use command::{Command, Program, ProgramError, Segment, WideSegment};
+pub use command::{Command, CutSlots, OutputChange, Program, ProgramError, Segment, WideSegment};
 pub use facts::{BuildFacts, GatewareMismatch};
 pub use feeder::{Feeder, SegmentSource};
 pub use frame::{Answer, Body, FrameError, Refusal, Request};

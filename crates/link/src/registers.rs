@@ -58,8 +58,8 @@ pub const STATUS_WAITING: u32 = 0x0000_07c0;
 pub const STATUS_ON_WAY: u32 = 0x0000_f000;
 /// Greatest number of axes of a build.
 pub const MOST_AXES: u8 = 0x08;
-/// Number of segments that can wait for an axis, in addition to the one that runs.
-pub const QUEUE_SEGMENTS: u8 = 0x07;
+/// Number of segments that can wait for an axis of any build, besides the one that runs.
+pub const LEAST_QUEUE: u8 = 0x07;
 
 /// The bytes of "CSTP", low byte first, which identify carrystep (read).
 pub const IDENTITY: u8 = 0x00;
@@ -85,6 +85,8 @@ pub const CAPTURES: u8 = 0x09;
 pub const INPUTS: u8 = 0x0a;
 /// Levels of the same pins, 1 active, when they were sampled last (read).
 pub const INPUT_LEVELS: u8 = 0x0b;
+/// Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31 (read).
+pub const QUEUE_DEPTH: u8 = 0x0c;
 /// Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0).
 pub const LIMIT_MIN_SWITCH: u8 = 0x10;
 /// Limit at the high end, likewise (read, axis 0).
@@ -165,14 +167,16 @@ pub const LATCH: u8 = 0x27;
 pub const SEGMENT: u8 = 0x40;
 /// Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half first; 1 if last of their move, else 0 (write, 3 words and 6 for each axis).
 pub const SEGMENTS: u8 = 0x48;
+/// A word for each axis from 0 to 7: bits 4..0 the slot of the last segment that it keeps; bits 31..24 are 0 if the axis takes no part (write, 8 words).
+pub const CUT: u8 = 0x50;
 
 /// The causes of a stop, by their number in the field `cause` of an answer.
 pub const CAUSES: [&str; 9] =
     ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop", "interlock"];
 
 /// The reasons of a refusal, by their number in the field `reason` of an answer; 0: not refused.
-pub const REASONS: [&str; 5] =
-    ["none", "sequence", "busy", "session", "seek ended"];
+pub const REASONS: [&str; 6] =
+    ["none", "sequence", "busy", "session", "seek ended", "cut"];
 /// A write before this one was lost: its number is not `next`.
 pub const REASON_SEQUENCE: u8 = 1;
 /// The request cannot be executed now: try again.
@@ -181,6 +185,8 @@ pub const REASON_BUSY: u8 = 2;
 pub const REASON_SESSION: u8 = 3;
 /// An axis that it names has hit the source of its seek, and the host has not ended the seek.
 pub const REASON_SEEK_ENDED: u8 = 4;
+/// A segment that the CUT names neither waits nor runs any more: no axis has dropped any.
+pub const REASON_CUT: u8 = 5;
 
 /// Of an answer: the sequence number of the request.
 pub const fn sequence(answer: &[u8; ANSWER_BYTES]) -> u8 {
@@ -215,6 +221,11 @@ pub const fn armed(answer: &[u8; ANSWER_BYTES]) -> bool {
 /// Of an answer: the request was a write; a read of the same address has 0 here.
 pub const fn written(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 3 & 1 == 1
+}
+
+/// Of an answer: the last CUT was refused; always 1 in a build without cuts.
+pub const fn cut_refused(answer: &[u8; ANSWER_BYTES]) -> bool {
+    answer[3] >> 4 & 1 == 1
 }
 
 /// Of an answer: no axis moves, no queue holds a segment, and no start is armed.

@@ -1,7 +1,7 @@
 //! The session: what to send next, and what an answer means. It has no line and no clock; the
 //! caller passes bytes and milliseconds.
 
-use crate::command::ProgramError;
+use crate::command::{CutSlots, ProgramError};
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Refusal, Request, of_axis};
 use crate::registers::{
@@ -81,6 +81,8 @@ pub struct Session<const N: usize> {
     capturing: bool,
     /// Whether a write was refused because the seek of one of its axes has ended.
     seek_ended: bool,
+    /// Whether the last cut was refused.
+    cut_refused: bool,
     /// Whether the last write of SEEK named an axis.
     seeking: bool,
     /// Whether a start is armed in the gateware.
@@ -109,6 +111,7 @@ impl<const N: usize> Session<N> {
             starting: false,
             capturing: false,
             seek_ended: false,
+            cut_refused: false,
             seeking: false,
             armed: false,
             unpowered: false,
@@ -149,6 +152,7 @@ impl<const N: usize> Session<N> {
         self.starting = false;
         self.capturing = false;
         self.seek_ended = false;
+        self.cut_refused = false;
         self.seeking = false;
         self.powering = false;
     }
@@ -193,6 +197,22 @@ impl<const N: usize> Session<N> {
     /// executed, and [`Self::feed`] queues nothing until this host writes SEEK.
     pub const fn seek_ended(&self) -> bool {
         self.seek_ended
+    }
+
+    /// Queues a CUT. Segments that are queued behind it are executed only if it is granted.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn cut(&mut self, slots: CutSlots) -> Result<(), WriteError> {
+        self.write(Body::Cut(slots))?;
+        self.cut_refused = false;
+        Ok(())
+    }
+
+    /// Whether the gateware has refused the last cut, because a segment that it names neither waits
+    /// nor runs any more. The cut and all writes behind it were removed; none was executed.
+    pub const fn cut_refused(&self) -> bool {
+        self.cut_refused
     }
 
     /// Whether this host has begun a seek and has not ended it.
@@ -340,16 +360,18 @@ impl<const N: usize> Session<N> {
             Some(axis) => 1 << axis,
             None => self.window.answered(answer).map_or(0, Body::axes),
         };
-        let ends_seek =
-            answer.refusal == Some(Refusal::SeekEnded) && self.window.answered(answer).is_some();
+        // Such a write can never be executed.
+        let ends = matches!(answer.refusal, Some(Refusal::SeekEnded | Refusal::Cut))
+            && self.window.answered(answer).is_some();
         let Self { under_way, starting, capturing, .. } = self;
         let mut settled = |body: &Body| settle(body, under_way, starting, capturing);
         if !self.window.answer(answer, now, &mut settled) {
             return;
         }
-        if ends_seek {
+        if ends {
             self.window.clear(settled);
-            self.seek_ended = true;
+            self.seek_ended |= answer.refusal == Some(Refusal::SeekEnded);
+            self.cut_refused |= answer.refusal == Some(Refusal::Cut);
         }
         // An answer says at least how much room there was, and room only grows until this host
         // sends a segment.

@@ -1,17 +1,16 @@
 //! Checks before any motion whether a line can carry a program in time.
 //!
 //! ```text
-//! queue     segments 0 .. 6 are queued before the start; when segment k begins to run,
-//!           the place of segment k + 7 becomes free
+//! queue     of n places: segments 0 .. n - 1 are queued before the start; when segment k begins
+//!           to run, the place of segment k + n becomes free
 //! line      transmits one frame at a time, the most urgent first; segments of several axes with
 //!           the same begin and end are one frame
-//! axis      |  k  | k + 1 | ... | k + 6 |  k + 7      segment k + 7 must have arrived
-//!                                       ^             before this moment
+//! axis      |  k  | k + 1 | ... |  |  k + n           segment k + n must have arrived
+//!                                  ^                  before this moment
 //! ```
 
-use crate::command::{Command, Segment, WideSegment};
+use crate::command::{Command, OutputChange, Segment, WideSegment};
 use crate::frame::{Body, Request};
-use crate::registers::QUEUE_SEGMENTS;
 use crate::slip;
 use std::collections::VecDeque;
 use std::vec::Vec;
@@ -43,6 +42,7 @@ struct Job {
     place: u64,
     due: u64,
     segment: Segment,
+    outputs: OutputChange,
 }
 
 /// Checks that a UART at this baud rate delivers each segment before its axis needs it, provided
@@ -50,8 +50,14 @@ struct Job {
 ///
 /// # Errors
 /// [`Starved`] gives the first axis whose queue would run empty.
-pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<(), Starved> {
-    let mut supply = Supply::new(axes, tick_ns, baud);
+pub fn check(
+    commands: &[Command],
+    axes: u8,
+    tick_ns: u64,
+    queue: usize,
+    baud: u32,
+) -> Result<(), Starved> {
+    let mut supply = Supply::new(axes, tick_ns, queue, baud);
     commands.iter().try_for_each(|command| supply.add(command))?;
     supply.finish()
 }
@@ -60,8 +66,12 @@ pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<
 #[derive(Debug)]
 pub struct Supply {
     tick_ns: u64,
+    /// Number of segments that the queue of an axis holds.
+    queue: usize,
     baud: u32,
     axes: Vec<Axis>,
+    /// What changes with the next segment of axis 0.
+    outputs: OutputChange,
     /// The time until which the line is busy, ns.
     now: u64,
 }
@@ -77,11 +87,11 @@ struct Axis {
 }
 
 impl Supply {
-    /// A check of a build with so many axes, with ticks of `tick_ns` ns, on a line of `baud` bits
-    /// per second.
-    pub fn new(axes: u8, tick_ns: u64, baud: u32) -> Self {
+    /// A check of a build with so many axes, with ticks of `tick_ns` ns and queues of `queue`
+    /// segments, on a line of `baud` bits per second.
+    pub fn new(axes: u8, tick_ns: u64, queue: usize, baud: u32) -> Self {
         let axes = (0..axes).map(|_| Axis::default()).collect();
-        Self { tick_ns, baud, axes, now: 0 }
+        Self { tick_ns, queue, baud, axes, outputs: OutputChange::NONE, now: 0 }
     }
 
     /// Adds the next command of the program.
@@ -89,16 +99,25 @@ impl Supply {
     /// # Errors
     /// [`Starved`] as soon as it is known that the queue of an axis would run empty.
     pub fn add(&mut self, command: &Command) -> Result<(), Starved> {
-        let Command::Segment { axis: number, segment } = *command else { return Ok(()) };
+        let (number, segment) = match *command {
+            Command::Segment { axis, segment } => (axis, segment),
+            Command::Outputs(change) => {
+                self.outputs = self.outputs.then(change);
+                return Ok(());
+            }
+            Command::Start { .. } => return Ok(()),
+        };
+        let none = OutputChange::NONE;
+        let outputs = if number == 0 { core::mem::take(&mut self.outputs) } else { none };
         let Some(axis) = self.axes.get_mut(usize::from(number)) else { return Ok(()) };
         let due = axis.tick.saturating_mul(self.tick_ns);
         axis.tick = axis.tick.saturating_add(segment.ticks.into());
         axis.begins.push_back(due);
         // The first segments are in the queue before the start.
-        if axis.begins.len() > usize::from(QUEUE_SEGMENTS)
+        if axis.begins.len() > self.queue
             && let Some(place) = axis.begins.pop_front()
         {
-            axis.jobs.push_back(Job { place, due, segment });
+            axis.jobs.push_back(Job { place, due, segment, outputs });
         }
         // Which axis is next is known when the next job of each axis is.
         while self.axes.iter().all(|axis| !axis.jobs.is_empty()) {
@@ -135,14 +154,16 @@ impl Supply {
                 same && job.due == due && job.place <= now
             });
             if joins
-                && let Some(Job { segment: Segment { v, a, j, .. }, .. }) = axis.jobs.pop_front()
+                && let Some(Job { segment: Segment { v, a, j, .. }, outputs, .. }) =
+                    axis.jobs.pop_front()
             {
+                wide.outputs = wide.outputs.then(outputs);
                 wide.mask |= 1_u8 << number;
                 *cubic = [v, a, j];
             }
         }
         let body = if wide.mask.is_power_of_two() {
-            Body::Segment { axis, segment }
+            Body::Segment { axis, segment, outputs: wide.outputs }
         } else {
             Body::Segments(wide)
         };
@@ -176,9 +197,9 @@ mod tests {
         // 500 segments per second of six axes with common ticks: 500 x 166 bytes x 10 bits =
         // 0.83 Mbit/s.
         let dense = even(1000, 1000);
-        assert_eq!(check(&dense, 6, 2000, 921_600), Ok(()));
-        assert_eq!(check(&even(1000, 500), 6, 2000, 3_000_000), Ok(()));
-        let starved = check(&dense, 6, 2000, 800_000).unwrap_err();
+        assert_eq!(check(&dense, 6, 2000, 7, 921_600), Ok(()));
+        assert_eq!(check(&even(1000, 500), 6, 2000, 7, 3_000_000), Ok(()));
+        let starved = check(&dense, 6, 2000, 7, 800_000).unwrap_err();
         assert!(starved.late_us > 0 && starved.at_ms > 14, "{starved}");
     }
 
@@ -191,14 +212,14 @@ mod tests {
                 segment.ticks += u32::from(*axis);
             }
         }
-        assert_eq!(check(&apart, 6, 2000, 1_600_000), Ok(()));
-        assert!(check(&apart, 6, 2000, 921_600).is_err());
+        assert_eq!(check(&apart, 6, 2000, 7, 1_600_000), Ok(()));
+        assert!(check(&apart, 6, 2000, 7, 921_600).is_err());
     }
 
     #[test]
     fn segments_queued_before_the_start_need_no_line_time() {
-        assert_eq!(check(&even(7, 1), 6, 2000, 300), Ok(()));
-        assert!(check(&even(8, 1), 6, 2000, 300).is_err());
-        assert_eq!(check(&[], 6, 2000, 0), Ok(()));
+        assert_eq!(check(&even(7, 1), 6, 2000, 7, 300), Ok(()));
+        assert!(check(&even(8, 1), 6, 2000, 7, 300).is_err());
+        assert_eq!(check(&[], 6, 2000, 7, 0), Ok(()));
     }
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use crate::command::Segment;
-use crate::registers::QUEUE_SEGMENTS;
+use crate::registers::LEAST_QUEUE;
 use thiserror::Error;
 
 /// Limits of a move: speeds in 2^-64 step per tick, acceleration in 2^-64 step per tick^2.
@@ -36,7 +36,7 @@ pub struct TooLong {
 /// The segments of a move of one axis, at most 7. The last one ends the move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Travel {
-    segments: [Option<Segment>; QUEUE_SEGMENTS as usize],
+    segments: [Option<Segment>; LEAST_QUEUE as usize],
     count: usize,
 }
 
@@ -209,7 +209,7 @@ mod tests {
             let steps = if back { -steps } else { steps };
             let travel = Travel::new(steps, Gait { start, speed, accel }, before, after).unwrap();
             let segments: Vec<Segment> = travel.segments().collect();
-            prop_assert!(segments.len() <= QUEUE_SEGMENTS.into());
+            prop_assert!(segments.len() <= LEAST_QUEUE.into());
             prop_assert_eq!(segments.iter().position(|segment| segment.last), Some(segments.len() - 1));
             prop_assert_eq!(run(&travel).0, i128::from(steps) << 64);
             // The divisions leave a remainder of less than one unit per tick.

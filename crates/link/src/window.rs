@@ -162,7 +162,8 @@ impl<const N: usize> Window<N> {
         match refusal {
             Some(Refusal::Sequence) => self.refusal(behind, false, now),
             Some(Refusal::Busy) => self.refusal(behind, true, now),
-            Some(Refusal::Session | Refusal::SeekEnded | Refusal::Other(_)) | None => {}
+            Some(Refusal::Session | Refusal::SeekEnded | Refusal::Cut | Refusal::Other(_))
+            | None => {}
         }
         true
     }

@@ -5,24 +5,25 @@
 mod support;
 
 use carrystep_link::slip::{self, Decoder, Received};
-use carrystep_link::{Answer, Body, FrameError, Request, Segment, WideSegment};
+use carrystep_link::{Answer, Body, FrameError, OutputChange, Request, Segment, WideSegment};
 use proptest::prelude::*;
 use support::device::on_the_line;
 
 fn request() -> impl Strategy<Value = Request> {
-    let segment = (0..8_u8, 1..=u32::MAX, any::<[i64; 3]>(), any::<bool>()).prop_map(
-        |(axis, ticks, [v, a, j], last)| Body::Segment {
+    let outputs = || any::<u32>().prop_map(OutputChange::of_word);
+    let segment = (0..8_u8, 1..=u32::MAX, any::<[i64; 3]>(), any::<bool>(), outputs()).prop_map(
+        |(axis, ticks, [v, a, j], last, outputs)| Body::Segment {
             axis,
             segment: Segment { ticks, v, a, j, last },
+            outputs,
         },
     );
-    let wide = (1..=u8::MAX, 1..=u32::MAX, any::<[[i64; 3]; 8]>(), any::<bool>()).prop_map(
-        |(mask, ticks, mut cubics, last)| {
+    let wide = (1..=u8::MAX, 1..=u32::MAX, any::<[[i64; 3]; 8]>(), any::<bool>(), outputs())
+        .prop_map(|(mask, ticks, mut cubics, last, outputs)| {
             let others = (0..8).zip(&mut cubics).filter(|(axis, _)| mask >> axis & 1 == 0);
             others.for_each(|(_, cubic)| *cubic = [0; 3]);
-            Body::Segments(WideSegment { mask, ticks, cubics, last })
-        },
-    );
+            Body::Segments(WideSegment { mask, ticks, cubics, last, outputs })
+        });
     let body = prop_oneof![
         any::<u8>().prop_map(|address| Body::Read { address }),
         (0..0x40_u8, any::<u32>()).prop_map(|(address, word)| Body::Write { address, word }),

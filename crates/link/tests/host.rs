@@ -5,8 +5,8 @@
 mod support;
 
 use carrystep_link::{
-    Command, Ended, GatewareMismatch, Host, HostError, Patience, Program, ProgramError, Segment,
-    Timing, Wish,
+    Body, Command, Ended, Feeder, GatewareMismatch, Host, HostError, OutputChange, Patience,
+    Program, ProgramError, Segment, Timing, Wish,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU16;
@@ -106,7 +106,40 @@ fn program_that_no_gateware_accepts_is_refused_before_it_is_sent() {
         ProgramError::NoEnd { axis: 1 }
     );
     assert_eq!(said(&[of(1, segment)]), ProgramError::NoStart { axis: 1 });
+    let on = Command::Outputs(OutputChange { mask: 1, levels: 1, duty: None });
+    let behind = [of(0, segment), start(1), on, of(1, segment), start(2)];
+    assert_eq!(said(&behind), ProgramError::NoSegment);
     Program::new(&[], 6).unwrap();
+}
+
+#[test]
+fn outputs_change_with_the_next_segment_of_the_first_axis() {
+    let segment = |last| Segment { ticks: 9, v: 0, a: 0, j: 0, last };
+    let change = |mask, levels, duty| OutputChange { mask, levels, duty };
+    let of = |axis, last| Command::Segment { axis, segment: segment(last) };
+    let commands = [
+        Command::Outputs(change(1, 1, None)),
+        of(1, true),
+        Command::Outputs(change(3, 2, Some(9))),
+        of(0, false),
+        of(0, true),
+        Command::Start { mask: 3 },
+    ];
+    for is_wide in [false, true] {
+        let program = Program::new(&commands, 2).unwrap();
+        let mut feeder = if is_wide { Feeder::wide(program) } else { Feeder::new(program) };
+        let mut changes = Vec::new();
+        while let Some(body) = feeder.next(2, &[7, 7], true).unwrap() {
+            match body {
+                Body::Segment { axis, outputs, .. } => changes.push((1 << axis, outputs)),
+                Body::Segments(wide) => changes.push((wide.mask, wide.outputs)),
+                _ => {}
+            }
+        }
+        let first = change(3, 2, Some(9));
+        assert_eq!(changes.iter().filter(|(_, outputs)| !outputs.is_none()).count(), 1);
+        assert!(matches!(changes[0], (mask, outputs) if mask & 1 == 1 && outputs == first));
+    }
 }
 
 #[test]

@@ -67,6 +67,7 @@ impl Link {
             seek: processor.seeks.then_some(mask),
             latch_arm: processor.arms,
             snapshot: processor.snapshot,
+            cut: processor.cuts,
             kick: processor.kicks,
             enable: processor.enable,
             ..EngineInputs::default()
@@ -106,8 +107,7 @@ impl Link {
 
     /// True if this clock does not depend on the engine's outputs and the link's outputs to the
     /// engine stay the same, but for [`Link::room_of`]. What the engine has output in such clocks
-    /// must be delivered before the next clock that is not alone, by [`Link::store`] and
-    /// [`Link::keep_room`].
+    /// must be delivered before the next clock that is not alone, by [`Link::store`].
     pub fn is_alone(&self) -> bool {
         !self.processor.minds_the_engine()
     }
@@ -132,12 +132,6 @@ impl Link {
     /// The axis whose room the link requests in this clock, unless it offers a word.
     pub fn room_of(&self) -> u8 {
         self.processor.room_of()
-    }
-
-    /// Stores the room (in segments) that the engine has output in such a clock for the axis that
-    /// the link requested in it. Of several reports, the last one is enough.
-    pub const fn keep_room(&mut self, room: u8) {
-        self.processor.keep_room(room);
     }
 
     /// The word that a host reads at this address.

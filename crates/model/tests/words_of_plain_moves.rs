@@ -143,7 +143,7 @@ fn words_of_every_tick_are_those_of_the_closed_form() {
                 for (axis, words) in of_tick(cycles, axes).iter().enumerate() {
                     assert_eq!(words.ticks as usize, tick);
                     assert_eq!(words.position, count[axis], "counted in tick {tick}");
-                    let next = counted(count[axis], made[from + 13 * axis + 4][axis]);
+                    let next = counted(count[axis], made[from + 13 * axis + 6][axis]);
                     steps += u64::from(next != count[axis]);
                     reversed += u64::from(next < count[axis]);
                     count[axis] = next;

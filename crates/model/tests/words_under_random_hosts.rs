@@ -123,7 +123,7 @@ fn check(build: &EngineBuild, run: &Run, met: &mut Met) -> Counts {
             let registers = run.registers[tick][axis];
             let runs = words.get(axis).is_some_and(|words| words.status.running);
             if tick > 0 {
-                books.position = counted(books.position, made[from + 13 * axis + 4][axis]);
+                books.position = counted(books.position, made[from + 13 * axis + 6][axis]);
             }
             if registers.discarded != books.discarded && !runs {
                 books.discarded += 1;

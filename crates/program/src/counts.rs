@@ -50,6 +50,10 @@ impl Counts {
                 self.lines = self.lines.max(*line);
                 self.moves_now = false;
             }
+            Event::Outputs { with_motion, line, .. } => {
+                self.lines = self.lines.max(*line);
+                self.moves_now &= with_motion;
+            }
             Event::Switch { switch, line } => {
                 self.lines = self.lines.max(*line);
                 self.moves_now = false;

@@ -60,6 +60,45 @@ pub enum Fault {
     /// A machine whose moves start at the edge of a step.
     #[error("the machine's moves start with phase = \"zero\"")]
     Phase,
+    /// M4 on a machine whose spindle has no output for its direction.
+    #[error("M4: no output of the machine reverses the spindle")]
+    NoReverse,
+    /// A speed above the spindle's.
+    #[error("the spindle would turn at {rpm} turns per minute: it has {most} at most")]
+    SpindleSpeed {
+        /// The speed, turns per minute.
+        rpm: f64,
+        /// `spindle_rpm` of the machine.
+        most: u32,
+    },
+    /// M62 to M65 name an output that does not exist.
+    #[error("output {index} would change: the machine has {count} outputs, numbered from 0")]
+    NoOutput {
+        /// Number of the output.
+        index: u32,
+        /// Number of outputs of the machine.
+        count: u32,
+    },
+    /// M62 to M65 name an output that the machine file gives another use.
+    #[error("output {index} would change: it is the machine's `{key}`")]
+    OutputInUse {
+        /// Number of the output.
+        index: u32,
+        /// Key of the machine file.
+        key: &'static str,
+    },
+    /// M67 or M68 name something else than a PWM that is free.
+    #[error("analog output {index} would change: the machine has no such output")]
+    NoAnalogOutput {
+        /// Number of the output.
+        index: u32,
+    },
+    /// M67 or M68 give a duty that no PWM has.
+    #[error("the PWM would have a duty of {value}: it is from 0 to 1")]
+    Duty {
+        /// The value.
+        value: f64,
+    },
     /// The file is not the one that was read first.
     #[error("the file has changed while it was used")]
     Changed,
@@ -89,6 +128,20 @@ impl Fault {
             }
             Self::Order(_) => "write x, y and z before a, b and c in the machine file".into(),
             Self::Phase => "remove phase from the machine file".into(),
+            Self::NoReverse => {
+                "use M3, or give spindle_reverse an output in [machine.outputs]".into()
+            }
+            Self::SpindleSpeed { .. } => {
+                "lower S, or correct spindle_rpm in the machine file".into()
+            }
+            Self::NoOutput { .. } => "correct P, or raise count in [machine.outputs]".into(),
+            Self::OutputInUse { .. } => {
+                "use M3 to M9 for it, or take another output in [machine.outputs]".into()
+            }
+            Self::NoAnalogOutput { .. } => "analog output 0 is the PWM, if [machine.outputs] has \
+                                            pwm_divider and no spindle_rpm"
+                .into(),
+            Self::Duty { .. } => "divide Q by its greatest value".into(),
             Self::Changed => "leave the file alone until the command has ended".into(),
         })
     }

@@ -5,7 +5,9 @@ use crate::error::{Fault, ProgramError};
 use crate::file::ProgramFile;
 use crate::letter::LINEAR;
 use crate::letters::Letters;
+use crate::outputs::{Effect, ProgramOutputs};
 use crate::switch::Switch;
+use carrystep_core::OutputChange;
 use carrystep_gcode::{
     AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
 };
@@ -31,7 +33,16 @@ pub enum Event {
         /// Line of the program.
         line: u64,
     },
-    /// Something is switched, or somebody is waited for, at rest.
+    /// Outputs change.
+    Outputs {
+        /// What changes.
+        change: OutputChange,
+        /// True: while the tool moves, where the next move begins. False: at rest.
+        with_motion: bool,
+        /// Line of the program.
+        line: u64,
+    },
+    /// Something is switched that the machine cannot switch, or somebody is waited for, at rest.
     Switch {
         /// What it is.
         switch: Switch,
@@ -91,6 +102,7 @@ pub struct Events {
     one_file: bool,
     name: String,
     letters: Letters,
+    outputs: ProgramOutputs,
     tolerance_mm: Option<f64>,
     at: Point,
     mode: PathMode,
@@ -116,6 +128,7 @@ impl Events {
             one_file: true,
             name: file.path().display().to_string(),
             letters: file.letters().clone(),
+            outputs: ProgramOutputs::new(file.machine()),
             tolerance_mm: settings.tolerance_mm,
             at: settings.start,
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
@@ -160,10 +173,21 @@ impl Events {
             }
             Canon::Dwell { seconds } => self.waiting.push_back(Event::Rest { seconds, line }),
             Canon::Path(mode) => self.mode = mode,
-            Canon::Spindle { .. } => self.switch(Switch::Spindle, line),
-            Canon::Coolant { .. } => self.switch(Switch::Coolant, line),
-            Canon::DigitalOutput { .. } | Canon::AnalogOutput { .. } => {
-                self.switch(Switch::Output, line);
+            Canon::Spindle { turn, rpm } => {
+                let effect = self.outputs.spindle(turn, rpm)?;
+                self.change(effect, false, Switch::Spindle, line);
+            }
+            Canon::Coolant { mist, flood } => {
+                let effect = self.outputs.coolant(mist, flood);
+                self.change(effect, false, Switch::Coolant, line);
+            }
+            Canon::DigitalOutput { index, on, with_motion } => {
+                let effect = self.outputs.digital(index, on)?;
+                self.change(effect, with_motion, Switch::Output, line);
+            }
+            Canon::AnalogOutput { index, value, with_motion } => {
+                let effect = self.outputs.analog(index, value)?;
+                self.change(effect, with_motion, Switch::Output, line);
             }
             Canon::ReadInput { .. } => self.switch(Switch::Input, line),
             Canon::ChangeTool { .. } => self.switch(Switch::ToolChange, line),
@@ -176,6 +200,17 @@ impl Events {
             | Canon::Message(_) => {}
         }
         Ok(())
+    }
+
+    /// Changes outputs, as far as the machine has them for what is switched.
+    fn change(&mut self, effect: Effect, with_motion: bool, switch: Switch, line: u64) {
+        let Effect { change, is_all } = effect;
+        if !change.is_none() {
+            self.waiting.push_back(Event::Outputs { change, with_motion, line });
+        }
+        if !is_all {
+            self.switch(switch, line);
+        }
     }
 
     fn switch(&mut self, switch: Switch, line: u64) {

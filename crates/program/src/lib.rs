@@ -4,7 +4,7 @@
 //! anybody needs it, always from its beginning and in constant memory:
 //!
 //! ```text
-//! file -> gcode: canonical moves -> events: moves with tolerances, rests, switches
+//! file -> gcode: canonical moves -> events: moves with tolerances, rests, outputs, switches
 //!                                    |-> rows   the planner's segments -> survey: figures, limits
 //!                                    '-> legs   the programmed path in straight parts, for the checker
 //! ```
@@ -19,6 +19,7 @@ mod file;
 mod legs;
 mod letter;
 mod letters;
+mod outputs;
 mod rows;
 mod survey;
 mod switch;
@@ -32,6 +33,6 @@ pub use file::{ProgramFile, Settings, is_program};
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
-pub use rows::Rows;
+pub use rows::{Rows, outputs};
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::Switch;

@@ -5,6 +5,7 @@ use crate::error::ProgramError;
 use crate::events::{Event, Events, ProgrammedMove};
 use crate::file::ProgramFile;
 use crate::letters::Letters;
+use carrystep_core::OutputChange;
 use carrystep_files::Machine;
 use carrystep_gcode::Point;
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
@@ -83,7 +84,7 @@ impl Rows {
                 continue;
             };
             self.counts.add(&event);
-            if let Some(item) = self.item(&event) {
+            for item in self.items(&event).into_iter().flatten() {
                 self.planner.push(&item).map_err(|error| self.refused(error))?;
             }
         }
@@ -94,15 +95,20 @@ impl Rows {
     }
 
     /// What the planner is given for an event.
-    fn item(&mut self, event: &Event) -> Option<Item> {
-        match event {
-            Event::Move(one) => {
+    fn items(&mut self, event: &Event) -> [Option<Item>; 2] {
+        let rest = |dwell: f64, line: u64| Some(Item::Rest { dwell, line });
+        match *event {
+            Event::Move(ref one) => {
                 self.end = one.to;
-                Some(Item::Move(self.element(one)))
+                [Some(Item::Move(self.element(one))), None]
             }
-            Event::Rest { seconds, line } => Some(Item::Rest { dwell: *seconds, line: *line }),
-            Event::Switch { line, .. } => Some(Item::Rest { dwell: 0.0, line: *line }),
-            Event::End { .. } => None,
+            Event::Rest { seconds, line } => [rest(seconds, line), None],
+            Event::Outputs { change, with_motion, line } => {
+                let mark = Item::Mark(change.word().into());
+                [rest(0.0, line).filter(|_| !with_motion), Some(mark)]
+            }
+            Event::Switch { line, .. } => [rest(0.0, line), None],
+            Event::End { .. } => [None, None],
         }
     }
 
@@ -115,6 +121,13 @@ impl Rows {
         let to = self.letters.coordinates(&one.to);
         Element { to, arc, feed: one.feed, tolerance: one.tolerance, line: one.line }
     }
+}
+
+/// What changes at the outputs where a row of a program begins. The planner carries it as marks,
+/// which are the words of these changes.
+pub fn outputs(row: &Row) -> OutputChange {
+    let changes = row.marks.iter().map(|mark| OutputChange::of_word(*mark as u32));
+    changes.fold(OutputChange::NONE, OutputChange::then)
 }
 
 impl Iterator for Rows {

@@ -1,19 +1,19 @@
-//! What a program switches, or waits for, and no gateware does yet.
+//! What a program switches, or waits for, and the machine does not.
 
 use std::fmt;
 
-/// Something that a program switches, and that no gateware does yet.
+/// Something that a program switches or waits for, and that the machine does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Switch {
     /// M0, M1: the machine rests until it is resumed.
     Pause,
     /// M6: the machine rests until the tool is changed.
     ToolChange,
-    /// M3, M4, M5 and S.
+    /// M3 and M4, on a machine without an output for the spindle.
     Spindle,
-    /// M7, M8, M9.
+    /// M7 and M8, on a machine without an output for it.
     Coolant,
-    /// M62 to M68.
+    /// M62 to M68, on a machine without outputs.
     Output,
     /// M66: the input is assumed to become what the program waits for.
     Input,

@@ -12,8 +12,8 @@
 
 namespace {
 
-uint64_t outputs(const Vcarrystep_engine& core) {
-    uint64_t all = 0;
+unsigned __int128 outputs(const Vcarrystep_engine& core) {
+    unsigned __int128 all = 0;
     const auto add = [&all](uint64_t value, int bits) { all = all << bits | value; };
 {% for port in outputs %}
     add({% if port.valid_with %}core.{{ port.valid_with }} ? core.{{ port.name }} : 0{% else %}core.{{ port.name }}{% endif %}, {{ port.width }});
@@ -52,7 +52,8 @@ int main(int argc, char** argv) {
     Vcarrystep_engine core{&context};
     core.clock = 0;
     core.eval();
-    uint64_t before = ~uint64_t{0}, cycle = 0, sum = 0, count;
+    unsigned __int128 before = ~static_cast<unsigned __int128>(0);
+    uint64_t cycle = 0, sum = 0, count;
     unsigned {% for port in inputs %}{{ port.name }}{{ ", " if not loop.last }}{% endfor %};
     while (std::fscanf(file, "%" SCNu64 "{% for port in inputs %} %x{% endfor %}", &count
 {%- for port in inputs %}, &{{ port.name }}{% endfor %}) == {{ inputs | length + 1 }}) {
@@ -61,8 +62,9 @@ int main(int argc, char** argv) {
 {% endfor %}
         core.eval();
         for (; count != 0; --count, ++cycle) {
-            const uint64_t now = outputs(core);
-            if (now != before) std::printf("%" PRIu64 " %" PRIx64 " %" PRIx64 "\n", cycle, now, sum);
+            const auto now = outputs(core);
+            if (now != before)
+                std::printf("%" PRIu64 " %" PRIx64 "%016" PRIx64 " %" PRIx64 "\n", cycle, uint64_t(now >> 64), uint64_t(now), sum);
             before = now;
             sum = checksum(core, sum);
             tick(core);

@@ -19,7 +19,7 @@ module engine_bench;
 {% endfor %}
     );
 
-    wire [BITS-1:0] outputs = {
+    wire [BITS-1:0] recorded = {
 {% for port in outputs %}
         {{ port.name }}{% if port.valid_with %} & { {{- port.width }}{ {{- port.valid_with -}} } }{% endif %}{{ "," if not loop.last }}
 {% endfor %}
@@ -55,8 +55,8 @@ module engine_bench;
 {%- for port in inputs %}, {{ port.name }}{% endfor %});
             if (fields == {{ inputs | length + 1 }}) while (count != 0) begin
                 #1;
-                if (outputs !== before) $display("%0d %h %h", cycle, outputs, sum);
-                before = outputs;
+                if (recorded !== before) $display("%0d %h %h", cycle, recorded, sum);
+                before = recorded;
                 if (state_valid | refreshed) sum = {sum[56:0], sum[63:57]} ^ {23'b0, refreshed, said};
                 tick;
                 cycle = cycle + 1;

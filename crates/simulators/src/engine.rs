@@ -8,9 +8,10 @@ pub mod run;
 
 use crate::Commands;
 use carrystep_core::engine::{
-    COMMIT, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put, SEGMENT_WORDS, SeekSource,
+    COMMIT, CUT_WORD, Commit, EngineBuild, EngineInputs, EngineOutputs, Guard, MAX_AXES, Put,
+    SEGMENT_WORDS, SeekSource,
 };
-use carrystep_core::{Command, Program, Segment};
+use carrystep_core::{Command, OutputChange, Program, Segment};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -49,24 +50,31 @@ enum Act {
     Clear,
 }
 
-/// The words of a segment, and its commit.
+/// The words of a segment, and its commit, with what changes at the outputs where it begins.
 ///
 /// A segment of 0 ticks cannot be encoded, because the first word is `ticks - 1`; the sender
 /// refuses it.
-pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
+pub fn puts(axis: u8, segment: &Segment, outputs: OutputChange) -> Vec<Put> {
     let Some(left) = segment.ticks.checked_sub(1) else { return Vec::new() };
     let halves = |x: i64| [x as u32, (x >> 32) as u32];
     let words =
         [[left].as_slice(), &halves(segment.v), &halves(segment.a), &halves(segment.j)].concat();
-    let commit = Put { axis, word: COMMIT, data: u32::from(segment.last) };
+    let commit = Commit { last: segment.last, outputs };
+    let commit = Put { axis, word: COMMIT, data: commit.word() };
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
 
-/// The actions of a host that executes one command after the other.
-fn acts_of(command: &Command) -> Vec<Act> {
+/// The actions of a host that executes one command after the other. `outputs` is what changes with
+/// the next segment of axis 0.
+fn acts_of(command: &Command, outputs: &mut OutputChange) -> Vec<Act> {
     match *command {
         Command::Segment { axis, segment } => {
-            puts(axis, &segment).into_iter().map(Act::Put).collect()
+            let outputs = if axis == 0 { std::mem::take(outputs) } else { OutputChange::NONE };
+            puts(axis, &segment, outputs).into_iter().map(Act::Put).collect()
+        }
+        Command::Outputs(change) => {
+            *outputs = outputs.then(change);
+            Vec::new()
         }
         Command::Start { mask } => vec![Act::Start(mask)],
         Command::Wait { clocks } => vec![Act::Wait(clocks)],
@@ -111,6 +119,16 @@ pub enum Event {
     /// The host numbers its words wrongly from this cycle on: the bits of this mask are inverted in
     /// the number of every word. 0 ends it.
     WordError(u8),
+    /// The host names the slot of a cut for an axis, before it goes on with its commands.
+    Name(u8, u8),
+    /// The host requests a cut in this cycle.
+    Cut,
+    /// The host sets these bits of every commit of axis 0 from this cycle on, as far as the build
+    /// has outputs for them. 0 ends it.
+    Outputs(u32),
+    /// The host sets these bits of every commit from this cycle on, whatever the build has. 0 ends
+    /// it.
+    Stray(u32),
 }
 
 /// Most words that a host tells in advance: a segment of each axis.
@@ -124,7 +142,7 @@ pub type Events = Vec<(u64, Event)>;
 pub struct EngineHost<'a> {
     acts: Box<dyn Iterator<Item = Act> + 'a>,
     current: Option<Act>,
-    /// Actions after the current one that were read ahead.
+    /// Actions after the current one: read ahead, or interrupted by an event.
     later: VecDeque<Act>,
     /// The words that are told in advance.
     told: Vec<Put>,
@@ -138,6 +156,11 @@ pub struct EngineHost<'a> {
     around: EngineInputs,
     guard: Guard,
     word_error: u8,
+    /// The bits that a commit of axis 0 may have.
+    commit_bits: u32,
+    /// The bits that the host sets in a commit of axis 0, and in that of any axis.
+    outputs: u32,
+    stray: u32,
 }
 
 impl fmt::Debug for EngineHost<'_> {
@@ -152,22 +175,24 @@ impl fmt::Debug for EngineHost<'_> {
 impl EngineHost<'static> {
     /// A host that executes a program command by command. The drivers have power until an event
     /// removes it.
-    pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
-        let acts: Vec<Act> = program.iter().flat_map(acts_of).collect();
-        Self::doing(guard, Box::new(acts.into_iter()), events.clone(), false)
+    pub fn new(build: &EngineBuild, program: &Program, events: &Events) -> Self {
+        let mut outputs = OutputChange::NONE;
+        let acts: Vec<Act> =
+            program.iter().flat_map(|command| acts_of(command, &mut outputs)).collect();
+        Self::doing(build, Box::new(acts.into_iter()), events.clone(), false)
     }
 }
 
 impl<'a> EngineHost<'a> {
     /// A host that keeps the queues of planned moves full, and restarts the watchdog in every
     /// cycle.
-    pub fn feeding(guard: &Guard, program: &'a dyn Commands) -> Self {
-        let acts = Box::new(feed::Acts::new(program.commands()));
-        Self::doing(guard, acts, Events::new(), true)
+    pub fn feeding(build: &EngineBuild, program: &'a dyn Commands) -> Self {
+        let acts = Box::new(feed::Acts::new(program.commands(), build.queue));
+        Self::doing(build, acts, Events::new(), true)
     }
 
     fn doing(
-        guard: &Guard,
+        build: &EngineBuild,
         acts: Box<dyn Iterator<Item = Act> + 'a>,
         events: Events,
         awake: bool,
@@ -186,8 +211,11 @@ impl<'a> EngineHost<'a> {
             awake,
             fault: false,
             around,
-            guard: guard.clone(),
+            guard: build.guard.clone(),
             word_error: 0,
+            commit_bits: build.outputs.commit_bits() & !Commit::LAST,
+            outputs: 0,
+            stray: 0,
         };
         host.happen();
         host
@@ -202,6 +230,7 @@ impl<'a> EngineHost<'a> {
             seek: None,
             latch_arm: false,
             snapshot: false,
+            cut: false,
             ..self.around
         };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
@@ -222,6 +251,14 @@ impl<'a> EngineHost<'a> {
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
                 Event::WordError(mask) => self.word_error = mask,
+                Event::Name(axis, slot) => {
+                    let put = Put { axis, word: CUT_WORD, data: slot.into() };
+                    let interrupted = self.current.replace(Act::Put(put));
+                    interrupted.into_iter().for_each(|act| self.later.push_front(act));
+                }
+                Event::Cut => self.around.cut = true,
+                Event::Outputs(bits) => self.outputs = bits & self.commit_bits,
+                Event::Stray(bits) => self.stray = bits,
             }
         }
     }
@@ -230,14 +267,18 @@ impl<'a> EngineHost<'a> {
     pub fn inputs(&self, fault: bool) -> EngineInputs {
         let inputs = self.around.levels(&self.guard);
         match self.current {
-            Some(Act::Put(put)) if !fault => {
-                let put = Put { word: put.word ^ self.word_error, ..put };
-                EngineInputs { put: Some(put), ..inputs }
-            }
+            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(self.sent(put)), ..inputs },
             Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
             Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
             _ => inputs,
         }
+    }
+
+    /// A word as the host sends it: with its wrong number, and the outputs of a commit.
+    fn sent(&self, put: Put) -> Put {
+        let outputs = if put.axis == 0 { self.outputs } else { 0 };
+        let bits = if put.word == COMMIT { outputs | self.stray } else { 0 };
+        Put { word: put.word ^ self.word_error, data: put.data | bits, ..put }
     }
 
     /// Continues with the next command if the current one was accepted in this cycle.
@@ -277,7 +318,7 @@ impl<'a> EngineHost<'a> {
                 break;
             }
             ends = put.word == COMMIT;
-            self.told.push(Put { word: put.word ^ self.word_error, ..put });
+            self.told.push(self.sent(put));
             if self.told.len() == TOLD {
                 break;
             }
@@ -333,9 +374,10 @@ impl<'a> EngineHost<'a> {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, .. } = self.around;
+        let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, cut, .. } =
+            self.around;
         let lasting = kick == self.awake
-            && !(broken || latch_arm || snapshot)
+            && !(broken || latch_arm || snapshot || cut)
             && seek_source.is_none()
             && seek.is_none();
         // The cycle before an event must be simulated by `advance`.

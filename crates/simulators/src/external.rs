@@ -21,6 +21,7 @@ pub(crate) fn program_text(job: &Job<'_>) -> String {
     for command in job.program.commands() {
         let (kind, who, ticks, [v, a, j], last) = match command {
             Command::Segment { axis, segment: s } => (0, axis, s.ticks, [s.v, s.a, s.j], s.last),
+            Command::Outputs(_) => continue, // the parallel core has none
             Command::Start { mask } => (1, mask, 0, [0; 3], false),
             Command::Wait { clocks } => (2, 0, clocks, [0; 3], false),
             Command::Clear => (3, 0, 0, [0; 3], false),

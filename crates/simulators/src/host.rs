@@ -38,9 +38,11 @@ pub(crate) struct Host<'a> {
 
 impl<'a> Host<'a> {
     pub(crate) fn new(program: &'a dyn Commands) -> Self {
-        let mut commands = program.commands();
+        // The parallel core has no outputs.
+        let commands = program.commands();
+        let mut commands = commands.filter(|command| !matches!(command, Command::Outputs(_)));
         let current = commands.next();
-        Self { commands, current }
+        Self { commands: Box::new(commands), current }
     }
 
     /// The inputs of this cycle. While the core is frozen, the host only clears and waits.
@@ -61,7 +63,7 @@ impl<'a> Host<'a> {
     pub(crate) fn advance(&mut self, outputs: &Outputs) {
         let fault = outputs.faults.any();
         let done = match &mut self.current {
-            None => false,
+            None | Some(Command::Outputs(_)) => false,
             Some(Command::Segment { .. }) => fault || outputs.seg_ready,
             Some(Command::Start { .. }) => fault || outputs.start_ready,
             Some(Command::Wait { clocks }) => {
@@ -88,7 +90,7 @@ impl<'a> Host<'a> {
             Some(Command::Segment { .. }) => !outputs.faults.any() && !outputs.seg_ready,
             Some(Command::Start { .. }) => !outputs.faults.any() && !outputs.start_ready,
             Some(Command::Clear) => outputs.faults.any(),
-            None => true,
+            None | Some(Command::Outputs(_)) => true,
         };
         if blocked { u64::MAX } else { 0 }
     }

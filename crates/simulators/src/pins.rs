@@ -8,7 +8,8 @@ use carrystep_core::{AXES, Timebase};
 /// The number of changes that are sent together.
 const BATCH: usize = 1 << 14;
 
-/// Sends every change of STEP and DIR of the first `axes` axes to a sink, in batches.
+/// Sends every change of STEP and DIR of the first `axes` axes to a sink, in batches, and the levels
+/// of the outputs.
 pub struct PinFeed<'a> {
     timebase: Timebase,
     /// A bit for each axis whose changes are sent.
@@ -16,6 +17,7 @@ pub struct PinFeed<'a> {
     sink: &'a mut dyn PinSink,
     step: u8,
     dir: u8,
+    outputs: u8,
     batch: Vec<PinChange>,
     failed: Option<TraceError>,
 }
@@ -25,7 +27,7 @@ impl<'a> PinFeed<'a> {
     pub fn new(timebase: Timebase, axes: usize, sink: &'a mut dyn PinSink) -> Self {
         let shown = (1 << axes.min(AXES)) - 1;
         let batch = Vec::with_capacity(BATCH + 2 * AXES);
-        Self { timebase, shown, sink, step: 0, dir: 0, batch, failed: None }
+        Self { timebase, shown, sink, step: 0, dir: 0, outputs: 0, batch, failed: None }
     }
 
     /// Processes the outputs of a cycle. A new level of a pin begins with the cycle.
@@ -51,6 +53,18 @@ impl<'a> PinFeed<'a> {
         (self.step, self.dir) = (step, dir);
         if self.batch.len() >= BATCH {
             self.send();
+        }
+    }
+
+    /// Processes the levels of the output pins in a cycle, one bit each. The axes' pins of the cycle
+    /// come first.
+    pub fn outputs(&mut self, cycle: u64, levels: u8) {
+        if self.failed.is_none() && levels != self.outputs {
+            self.outputs = levels;
+            self.send();
+            if self.failed.is_none() {
+                self.failed = self.sink.outputs(self.timebase.clock_to_ps(cycle), levels).err();
+            }
         }
     }
 

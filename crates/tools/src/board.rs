@@ -53,7 +53,7 @@ impl Built {
 /// tool is nextpnr.
 pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     stage("yosys");
-    let netlist = ice40::synthesise_tight(job.verilog, job.top)?;
+    let netlist = ice40::synthesise_for(job.verilog, job.top, job.part.device)?;
     let mut best: Option<(u32, PlacedDesign)> = None;
     let mut failed = None;
     for seed in SEEDS {

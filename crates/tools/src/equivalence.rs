@@ -83,9 +83,10 @@ pub fn memories_of_verilog(core: &str, top: &str) -> Result<Memories, SynthesisE
     Ok(memories(&tool::read(folder.path(), "words.v")?))
 }
 
-/// The commands of synthesis up to words and block RAMs; gates and LUTs follow after them.
+/// The commands of synthesis up to words and block RAMs; gates and LUTs follow after them. A block
+/// RAM of which every bit is masked with a constant 0 is removed, as the commands after these do.
 fn to_words(top: &str) -> String {
-    format!("synth_ice40 -top {top} -run begin:map_ffram")
+    format!("synth_ice40 -top {top} -run begin:map_ffram; opt_expr -fine; opt_clean")
 }
 
 /// Parameters of block RAMs, by name.

@@ -4,6 +4,7 @@
 use crate::cells::pattern;
 use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR, PYTHON};
 use crate::{SynthesisError, cells, read_back};
+use carrystep_boards::Part;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
@@ -71,14 +72,13 @@ pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
     synthesise_with(verilog, top, "")
 }
 
-/// As [`synthesise`], for a part that is nearly full. The eight logic cells of a tile share one
-/// enable, so enables of fewer than four flip-flops are replaced by logic. On an HX1K the placer
-/// then finds a placement within seconds; without this it mostly finds none.
+/// As [`synthesise`], with the options that the scripts of the boards have for this part
+/// ([`Part::synthesis`]).
 ///
 /// # Errors
 /// As [`synthesise`].
-pub fn synthesise_tight(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
-    synthesise_with(verilog, top, "-dffe_min_ce_use 4")
+pub fn synthesise_for(verilog: &str, top: &str, device: &str) -> Result<Netlist, SynthesisError> {
+    synthesise_with(verilog, top, Part::synthesis(device))
 }
 
 fn synthesise_with(verilog: &str, top: &str, option: &str) -> Result<Netlist, SynthesisError> {

@@ -11,6 +11,6 @@ mod rows;
 
 pub use link::{LINES, LINK_BUDGET, links};
 pub(crate) use measure::failed;
-pub use measure::{RowMeasurement, placed, verilog};
+pub use measure::{RowMeasurement, placed, synthesised, verilog};
 pub use page::{PAGE, check, page};
 pub use rows::{EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, ROWS, SEEDS};

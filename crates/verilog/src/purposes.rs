@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 37] = [
+const PURPOSES: [(&str, &str); 43] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -55,6 +55,14 @@ const PURPOSES: [(&str, &str); 37] = [
         "The segment queue of each axis: which segment runs, and which segments wait.",
     ),
     (
+        "carrystep_step_counts",
+        "Counts pulses and discarded steps in memory, and the steps that are on their way.",
+    ),
+    (
+        "carrystep_cut_control",
+        "The stages of a cut, which drops the segments behind a named one in several axes.",
+    ),
+    (
         "carrystep_segments",
         "Memory of the segments, also used as registers, and of an axis' state between moves.",
     ),
@@ -70,6 +78,16 @@ const PURPOSES: [(&str, &str); 37] = [
         "carrystep_event_wheel",
         "The event wheel: holds the pending steps of all axes, ordered by tick and phase.",
     ),
+    (
+        "carrystep_output_words",
+        "Memory of the commits of axis 0: which outputs change, and their levels.",
+    ),
+    ("carrystep_duty_words", "Memory of the commits of axis 0: the duty of the PWM."),
+    (
+        "carrystep_output_control",
+        "The outputs, which change where a segment of axis 0 begins; and the new duties of the PWM.",
+    ),
+    ("carrystep_pulse_width", "The PWM: its pin is active for the duty, a part of each period."),
     (
         "carrystep_pulser",
         "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",

@@ -8,9 +8,10 @@ use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped
 use std::path::Path;
 use std::process::Command;
 
-/// All bits of a board's ports.
+/// All bits of a board's ports that have pins of their own.
 fn ports(board: &Board) -> Vec<String> {
-    board.wires.iter().map(|wire| wire.port.clone()).collect()
+    let own = board.wires.iter().filter(|wire| !wire.beside_uart);
+    own.map(|wire| wire.port.clone()).collect()
 }
 
 /// The files of a top level with these ports.
@@ -34,22 +35,24 @@ fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> 
 fn top(board: &Board) -> String {
     let bits = |way: fn(Way) -> bool| {
         let names = PORTS.iter().filter(move |port| way(port.way));
-        let counted = names.map(|port| (port.name, port.per_axis, board.bits(port.name)));
+        let own =
+            |name| ports(board).iter().filter(|port| port.split('[').next() == Some(name)).count();
+        let counted = names.map(|port| (port.name, port.is_list, own(port.name)));
         counted.filter(|(_, _, bits)| *bits > 0).collect::<Vec<_>>()
     };
     let (inputs, outputs) = (bits(|way| way != Way::Out), bits(|way| way == Way::Out));
     let range =
-        |per_axis, bits: usize| if per_axis { format!("[{}:0] ", bits - 1) } else { String::new() };
+        |is_list, bits: usize| if is_list { format!("[{}:0] ", bits - 1) } else { String::new() };
     let mut list = vec![format!("input wire {OSCILLATOR}")];
     list.extend(
         inputs
             .iter()
-            .map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))),
+            .map(|(name, is_list, bits)| format!("input wire {}{name}", range(*is_list, *bits))),
     );
     list.extend(
         outputs
             .iter()
-            .map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))),
+            .map(|(name, is_list, bits)| format!("output wire {}{name}", range(*is_list, *bits))),
     );
     list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
     list.extend(board.gate.iter().map(|gate| format!("input wire {}", gate.port)));
@@ -247,4 +250,46 @@ fn machine_can_use_an_spi() {
         assert!(files.iter().any(|file| file.name == "carrystep_spi.v"), "{}", board.name);
     }
     assert!(on_spi >= 10, "{on_spi} boards have an SPI");
+}
+
+/// Probe, interlock, general inputs, latch, outputs and PWM: the top level connects each to its pin,
+/// and the general inputs take turns in the two rows of the engine.
+#[test]
+fn top_level_connects_the_inputs_and_outputs_of_the_machine() {
+    let board = board("hx8k-evn").unwrap();
+    let text = shipped_machine(board, &board.clocks[0]).unwrap().replace(
+        "[machine.link]",
+        "[machine.inputs]\nprobe = \"low\"\ninterlock = \"low\"\ngeneral = [\"low\", \"high\", \"low\"]\n\
+         latch = \"rising\"\n\n[machine.outputs]\ncount = 3\npwm_divider = 16\n\n[machine.link]",
+    );
+    let machine = SourceText { path: "machine.toml".into(), text: text.into() };
+    let files = Gateware::new(board, &board.parts[0], machine).unwrap().files().unwrap();
+    let text_of = |end: &str| {
+        let file = files.iter().find(|file| file.name.ends_with(end)).unwrap();
+        file.text.clone()
+    };
+    let (top, pins) = (text_of("_top.v"), text_of(".pcf"));
+    for line in [
+        "input wire [2:0] general,",
+        "output wire [2:0] outputs,",
+        "assign outputs = levels[2:0];",
+        ".inputs_0({1'b0, 1'b0, 1'b0, general[2], general[0], probe}),",
+        ".inputs_1({1'b0, 1'b0, 1'b0, 1'b0, general[1], interlock}),",
+        ".latch(latch),",
+        ".pwm(pwm),",
+    ] {
+        assert!(top.contains(line), "{line}\n{top}");
+    }
+    for (port, pulled_up) in [
+        ("probe", true),
+        ("interlock", true),
+        ("latch", true),
+        ("general[2]", true),
+        ("outputs[2]", false),
+        ("pwm", false),
+    ] {
+        let pin = &board.wire(port).unwrap().pin;
+        let line = format!("set_io {}{port} {pin}\n", if pulled_up { "-pullup yes " } else { "" });
+        assert!(pins.contains(&line), "{line}{pins}");
+    }
 }

@@ -1,6 +1,5 @@
 //! The virtual board: the models of engine and link on one clock, with the line to the host.
 
-mod room;
 #[cfg(test)]
 mod tests;
 
@@ -10,7 +9,6 @@ use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_model::fast::Edges;
 use carrystep_model::{HostedEngine, Link};
-use room::Reported;
 
 /// State of the switches at the board's inputs. `true`, or a bit that is set, means active,
 /// regardless of the level of the pin.
@@ -40,8 +38,6 @@ pub struct ModelBoard {
     wire: Wire,
     /// Levels of the switch inputs, with the polarity of their pins.
     pins: EngineInputs,
-    /// The last room that the link requested while it ran alone.
-    reported: Option<Reported>,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
 }
@@ -63,7 +59,6 @@ impl ModelBoard {
             link: Link::new(build, line),
             wire,
             pins: EngineInputs::default(),
-            reported: None,
             loads: Vec::new(),
             stops: Vec::new(),
         };
@@ -148,9 +143,6 @@ impl ModelBoard {
             let Driven { rx, spi, stays } = self.wire.drive(cycle);
             let quiet =
                 if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
-            let build = self.engine.core().build();
-            let reported = Reported::among(build, self.link.room_of(), cycle, quiet.max(1));
-            self.reported = reported.or(self.reported);
             if quiet == 0 {
                 self.link.clock_alone(rx, spi);
             } else {
@@ -166,17 +158,11 @@ impl ModelBoard {
     /// meanwhile to the link.
     fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
         while self.cycle() < end {
-            // A leap changes no queue, so an axis reports the same room in all cycles of a leap.
-            let room = self.reported.map(|reported| reported.room(self.engine.core()));
             let Self { engine, link, .. } = self;
             if engine.leap(inputs, end - engine.cycle(), to, |word| link.store(word)) == 0 {
                 let says = engine.outputs(inputs);
                 says.state.into_iter().for_each(|word| link.store(word));
                 self.clock_engine(inputs, &says, to);
-            }
-            if self.reported.is_some_and(|reported| reported.cycle < self.cycle()) {
-                room.into_iter().for_each(|room| self.link.keep_room(room));
-                self.reported = None;
             }
         }
     }

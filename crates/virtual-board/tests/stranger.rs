@@ -264,7 +264,8 @@ impl Stranger {
 fn segments(stranger: &mut Stranger, axis: usize, ticks: u64) -> Vec<(u32, i64)> {
     let mut left = ticks;
     let mut segments = Vec::new();
-    let mean = (400 + 40 * stranger.lost) * (axis as u64 + 1);
+    // Where answers are lost, the queues must last until they are repaired.
+    let mean = (400 + 50 * stranger.lost) * (axis as u64 + 1);
     while left > 0 {
         let count = (mean / 2 + stranger.random(mean)).min(left);
         left -= count;

@@ -87,6 +87,7 @@ pub struct Said {
     pub idle: bool,
     pub ready: bool,
     pub armed: bool,
+    pub cut_refused: bool,
     pub free: u8,
     /// The reason of a refusal; 0 if the request was not refused.
     pub reason: u8,
@@ -107,7 +108,7 @@ impl Said {
         let number = why & 15;
         let cause = CAUSES[usize::from(number)];
         assert!(bit(0) || (number, culprits) == (0, 0), "a cause without a fault");
-        assert_eq!(flags & 0x30, 0, "bits without a meaning");
+        assert_eq!(flags & 0x20, 0, "a bit without a meaning");
         Self {
             sequence,
             address,
@@ -115,6 +116,7 @@ impl Said {
             fault: bit(0).then_some(cause),
             ready: bit(1),
             armed: bit(2),
+            cut_refused: bit(4),
             written: bit(3),
             idle: bit(6),
             halted: bit(7),

@@ -4,7 +4,9 @@
 use super::Case;
 use crate::{lockstep, moves};
 use carrystep_core::build::MAX_CLOCKS;
-use carrystep_core::engine::{CAUSES, Cause, EngineBuild, Guard, InputRow, Latch, LimitWiring};
+use carrystep_core::engine::{
+    CAUSES, Cause, EngineBuild, Guard, InputRow, Latch, LimitWiring, Outputs,
+};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
@@ -57,8 +59,8 @@ pub fn shipped_engine() -> BuiltEngine {
     (machine.engine(), text.into())
 }
 
-/// An engine with this many axes and clocks per tick, with extreme pin timings and a guard with
-/// small figures.
+/// An engine with this many axes and clocks per tick, with extreme pin timings, a guard with small
+/// figures, and cuts.
 pub fn small_engine(
     axes: usize,
     clocks: u32,
@@ -70,6 +72,7 @@ pub fn small_engine(
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
     minimal.pins.resize(axes, PinTiming::SHORTEST);
     minimal.guard.stop.resize(axes, 1 << 40);
+    minimal.cuts = true;
     let low = limits != LimitWiring::Pair;
     let guard = Guard {
         round: 2,
@@ -91,6 +94,14 @@ pub fn engine_with_inputs(axes: usize, clocks: u32, phases: u32) -> (EngineBuild
     build.guard.round = 4;
     build.guard.inputs = [InputRow { exist: 3, low: 1 }, InputRow { exist: 1, low: 1 }];
     build.guard.latch = Some(Latch { low: false, looks: 2 });
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
+/// An engine of six axes with these outputs, and a PWM with this divider.
+pub fn engine_with_outputs(exist: u8, pwm_divider: u32) -> (EngineBuild, Arc<str>) {
+    let (mut build, _) = small_engine(6, 80, 4, LimitWiring::Pair);
+    build.outputs = Outputs { exist, pwm_divider, off_at_ramps: true };
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     (build, text)
 }

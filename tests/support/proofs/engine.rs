@@ -12,8 +12,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_taken_in_its_time_slot",
-        text: "time_slot_beat[7] & (time_slot_axis",
-        becomes: "time_slot_beat[6] & (time_slot_axis",
+        text: "listens = time_slot_beat[7]",
+        becomes: "listens = time_slot_beat[6]",
     },
     Bug {
         breaks: "promise_6_nothing_taken_in_a_fault",
@@ -22,8 +22,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_no_such_axis_is_told",
-        text: "((put_valid & nobody) | broken | queue_misplaced)",
-        becomes: "(broken | queue_misplaced)",
+        text: "((put_valid & nobody) | broken | queue_misplaced | output_control_stray)",
+        becomes: "(broken | queue_misplaced | output_control_stray)",
     },
     Bug {
         breaks: "promise_6_something_to_start",
@@ -52,8 +52,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_12_starts_who_is_asked_to",
-        text: ".starts(going & masked)",
-        becomes: ".starts(going)",
+        text: ".starts(going & masked),\n        .halted",
+        becomes: ".starts(going),\n        .halted",
     },
     Bug {
         breaks: "promise_19_a_hit_ramps_its_own_axis",
@@ -66,9 +66,19 @@ const BUGS: &[Bug] = &[
         becomes: "switches_found",
     },
     Bug {
+        breaks: "promise_18_none_named_while_one_is_examined",
+        text: "& names & !cut_control_checks",
+        becomes: "& names",
+    },
+    Bug {
+        breaks: "promise_17_off_at_stops",
+        text: "outputs_off = stops_frozen |",
+        becomes: "outputs_off =",
+    },
+    Bug {
         breaks: "promise_6_words_in_order",
-        text: ".put_word(put_word),\n        .last",
-        becomes: ".put_word(time_slot_axis),\n        .last",
+        text: ".put_word(put_word),\n        .put_slot",
+        becomes: ".put_word({1'b0, time_slot_axis}),\n        .put_slot",
     },
     Bug {
         breaks: "promise_13_reset_freezes",
@@ -102,7 +112,11 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         dut: "carrystep_engine".into(),
         parameters: Vec::new(),
         verilog,
-        numbers: [vec![axes(&build), causes()], beat(&build.timebase)].concat(),
+        numbers: [
+            vec![axes(&build), causes(), ("CUTS", u8::from(build.cuts).to_string())],
+            beat(&build.timebase),
+        ]
+        .concat(),
     };
     Proof {
         module: "engine",

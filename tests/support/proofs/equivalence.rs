@@ -103,7 +103,7 @@ pub const BUGS: &[(&str, Bug)] = &[
             becomes: "lasts_write_data = UNSET;",
         },
     ),
-    ("queue", Bug { breaks: "equal_stops", text: "(word[7] | least)", becomes: "word[7]" }),
+    ("queue", Bug { breaks: "equal_stops", text: "(word[11] | least)", becomes: "word[11]" }),
     (
         "engine",
         Bug {

@@ -6,8 +6,8 @@ use super::{Bug, Case, Promises, Proof};
 const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_5_halted_runs_nothing",
-        text: "(word[6] | starts) & !halted",
-        becomes: "(word[6] | starts)",
+        text: "(word[10] | starts) & !halted",
+        becomes: "(word[10] | starts)",
     },
     Bug {
         breaks: "promise_6_in_order",
@@ -19,21 +19,13 @@ const BUGS: &[Bug] = &[
         text: "if (empties) begin",
         becomes: "if (empties & starts) begin",
     },
-    Bug {
-        breaks: "promise_6_room",
-        text: "room = live_now + ~newest;",
-        becomes: "room = live_now - newest;",
-    },
+    Bug { breaks: "promise_6_room", text: "(live_now + ~newest)", becomes: "(live_now - newest)" },
     Bug {
         breaks: "promise_6_empty",
         text: "none = newest == live_now",
         becomes: "none = newest == old_live",
     },
-    Bug {
-        breaks: "promise_6_full",
-        text: "filled <= fresh_now == live_now",
-        becomes: "filled <= newest == live_now",
-    },
+    Bug { breaks: "promise_6_full", text: "full = spare == 5'd0", becomes: "full = spare == 5'd7" },
     Bug {
         breaks: "promise_6_words_in_order",
         text: "next_due = due + ONE",
@@ -41,27 +33,16 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_misplaced_is_taken",
-        text: "wrong <= take & !fits_in",
+        text: "wrong <= takes_word & !fits_in",
         becomes: "wrong <= !fits_in",
     },
-    Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
+    Bug { breaks: "promise_6_runs_as_told", text: "(word[11] | least)", becomes: "word[11]" },
+    Bug {
+        breaks: "promise_6_the_next_begins",
+        text: "steps_on = moves & follows;",
+        becomes: "steps_on = follows;",
+    },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },
-    Bug { breaks: "promise_6_discarded_are_written_off", text: "& !runs;", becomes: ";" },
-    Bug {
-        breaks: "promise_6_none_written_off_twice",
-        text: "next_lost = word[13:11] + ONE",
-        becomes: "next_lost = word[13:11]",
-    },
-    Bug {
-        breaks: "promise_7_told_as_pulsed",
-        text: "backward <= missing[2];",
-        becomes: "backward <= 1'b0;",
-    },
-    Bug {
-        breaks: "promise_7_never_far_behind",
-        text: "(missing != 3'd0) & !missing[2];",
-        becomes: "1'b0;",
-    },
     Bug { breaks: "promise_10_dry_is_told", text: "& none & !ramp;", becomes: "& none;" },
     Bug {
         breaks: "promise_10_dry_is_told",
@@ -83,30 +64,39 @@ const BUGS: &[Bug] = &[
         text: "if (beat[12]) begin",
         becomes: "if (beat[11]) begin",
     },
-    Bug { breaks: "promise_15_on_way", text: "gain = TWO_LESS;", becomes: "gain = ONE_LESS;" },
     Bug {
-        breaks: "promise_15_on_way",
-        text: "behind = moves & crosses & back;",
-        becomes: "behind = moves & back;",
+        breaks: "promise_18_refused_unless_kept",
+        text: "| (is_live & stays & !follows)",
+        becomes: "| (is_live & stays)",
     },
     Bug {
-        breaks: "promise_15_on_way",
-        text: "next_on_way = NONE_ON_WAY;",
-        becomes: "next_on_way = ONE_MORE;",
+        breaks: "promise_18_refused_unless_kept",
+        text: "(span & BEYOND) == 6'd0",
+        becomes: "1'b1",
     },
+    Bug {
+        breaks: "promise_18_drops_from_the_end",
+        text: "(!keeps | (next_due != 3'd0))",
+        becomes: "(next_due != 3'd0)",
+    },
+    Bug {
+        breaks: "promise_18_room_behind_the_named",
+        text: "newest = target;",
+        becomes: "newest = newest;",
+    },
+    Bug { breaks: "promise_15_counts_are_kept", text: "<< AT_18)", becomes: "<< AT_14)" },
     Bug {
         breaks: "promise_15_met_in_the_tick_before",
         text: "next_met = MET_BIT;",
         becomes: "next_met = NO;",
     },
-    Bug { breaks: "promise_13_inactive", text: "forward = 1'b0;", becomes: "forward = 1'b1;" },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = Case {
         name: "any".into(),
         dut: "carrystep_queue".into(),
-        parameters: Vec::new(),
+        parameters: vec![("CUTS", 1)],
         verilog: built.1.clone(),
         numbers: Vec::new(),
     };

@@ -45,7 +45,11 @@ const BUGS: &[Bug] = &[
         text: "(met & latches)",
         becomes: "(met & takes)",
     },
-    Bug { breaks: "promise_15_status", text: "waiting = ~room;", becomes: "waiting = room;" },
+    Bug {
+        breaks: "promise_15_status",
+        text: "waiting = ~room & SLOTS;",
+        becomes: "waiting = room & SLOTS;",
+    },
     Bug {
         breaks: "promise_15_refreshed",
         text: "beat[12] & is_last & !takes &",

@@ -9,6 +9,17 @@ use carrystep_files::error::InputError;
 use std::collections::BTreeMap;
 use toml::Spanned;
 
+/// The table of the board's file in which a port stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Table {
+    /// Pins of connectors.
+    Pins,
+    /// Pins of connectors that may also be those of the SPI, where the host uses the UART.
+    BesideUart,
+    /// Pins that are wired on the board.
+    Onboard,
+}
+
 impl Reader<'_> {
     /// Assigns a use to a pin of the package; a second use is an error.
     pub(super) fn take(&mut self, pin: &Spanned<String>, purpose: &str) -> Result<(), InputError> {
@@ -24,45 +35,54 @@ impl Reader<'_> {
     pub(super) fn wires(
         &mut self,
         pins: Ports,
+        beside_uart: Ports,
         onboard: Ports,
         connectors: &Connectors,
     ) -> Result<Vec<Wire>, InputError> {
         let mut wires: Vec<Wire> = Vec::new();
-        let labelled = pins.into_iter().map(|row| (row, true));
-        for ((name, pins), on_connector) in
-            labelled.chain(onboard.into_iter().map(|row| (row, false)))
+        let of = |ports: Ports, table| ports.into_iter().map(move |row| (row, table));
+        for ((name, pins), table) in of(pins, Table::Pins)
+            .chain(of(onboard, Table::Onboard))
+            .chain(of(beside_uart, Table::BesideUart))
         {
             let port = self.port(&name)?;
             if wires.iter().any(|wire| wire.port.split('[').next() == Some(port.name)) {
-                return self.refuse(
-                    name.span(),
-                    format!("{} stands in [pins] and in [onboard]", port.name),
-                );
+                return self
+                    .refuse(name.span(), format!("{} stands in two tables of pins", port.name));
             }
             let span = pins.span();
-            let pins = match (pins.into_inner(), port.per_axis) {
+            let pins = match (pins.into_inner(), port.is_list) {
                 (Pins::One(pin), false) => vec![Spanned::new(span, pin)],
                 (Pins::Many(pins), true) => pins,
                 (Pins::One(_), true) => {
-                    return self
-                        .refuse(span, format!("{} has a pin for each axis: a list", port.name));
+                    return self.refuse(span, format!("{} is a list of pins", port.name));
                 }
                 (Pins::Many(_), false) => {
                     return self.refuse(span, format!("{} is one pin", port.name));
                 }
             };
             for (index, spanned) in pins.into_iter().enumerate() {
-                let bit = if port.per_axis {
+                let bit = if port.is_list {
                     format!("{}[{index}]", port.name)
                 } else {
                     port.name.to_owned()
                 };
-                let (pin, at) = match on_connector {
-                    false => (spanned.as_ref().clone(), None),
-                    true => self.labelled(&spanned, connectors)?,
+                let (pin, at) = match table {
+                    Table::Onboard => (spanned.as_ref().clone(), None),
+                    Table::Pins | Table::BesideUart => self.labelled(&spanned, connectors)?,
                 };
-                self.take(&Spanned::new(spanned.span(), pin.clone()), &bit)?;
-                wires.push(Wire { port: bit, pin, at });
+                let beside_uart = table == Table::BesideUart;
+                let is_of_spi = |wire: &Wire| wire.pin == pin && wire.port.starts_with("spi_");
+                if beside_uart && wires.iter().any(is_of_spi) {
+                    let taken = |wire: &Wire| wire.beside_uart && wire.pin == pin;
+                    if let Some(wire) = wires.iter().find(|wire| taken(wire)) {
+                        let message = format!("pin {pin} is taken: {}", wire.port);
+                        return self.refuse(spanned.span(), message);
+                    }
+                } else {
+                    self.take(&Spanned::new(spanned.span(), pin.clone()), &bit)?;
+                }
+                wires.push(Wire { port: bit, pin, at, beside_uart });
             }
         }
         let place = |wire: &Wire| {

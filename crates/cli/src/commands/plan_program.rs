@@ -9,7 +9,8 @@ use crate::program_table::ProgramFigures;
 use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
 use crate::{output, program, recorded};
-use carrystep_core::Segment;
+use carrystep_core::engine::PWM_STEPS;
+use carrystep_core::{OutputChange, Segment};
 use carrystep_program::{ProgramFile, Row};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -34,6 +35,27 @@ pub struct PlannedRow<'a> {
     #[serde(serialize_with = "segments")]
     #[schemars(with = "Vec<SegmentJson>")]
     segments: &'a [Segment],
+    /// The outputs that change where the row begins, if any do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outputs: Option<ChangedOutputs>,
+}
+
+/// A change of outputs, one bit each.
+#[derive(JsonSchema, Serialize)]
+struct ChangedOutputs {
+    /// The outputs that get a new level.
+    mask: u8,
+    /// Their levels; 1 is active.
+    levels: u8,
+    /// The new duty of the PWM, 0 to 4095 of 4096; null if it stays.
+    duty: Option<u16>,
+}
+
+/// What changes at the outputs where a row begins.
+fn changed(row: &Row) -> Option<ChangedOutputs> {
+    let OutputChange { mask, levels, duty } =
+        Some(carrystep_program::outputs(row)).filter(|change| !change.is_none())?;
+    Some(ChangedOutputs { mask, levels, duty })
 }
 
 /// Plans a program and shows the plan.
@@ -46,8 +68,8 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
     let (survey, recorded) = program::survey(&file, detail, |row| {
         number += 1;
         if arguments.json_lines {
-            let Row { line, segments, .. } = row;
-            return output::print_json_line(&PlannedRow { number, line: *line, segments });
+            let (Row { line, segments, .. }, outputs) = (row, changed(row));
+            return output::print_json_line(&PlannedRow { number, line: *line, segments, outputs });
         }
         if arguments.segments { text.add(|text| add_row(text, &file, row)) } else { Ok(()) }
     })?;
@@ -70,6 +92,16 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
 fn add_row(text: &mut String, file: &ProgramFile, row: &Row) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "line {}", row.line);
+    if let Some(ChangedOutputs { mask, levels, duty }) = changed(row) {
+        let number = |output: &u8| mask >> output & 1 == 1;
+        for output in (0..8).filter(number) {
+            let level = if levels >> output & 1 == 1 { "on" } else { "off" };
+            let _ = writeln!(text, "output {output} {level}");
+        }
+        if let Some(duty) = duty {
+            let _ = writeln!(text, "duty {duty}/{PWM_STEPS}");
+        }
+    }
     for (axis, segment) in file.machine().axes.iter().zip(&row.segments) {
         add_segment(text, &axis.name, segment);
     }

@@ -111,11 +111,13 @@ fn capture(
     let load = operated.real_time.board.loads().first().copied().unwrap_or(0);
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
-    let mut vcd =
-        PinsVcd::new(out, OwnCapture { origin_ps, timebase: time, is_part: false }, names)?;
+    let own = OwnCapture { origin_ps, timebase: time, is_part: false };
+    let mut vcd = PinsVcd::new(out, own, names, build.outputs.exist)?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
-    let mut tell =
-        |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
+    let mut tell = |cycle: u64, outputs: &EngineOutputs| {
+        feed.pins(cycle, outputs.step, outputs.dir);
+        feed.outputs(cycle, outputs.outputs);
+    };
     let mut replay = Replay::new(&build.pins, &mut tell);
     while goes_on && operated.step(&mut replay)? {
         replay.reach(operated.real_time.board.cycle());

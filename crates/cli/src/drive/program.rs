@@ -30,6 +30,8 @@ impl PlannedProgram {
                     self.segments.get_mut(usize::from(axis))?.push_back(segment);
                 }
                 Command::Start { mask } => self.starts.push_back(mask),
+                // Move files change no outputs.
+                Command::Outputs(_) => {}
             }
         }
         Some(())

@@ -56,7 +56,8 @@ const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].tit
     boards[].oscillator boards[].oscillator.pin boards[].oscillator.hz boards[].oscillator.io
     boards[].clocks boards[].clocks[].clock_hz boards[].clocks[].tick_ns boards[].clocks[].phases
     boards[].clocks[].made_by boards[].clocks[].why boards[].io boards[].wires boards[].wires[].port
-    boards[].wires[].pin boards[].wires[].at boards[].wires[].at.connector boards[].wires[].at.label boards[].ties
+    boards[].wires[].pin boards[].wires[].at boards[].wires[].at.connector boards[].wires[].at.label
+    boards[].wires[].beside_uart boards[].ties
     boards[].led_low boards[].flash boards[].bitstream boards[].notes boards[].conflicts boards[].sources
     boards[].measured boards[].measured.block_rams boards[].configured boards[].configuration_sources
     boards[].shared";

@@ -45,6 +45,7 @@ mod outputs;
 mod peak;
 mod plots;
 mod profile;
+mod program_outputs;
 mod programs;
 #[cfg(target_os = "linux")]
 mod reports;

@@ -3,8 +3,8 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins,
-    check_schedule,
+    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
@@ -24,6 +24,13 @@ pub struct EngineBuild {
     pub pins: Vec<PinTiming>,
     /// Settings of the guard.
     pub guard: Guard,
+    /// The outputs that change with the motion.
+    pub outputs: Outputs,
+    /// Number of segments that the queue of an axis holds besides the one that runs, one of
+    /// [`QUEUE_DEPTHS`].
+    pub queue: usize,
+    /// Whether a host can cut queues.
+    pub cuts: bool,
 }
 
 /// Settings of the guard: what it watches, and how it stops the axes.
@@ -130,12 +137,27 @@ impl Guard {
 }
 
 impl EngineBuild {
-    /// An engine with these parameters and the smallest guard; every axis ramps down with `stop`,
-    /// 2^-64 step per tick^2.
+    /// An engine with these parameters, the smallest guard and the shortest queues, without outputs
+    /// and cuts; every axis ramps down with `stop`, 2^-64 step per tick^2.
     pub fn minimal(build: &Build, stop: u64) -> Self {
         let Build { timebase, phase, pins } = build;
         let guard = Guard::minimal(vec![stop; pins.len()]);
-        Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard }
+        let outputs = Outputs::default();
+        let queue = QUEUE_DEPTHS[0];
+        Self {
+            timebase: *timebase,
+            phase: *phase,
+            pins: pins.to_vec(),
+            guard,
+            outputs,
+            queue,
+            cuts: false,
+        }
+    }
+
+    /// Number of slots of an axis in memory: those of its queue, and that of the running segment.
+    pub const fn slots(&self) -> usize {
+        self.queue + 1
     }
 
     /// Number of axes.
@@ -177,6 +199,12 @@ impl EngineBuild {
             && !(1..=MAX_LOOKS).contains(&looks)
         {
             return Err(EngineError::Looks(looks));
+        }
+        if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
+            return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
+        }
+        if !QUEUE_DEPTHS.contains(&self.queue) {
+            return Err(EngineError::Queue(self.queue));
         }
         if guard.stop.len() != axes {
             return Err(EngineError::StopCount { axes, found: guard.stop.len() });
@@ -233,6 +261,10 @@ mod tests {
         assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
         let said = refusal(|build| build.guard.latch = Some(Latch { low: false, looks: 17 }));
         assert!(said.starts_with("a latch of 17 looks"), "{said}");
+        let said = refusal(|build| build.outputs.pwm_divider = 257);
+        assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
+        let said = refusal(|build| build.queue = 8);
+        assert_eq!(said, "a queue of 8 segments: 7, 15 and 31 can be built");
         assert!(
             refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
         );

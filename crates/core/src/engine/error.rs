@@ -2,8 +2,8 @@
 //! are possible.
 
 use super::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE,
-    TIME_SLOT_CLOCKS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    MIN_CLOCKS_PER_PHASE, PWM_STEPS, TIME_SLOT_CLOCKS,
 };
 use crate::build::MAX_CLOCKS;
 use alloc::borrow::ToOwned;
@@ -102,6 +102,14 @@ pub enum EngineError {
     /// The number of looks of the latch is out of range.
     #[error("a latch of {0} looks: 1 to {MAX_LOOKS} can be counted")]
     Looks(u8),
+    /// The divider of the PWM is out of range.
+    #[error(
+        "a PWM of {0} clocks for each of its {PWM_STEPS} steps: 1 to {MAX_PWM_DIVIDER} can be counted"
+    )]
+    PwmDivider(u32),
+    /// No queue of this depth can be built.
+    #[error("a queue of {0} segments: 7, 15 and 31 can be built")]
+    Queue(usize),
     /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
     /// one tick.
     #[error(

@@ -12,12 +12,15 @@ pub const ENGINE_PORTS: &[Port] = &[
     CLOCK,
     input("put_valid", BIT, Peer::Host, "the host offers a word of a segment"),
     input("put_axis", AXIS, Peer::Host, "the axis of that word, and of `room`"),
-    input("put_word", Width::Bits(3), Peer::Host, "the number of the word; 7 commits the segment"),
-    input("put_data", WORD, Peer::Host, "the word; in a commit, bit 0 is `last`"),
+    input("put_word", Width::Bits(4), Peer::Host, "the number of the word; 7 commits the segment"),
+    input("put_data", WORD, Peer::Host, "the word; 7: bit 0 is `last`, 31..1 outputs"),
     output("put_ready", BIT, Peer::Host, "the engine accepts an offered word in this clock"),
     input("start_valid", BIT, Peer::Host, "the host offers a start"),
     input("start_mask", Width::Axes, Peer::Host, "the axes to start on one tick"),
     output("start_ready", BIT, Peer::Host, "the engine accepts an offered start in this clock"),
+    input("cut", BIT, Peer::Host, "the host requests a cut in the axes that it has named"),
+    output("cut_busy", BIT, Peer::Host, "a cut was requested and is not decided yet"),
+    output("cut_refused", BIT, Peer::Host, "the last cut was refused"),
     input("clear", BIT, Peer::Host, "resume after a stop"),
     input("reset", BIT, Peer::Nobody, "return to the state at configuration; tie to 0 if unused"),
     input("stop", BIT, Peer::Host, "the host requests a controlled stop"),
@@ -57,7 +60,7 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("refreshed", BIT, Peer::Host, "all live words of this tick have been output"),
     output(
         "room",
-        Width::Bits(3),
+        Width::Bits(5),
         Peer::Host,
         "segments for which the queue of `put_axis` has room",
     )
@@ -65,6 +68,8 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("room_valid", BIT, Peer::Host, "`room` is valid, once in a time slot of that axis"),
     output("step", Width::Axes, Peer::Pins, "the STEP pins"),
     output("dir", Width::Axes, Peer::Pins, "the DIR pins; 1 is backward"),
+    output("outputs", Width::Bits(8), Peer::Pins, "the outputs; 1 is active"),
+    output("pwm", BIT, Peer::Pins, "the pin of the PWM; 1 is active"),
     output("enabled", BIT, Peer::Pins, "the drivers are to have power"),
     output("idle", BIT, Peer::Host, "all axes are at rest and no start is armed"),
     output("fault", BIT, Peer::Host, "a stop is in force"),
@@ -97,11 +102,12 @@ pub fn is_recorded(port: &Port) -> bool {
 impl EngineInputs {
     /// Name and value of each input in the order of [`ports_of`]. `None` is a value that is
     /// not offered and has no effect; it is driven as 0.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 24] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 25] {
         let Self {
             put,
             room_of,
             start,
+            cut,
             clear,
             reset,
             stop,
@@ -125,6 +131,7 @@ impl EngineInputs {
             ("put_data", put.map(|put| put.data.into())),
             ("start_valid", Some(start.is_some().into())),
             ("start_mask", start.map(u64::from)),
+            ("cut", Some(cut.into())),
             ("clear", Some(clear.into())),
             ("reset", Some(reset.into())),
             ("stop", Some(stop.into())),
@@ -150,12 +157,16 @@ impl EngineInputs {
 impl EngineOutputs {
     /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
     /// not valid in this cycle.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 26] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 30] {
         let Self {
             put_ready,
             start_ready,
+            cut_busy,
+            cut_refused,
             step,
             dir,
+            outputs,
+            pwm,
             enabled,
             idle,
             fault,
@@ -175,6 +186,8 @@ impl EngineOutputs {
         [
             ("put_ready", Some(put_ready.into())),
             ("start_ready", Some(start_ready.into())),
+            ("cut_busy", Some(cut_busy.into())),
+            ("cut_refused", Some(cut_refused.into())),
             ("state_valid", Some(state.is_some().into())),
             ("state_page", state.map(|state| state.page as u64)),
             ("state_axis", state.map(|state| state.axis.into())),
@@ -185,6 +198,8 @@ impl EngineOutputs {
             ("room_valid", Some(room.is_some().into())),
             ("step", Some(step.into())),
             ("dir", Some(dir.into())),
+            ("outputs", Some(outputs.into())),
+            ("pwm", Some(pwm.into())),
             ("enabled", Some(enabled.into())),
             ("idle", Some(idle.into())),
             ("fault", Some(fault.is_some().into())),
@@ -229,7 +244,7 @@ impl EngineOutputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{CAUSES, MAX_AXES, SEGMENT_WORDS, StateItem};
+    use crate::engine::{CAUSES, CUT_WORD, MAX_AXES, StateItem};
     use alloc::vec::Vec;
 
     fn names(direction: Direction) -> Vec<&'static str> {
@@ -257,7 +272,7 @@ mod tests {
         };
         assert!(most("cause") >= CAUSES.len() - 1);
         assert!(most("put_axis") >= MAX_AXES - 1 && most("state_axis") >= MAX_AXES - 1);
-        assert!(most("put_word") >= SEGMENT_WORDS.into());
+        assert!(most("put_word") >= CUT_WORD.into());
         assert!(most("state_item") >= StateItem::Status as usize);
     }
 }

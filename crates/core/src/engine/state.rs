@@ -157,7 +157,7 @@ pub const fn commanded_steps(position: i32, status: AxisStatus) -> i32 {
     position.wrapping_add(status.on_way as i32)
 }
 
-const _: () = assert!(super::MAX_AXES <= 1 << STATE_AXIS_BITS && super::QUEUE < 32);
+const _: () = assert!(super::MAX_AXES <= 1 << STATE_AXIS_BITS && super::QUEUE_DEPTHS[2] < 32);
 
 #[cfg(test)]
 mod tests {

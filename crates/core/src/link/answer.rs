@@ -20,7 +20,7 @@ const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'stati
 }
 
 /// The fields of an answer.
-pub const ANSWER: [Field; 14] = [
+pub const ANSWER: [Field; 15] = [
     field("sequence", 0, 0, 8, "the sequence number of the request"),
     field("address", 1, 0, 8, "the address of the request"),
     field(
@@ -40,6 +40,7 @@ pub const ANSWER: [Field; 14] = [
     field("ready", 3, 1, 1, "the drivers have had power for the enable time, as a start requires"),
     field("armed", 3, 2, 1, "a start is armed; another start is refused as busy"),
     field("written", 3, 3, 1, "the request was a write; a read of the same address has 0 here"),
+    field("cut_refused", 3, 4, 1, "the last CUT was refused; always 1 in a build without cuts"),
     field("idle", 3, 6, 1, "no axis moves, no queue holds a segment, and no start is armed"),
     field("halted", 3, 7, 1, "the stop is complete: no axis moves any more"),
     field(

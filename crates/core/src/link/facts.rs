@@ -3,12 +3,12 @@
 use super::BuildId;
 use super::registers::{
     AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL,
-    PROTOCOL_VERSION, TICK_NS, WATCHDOG_TICKS,
+    PROTOCOL_VERSION, QUEUE_DEPTH, TICK_NS, WATCHDOG_TICKS,
 };
 use crate::EngineBuild;
 
 /// Address and value of each of these registers.
-pub fn facts(build: &EngineBuild, id: BuildId) -> [(u8, u32); 9] {
+pub fn facts(build: &EngineBuild, id: BuildId) -> [(u8, u32); 10] {
     let [low, high] = id.halves();
     let time = &build.timebase;
     [
@@ -21,5 +21,6 @@ pub fn facts(build: &EngineBuild, id: BuildId) -> [(u8, u32); 9] {
         (TICK_NS, time.tick_ns() as u32),
         (PHASES, time.phases()),
         (WATCHDOG_TICKS, build.guard.watchdog * build.guard.round),
+        (QUEUE_DEPTH, build.queue as u32),
     ]
 }

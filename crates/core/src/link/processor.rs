@@ -71,8 +71,8 @@ pub enum ValueSource {
 
 /// Item of [`ValueSource::Engine`]: byte 3 of an answer, but for `written`.
 pub const STATE: u8 = 0;
-/// Item: in bits 6..4 the free queue space that the axis of A reported in its last time slot, and
-/// in bits 3..0 the cause of the stop, 0 without a fault.
+/// Item: the least free queue space that axes have reported to [`FOR_ROOM`] since the last
+/// [`CRC_BEGIN`]; 31 if none has.
 pub const ROOM: u8 = 1;
 /// Item: the mask of the axes that caused a stop; it has no meaning without a fault.
 pub const CULPRITS: u8 = 2;
@@ -83,6 +83,8 @@ pub const HITS: u8 = 4;
 /// Item: in bits 3..0 the edges since the latch was armed that it did not latch, in bit 4 whether
 /// it is armed.
 pub const LATCH: u8 = 5;
+/// Item: the cause of the stop; it has no meaning without a fault.
+pub const CAUSE: u8 = 6;
 
 /// Condition of a jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,13 +117,14 @@ pub const CRC_STEP: Code = 1 << 2;
 /// enters it at the top.
 pub const CRC_FEED: Code = 1 << 3;
 /// The CRC register is initialised. With [`CRC_FEED`] it is instead loaded with the fact at address
-/// X.
+/// X. Either forgets the item [`ROOM`].
 pub const CRC_BEGIN: Code = 1 << 4;
 /// The instruction lasts until the engine accepts what it offers, or has a fault. If it offers
 /// nothing, it lasts until all live words of a tick have been output (`refreshed`).
 pub const WAIT: Code = 1 << 5;
 /// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
-/// or with `refreshed`.
+/// or with `refreshed`. Reports count from the second clock of the instruction to the first clock
+/// of the next one, so that none between two such instructions is missed.
 pub const FOR_ROOM: Code = 1 << 3;
 /// Bit 0 of A is written to the control register. With [`KICK`], A is written to the mask of the
 /// axes that seek instead, and with [`KICK`] and [`BROKEN`] to the source of seeks; with [`BROKEN`]
@@ -134,14 +137,16 @@ pub const KICK: Code = 1 << 7;
 /// [`KICK`]: requests a stop of all axes instead.
 pub const BROKEN: Code = 1 << 8;
 /// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
-/// With [`KICK`] and without [`CONTROL`]: arms the latch.
+/// With [`KICK`] and without [`CONTROL`]: arms the latch. With [`CONTROL`] and [`BROKEN`]: requests
+/// a cut in place of a snapshot.
 pub const CLEARING: Code = 1 << 9;
 /// With [`WAIT`]: sends A to the host.
 pub const GOES: Code = 1 << 9;
 /// Offers a start of the axes in A.
 pub const STARTS: Code = 1 << 10;
-/// Offers the CRC register as the next word of a segment. Bits 2..0 of A are the axis. The machine
-/// counts the words modulo 8; the eighth is the commit.
+/// Offers the CRC register as a word for the axis in bits 2..0 of A. Where bit 3 of A is set, it is
+/// the next word of a segment: the machine counts these words modulo 8, and the eighth is the
+/// commit. Otherwise it is word 8, which names the slot of a cut.
 pub const PUTS: Code = 1 << 11;
 
 /// Address of a request among the variables: its sequence number, followed by its address byte.

@@ -34,6 +34,8 @@ refusals! {
     Session = 3, "session", "The request does not have the session number of the gateware's owner.";
     SeekEnded = 4, "seek ended",
         "An axis that it names has hit the source of its seek, and the host has not ended the seek.";
+    Cut = 5, "cut",
+        "A segment that the CUT names neither waits nor runs any more: no axis has dropped any.";
 }
 
 impl Refusal {

@@ -8,6 +8,7 @@
 //! writes    0xa0 .. 0xbf   commands of the host, one word each
 //!           0xc0 .. 0xc7   segments: 0xc0 + axis, eight words
 //!           0xc8           segments of several axes
+//!           0xd0           a cut, eight words
 //! ```
 //!
 //! A request without words reads, a request with words writes, so that the same address can be a
@@ -15,7 +16,7 @@
 
 use crate::engine::StateItem::{self, Discarded, Left, PHigh, PLow, Position, Status, Ticks};
 use crate::engine::StatePage::{self as Page, Live, Seek, Snapshot};
-use crate::engine::{MAX_AXES, QUEUE, state_address};
+use crate::engine::{MAX_AXES, QUEUE_DEPTHS, state_address};
 use strum::Display;
 
 /// Access to a register. It is displayed as in the documentation.
@@ -29,6 +30,9 @@ pub enum RegisterAccess {
     /// Written with the eight words of a segment in one frame.
     #[strum(to_string = "write, 8 words")]
     WriteSegment,
+    /// Written with a word for each of [`MAX_AXES`] axes in one frame.
+    #[strum(to_string = "write, 8 words")]
+    WriteCut,
     /// Written with the segments of several axes in one frame.
     #[strum(to_string = "write, 3 words and 6 for each axis")]
     WriteSegments,
@@ -86,6 +90,8 @@ registers! {
          high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock)";
     INPUT_LEVELS = 0x0b, Read false
         "Levels of the same pins, 1 active, when they were sampled last";
+    QUEUE_DEPTH  = 0x0c, Read false
+        "Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31";
     LIMIT_MIN_SWITCH = switch_address(0), Read true
         "Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; \
          the other bits have no meaning";
@@ -158,6 +164,9 @@ registers! {
     SEGMENTS     = 0x48, WriteSegments false
         "Axes, one bit each; ticks - 1; V, A, J of each of these axes in ascending order, low half \
          first; 1 if last of their move, else 0";
+    CUT          = 0x50, WriteCut false
+        "A word for each axis from 0 to 7: bits 4..0 the slot of the last segment that it keeps; \
+         bits 31..24 are 0 if the axis takes no part";
 }
 
 super::constants! {
@@ -172,8 +181,8 @@ super::constants! {
     STATUS_ON_WAY: u32 = 0xf << 12,
         "Bits of STATUS: the number of steps on their way, two's complement.";
     MOST_AXES: u8 = MAX_AXES as u8, "Greatest number of axes of a build.";
-    QUEUE_SEGMENTS: u8 = QUEUE as u8,
-        "Number of segments that can wait for an axis, in addition to the one that runs.";
+    LEAST_QUEUE: u8 = QUEUE_DEPTHS[0] as u8,
+        "Number of segments that can wait for an axis of any build, besides the one that runs.";
 }
 
 /// Address of the word of the switch of axis 0 in this row.

@@ -52,12 +52,12 @@ pub struct Adder {
     pub put: Input<Word<32>>,
     /// The axis runs: beat 6 subtracts one from its remaining ticks.
     pub counts: Input<Bit>,
-    /// The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
-    /// `counts`.
+    /// In beat 5: the axis is at rest, and beat 6 adds one to its discarded steps. Never asserted
+    /// with `counts`.
     pub lost: Input<Bit>,
-    /// Beat 7 adds one to the position.
+    /// In beat 6: beat 7 adds one to the position.
     pub up: Input<Bit>,
-    /// Beat 7 subtracts one from the position.
+    /// In beat 6: beat 7 subtracts one from the position.
     pub down: Input<Bit>,
     /// The sums that replace P are zero.
     pub wipe: Input<Bit>,

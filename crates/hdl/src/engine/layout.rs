@@ -73,7 +73,8 @@ indices! {
     BEAT_LOAD_P_LOW = BEAT_READ_P_LOW + 1;
     /// The remaining ticks are loaded into operand A, and -1 or 0 into operand B.
     BEAT_LOAD_TICKS = BEAT_READ_TICKS + 1;
-    /// The position is loaded into operand A, and -1 or 0 into operand B.
+    /// The position is loaded into operand A, and -1 or 0 into operand B. It is compared with the
+    /// position of the pulser.
     BEAT_LOAD_POSITION = BEAT_READ_POSITION + 1;
     /// J is loaded into operand B, high half.
     BEAT_LOAD_J_HIGH = BEAT_READ_J_HIGH + 1;
@@ -130,8 +131,8 @@ indices! {
     /// P + V is written, high half.
     BEAT_WRITE_P_HIGH = BEAT_SUM_P_HIGH + 1;
 
-    /// The queue compares the counts of the pulser with those in memory.
-    BEAT_COMPARE = 4;
+    /// The discarded steps of the pulser are compared with those that have been counted.
+    BEAT_COMPARE_DISCARDED = 4;
     /// A word of the host for this axis is accepted.
     BEAT_PUT = PUT_BEAT as usize;
 
@@ -159,29 +160,45 @@ indices! {
     /// Bit 32 of the sum in `wide`.
     WIDE_TOP = 33;
 
-    /// Control word: slot of the running segment, 3 bits.
+    /// Control word: slot of the running segment, 5 bits.
     CONTROL_LIVE = 0;
-    /// Control word: slot of the newest segment, 3 bits.
-    CONTROL_NEWEST = 3;
+    /// Control word: slot of the newest segment, 5 bits.
+    CONTROL_NEWEST = 5;
     /// Control word: the axis runs.
-    CONTROL_RUNNING = 6;
+    CONTROL_RUNNING = 10;
     /// Control word: the next V does not fit in 64 bits.
-    CONTROL_UNFIT = 7;
-    /// Control word: position modulo 8, 3 bits.
-    CONTROL_POSITION = 8;
-    /// Control word: discarded steps modulo 8, 3 bits.
-    CONTROL_DISCARDED = 11;
+    CONTROL_UNFIT = 11;
     /// Control word: the ramp began with V < 0.
-    CONTROL_BACK = 14;
+    CONTROL_BACK = 12;
     /// Control word: the ramp has begun.
-    CONTROL_KNOWN = 15;
-    /// The number of the word that the host must put next, 3 bits.
-    CONTROL_DUE = 16;
-    /// The words of this tick are those of the axis' own hit.
-    CONTROL_MET = 19;
-    /// Carries less counted steps, modulo 16, 4 bits.
-    CONTROL_ON_WAY = 20;
-    /// Sign of the difference between the pulser's count and the control word's.
+    CONTROL_KNOWN = 13;
+    /// Control word: the number of the word that the host must put next, 3 bits.
+    CONTROL_DUE = 14;
+    /// Control word: the words of this tick are those of the axis' own hit.
+    CONTROL_MET = 17;
+    /// Control word: what the step counts keep, 7 bits.
+    CONTROL_COUNTS = 18;
+    /// Control word: slot of the last segment that the next cut keeps, 5 bits.
+    CONTROL_TARGET = 25;
+    /// Control word: the axis takes part in the next cut.
+    CONTROL_NAMED = 30;
+    /// Number of a word of the host: the number in its segment, 3 bits.
+    PUT_NUMBER = 0;
+    /// Number of a word of the host: it is no word of a segment and names the slot of a cut.
+    PUT_NAMES = 3;
+    /// Word of the host that names a slot, 5 bits.
+    PUT_SLOT = 0;
+    /// Slot: its lowest part in an address of the segments' memory, 3 bits.
+    SLOT_LOW = 0;
+    /// Slot: its highest part in such an address, 2 bits.
+    SLOT_HIGH = 3;
+    /// What the step counts keep: discarded steps modulo 8, 3 bits.
+    KEPT_DISCARDED = 0;
+    /// What the step counts keep: carries less counted steps, modulo 16, 4 bits.
+    KEPT_ON_WAY = 3;
+    /// Low bits of the position, in memory or as the pulser counts them, 3 bits.
+    POSITION_LOW = 0;
+    /// Sign of the difference between the pulser's count and the position in memory.
     MISSING_SIGN = 2;
 
     /// Word of a switch: number of consecutive samples that differ, 7 bits.
@@ -219,6 +236,20 @@ indices! {
 
     /// Data of a commit: the segment is the last of its move.
     COMMIT_LAST = 0;
+    /// Data of a commit: the duty of the PWM changes.
+    COMMIT_SETS_DUTY = 1;
+    /// Data of a commit: the outputs that change and their levels, 16 bits.
+    COMMIT_MASK = 4;
+    /// Data of a commit: the duty, 12 bits.
+    COMMIT_DUTY = 20;
+    /// Word of outputs: those that change, 8 bits.
+    OUTPUT_MASK = 0;
+    /// Word of outputs: their levels, 8 bits.
+    OUTPUT_LEVELS = 8;
+    /// Word of a duty: the duty, 12 bits.
+    DUTY_STEPS = 0;
+    /// Word of a duty: the duty changes.
+    DUTY_VALID = 12;
     /// The ring of the start's mask: the axis of this time slot.
     MASK_OF_SLOT = 0;
     /// One bit per axis: the first axis.
@@ -239,7 +270,7 @@ pub const WORD_A_HIGH: u64 = 4;
 pub const WORD_J_LOW: u64 = 5;
 /// Word of a segment: J, high half.
 pub const WORD_J_HIGH: u64 = 6;
-/// Word of each slot that no segment uses. These eight words hold the state of the axis.
+/// Word of each slot that no segment uses. Those of the slots 0 to 7 hold the state of the axis.
 pub const WORD_STATE: u64 = COMMIT as u64;
 
 /// Slot of [`WORD_STATE`]: P, low half.
@@ -259,9 +290,10 @@ pub const SLOT_UP_LOW: u64 = 6;
 /// Slot of [`WORD_STATE`]: s, high half.
 pub const SLOT_UP_HIGH: u64 = 7;
 
-/// Address of the number of the tick. With up to seven axes the memory has 512 words, and the lower
-/// nine bits are an address of the axis 7, which does not exist.
-pub const TICK_ADDRESS: u64 = 0x3ff;
+/// Address of the number of the tick. Only as many of its lowest bits count as an address has. With
+/// up to seven axes and eight slots these are nine, and the address is one of the axis 7, which
+/// does not exist. With more slots it is that of word 7 in the last slot, which no axis uses.
+pub const TICK_ADDRESS: u64 = 0x7ff;
 
 /// Address of a word of the state of an axis.
 pub const fn state_address(axis: usize, slot: u64) -> usize {

@@ -1,8 +1,9 @@
 //! The segment queue of each axis, and the control word of the axis of the present time slot.
 //!
-//! An axis has eight slots in memory, each of which holds one segment. The running segment is in
-//! slot `live`; its ticks, V and A serve as the registers of the axis. The segments up to `newest`
-//! wait. The host writes the slot after `newest`.
+//! An axis has 8, 16 or 32 slots in memory, each of which holds one segment. The running segment is
+//! in slot `live`; its ticks, V and A serve as the registers of the axis. The segments up to
+//! `newest` wait. The host writes the slot after `newest`. A cut makes the slot that the host has
+//! named the newest one.
 //!
 //! ```text
 //! slot     | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 |
@@ -14,28 +15,28 @@
 //! last beat. Its fields, from the lowest bit:
 //!
 //! ```text
-//! bits     0-2    3-5      6         7       8-10             11-13             14     15      16-18
-//! field    live   newest   running   unfit   position mod 8   discarded mod 8   back   known   due
-//! bits     19     20-23
-//! field    met    on_way
+//! bits     0-4    5-9      10        11      12     13      14-16   17    18-24    25-29    30
+//! field    live   newest   running   unfit   back   known   due     met   counts   target   named
 //! ```
 //!
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
 //! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
 //! the host must put next: the words of a segment come in order, and word 7 commits it. `met` means
-//! that the axis has hit its own source, and that this tick outputs its state for that. `on_way` is
-//! the number of carries since the last clear less the steps that the position has counted since
-//! then.
+//! that the axis has hit its own source, and that this tick outputs its state for that. `counts`
+//! belongs to [`super::step_counts`]; the queue only keeps it. `named` means that the axis takes
+//! part in the next cut, whose last segment is in the slot `target`.
 //!
-//! Cost: a memory of 8 words of 24 bits for the control words and one of 64 bits for the marks of
-//! last segments. A transition to the next segment only increments `live`; no segment is copied.
+//! Cost: a memory of 8 words of 31 bits for the control words and one of 64 to 256 bits for the
+//! marks of last segments. A transition to the next segment only increments `live`; no segment is
+//! copied.
 
 use super::layout::{
-    BEAT_COMPARE, BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_DISCARDED, CONTROL_DUE,
-    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_MET, CONTROL_NEWEST, CONTROL_ON_WAY, CONTROL_POSITION,
-    CONTROL_RUNNING, CONTROL_UNFIT, MISSING_SIGN,
+    BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_COUNTS, CONTROL_DUE, CONTROL_KNOWN, CONTROL_LIVE,
+    CONTROL_MET, CONTROL_NAMED, CONTROL_NEWEST, CONTROL_RUNNING, CONTROL_TARGET, CONTROL_UNFIT,
+    PUT_NAMES, PUT_NUMBER,
 };
-use crate::primitives::constant::Literal;
+use crate::parameters::CUTS;
+use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -65,9 +66,17 @@ pub struct Queue {
     /// The engine accepts the host's word in this clock.
     pub take: Input<Bit>,
     /// The number of that word.
-    pub put_word: Input<Word<3>>,
+    pub put_word: Input<Word<4>>,
+    /// The lowest bits of that word: the slot of the last segment that a cut keeps.
+    pub put_slot: Input<Word<5>>,
     /// The committed segment is the last of its move.
     pub last: Input<Bit>,
+    /// In this tick the queue examines the segment that was named for a cut.
+    pub checks: Input<Bit>,
+    /// In this tick the queue ends with the segment that was named, if one was.
+    pub cuts: Input<Bit>,
+    /// In this tick the queue forgets what was named.
+    pub closes: Input<Bit>,
     /// The running segment ends with this tick.
     pub ended: Input<Bit>,
     /// V + A does not fit in 64 bits.
@@ -78,24 +87,20 @@ pub struct Queue {
     pub turned: Input<Bit>,
     /// V < 0.
     pub back: Input<Bit>,
-    /// In beat 12: P + V crosses a step, if the axis moves.
-    pub crosses: Input<Bit>,
     /// In beat 12: the next tick's words of the axis are those of its own hit.
     pub meets: Input<Bit>,
-    /// The low bits of the position, from the pulser.
-    pub pulses: Input<Word<3>>,
-    /// The low bits of the discarded steps, from the pulser.
-    pub losses: Input<Word<3>>,
+    /// In beat 12: what is kept in `counts` until the next time slot of the axis.
+    pub next_counts: Input<Word<7>>,
     /// The slot of the running segment.
-    pub live: Signal<Out, Word<3>>,
+    pub live: Signal<Out, Word<5>>,
     /// The slot that the host writes.
-    pub fresh: Signal<Out, Word<3>>,
+    pub fresh: Signal<Out, Word<5>>,
     /// Fault: the word accepted in the clock before was not the one that was due.
     pub misplaced: Signal<Out, Bit>,
     /// From beat 1: no slot is free for the host.
     pub full: Signal<Out, Bit>,
-    /// The number of segments for which the queue has space, 0 to 7.
-    pub room: Signal<Out, Word<3>>,
+    /// From beat 1: the number of segments for which the queue has space.
+    pub room: Signal<Out, Word<5>>,
     /// No segment waits.
     pub empty: Signal<Out, Bit>,
     /// The axis runs in this tick.
@@ -112,27 +117,37 @@ pub struct Queue {
     pub moves: Signal<Out, Bit>,
     /// In beat 12: the axis runs in the next tick too.
     pub goes_on: Signal<Out, Bit>,
+    /// In beat 12: the next segment begins with the next tick.
+    pub advances: Signal<Out, Bit>,
     /// In beat 12, fault: V is out of range.
     pub too_fast: Signal<Out, Bit>,
     /// In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     pub dry: Signal<Out, Bit>,
-    /// From beat 5: a step forward is added to the position.
-    pub up: Signal<Out, Bit>,
-    /// From beat 5: a step backward is subtracted from the position.
-    pub down: Signal<Out, Bit>,
-    /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
-    pub lost: Signal<Out, Bit>,
+    /// In beat 12, while a cut is examined: the named segment neither waits nor runs after this
+    /// tick, or a segment is partly written.
+    pub misses: Signal<Out, Bit>,
     /// The words of this tick are those of the axis' own hit.
     pub met: Signal<Out, Bit>,
-    /// Carries since the last clear less counted steps, modulo 16.
-    pub on_way: Signal<Out, Word<4>>,
-    control: Memory<3, 24>,
-    lasts: Memory<6, 1>,
-    word: Signal<Local, Word<24>>,
-    old_live: Signal<Local, Word<3>>,
-    live_now: Signal<Local, Word<3>>,
-    newest: Signal<Local, Word<3>>,
-    fresh_now: Signal<Local, Word<3>>,
+    /// `next_counts` of the time slot before of this axis, at first 0.
+    pub counts: Signal<Out, Word<7>>,
+    control: Memory<3, 31>,
+    lasts: Memory<8, 1>,
+    word: Signal<Local, Word<31>>,
+    old_live: Signal<Local, Word<5>>,
+    live_now: Signal<Local, Word<5>>,
+    newest: Signal<Local, Word<5>>,
+    target: Signal<Local, Word<5>>,
+    is_named: Signal<Local, Bit>,  // the axis takes part in the next cut
+    ends_here: Signal<Local, Bit>, // this queue is cut in this tick
+    space: Signal<Local, Word<5>>, // `room`
+    distance: Signal<Local, Word<5>>, // from the running slot to the named one
+    span: Signal<Local, Word<6>>,
+    is_live: Signal<Local, Bit>,
+    waits: Signal<Local, Bit>,
+    keeps: Signal<Local, Bit>,
+    takes_word: Signal<Local, Bit>, // the host's word is one of a segment
+    names: Signal<Local, Bit>,      // in beat 12: it names the slot of a cut
+    fresh_now: Signal<Local, Word<5>>,
     runs: Signal<Local, Bit>,
     fits: Signal<Local, Bit>,
     none: Signal<Local, Bit>,
@@ -141,70 +156,85 @@ pub struct Queue {
     over: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
     stays: Signal<Local, Bit>,
+    steps_on: Signal<Local, Bit>, // `advances`
     due: Signal<Local, Word<3>>,
     fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
-    filled: Register<Bit>,       // `full`, a clock later, so that no long path begins at the memory
-    took: Register<Bit>,         // the word that is due was accepted in this time slot
-    wrong: Register<Bit>,        // `misplaced`
-    missing: Signal<Local, Word<3>>,
-    unseen: Signal<Local, Word<3>>,
-    forward: Register<Bit>,  // `up`
-    backward: Register<Bit>, // `down`
-    gone: Register<Bit>,     // `lost`
-    next_live: Signal<Local, Word<3>>,
-    next_newest: Signal<Local, Word<3>>,
-    next_running: Signal<Local, Word<24>>,
-    next_unfit: Signal<Local, Word<24>>,
-    next_known: Signal<Local, Word<24>>,
-    next_back: Signal<Local, Word<24>>,
+    // `room`, a clock later, so that no long path begins at the memory
+    spare: Register<Word<5>>,
+    took: Register<Bit>,  // the word that is due was accepted in this time slot
+    wrong: Register<Bit>, // `misplaced`
+    next_live: Signal<Local, Word<5>>,
+    next_newest: Signal<Local, Word<5>>,
+    next_running: Signal<Local, Word<31>>,
+    next_unfit: Signal<Local, Word<31>>,
+    next_known: Signal<Local, Word<31>>,
+    next_back: Signal<Local, Word<31>>,
     next_due: Signal<Local, Word<3>>,
-    next_seen: Signal<Local, Word<3>>,
-    next_lost: Signal<Local, Word<3>>,
-    next_met: Signal<Local, Word<24>>,
-    ahead: Signal<Local, Bit>,  // the tick contains a step forward
-    behind: Signal<Local, Bit>, // the tick contains a step backward
-    gain: Signal<Local, Word<4>>,
-    next_on_way: Signal<Local, Word<4>>,
+    next_met: Signal<Local, Word<31>>,
+    next_target: Signal<Local, Word<5>>,
+    next_named: Signal<Local, Word<31>>,
+    has_cuts: Parameter<1>,
+    slots: Parameter<5>,  // the greatest number of a slot
+    beyond: Parameter<6>, // the bits above it
+    one_slot: Literal<5, 1>,
+    no_slot: Literal<5, 0>,
+    named_bit: Literal<31, { 1 << CONTROL_NAMED }>,
     one: Literal<3, 1>,
-    minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
-    no: Literal<24, 0>,
-    running_bit: Literal<24, { 1 << CONTROL_RUNNING }>,
-    unfit_bit: Literal<24, { 1 << CONTROL_UNFIT }>,
-    back_bit: Literal<24, { 1 << CONTROL_BACK }>,
-    known_bit: Literal<24, { 1 << CONTROL_KNOWN }>,
-    all: Literal<24, 0xff_ffff>,
-    met_bit: Literal<24, { 1 << CONTROL_MET }>,
-    none_on_way: Literal<4, 0>,
-    one_more: Literal<4, 1>,
-    two_more: Literal<4, 2>,
-    one_less: Literal<4, 15>,
-    two_less: Literal<4, 14>,
+    no: Literal<31, 0>,
+    running_bit: Literal<31, { 1 << CONTROL_RUNNING }>,
+    unfit_bit: Literal<31, { 1 << CONTROL_UNFIT }>,
+    back_bit: Literal<31, { 1 << CONTROL_BACK }>,
+    known_bit: Literal<31, { 1 << CONTROL_KNOWN }>,
+    all: Literal<31, 0x7fff_ffff>,
+    met_bit: Literal<31, { 1 << CONTROL_MET }>,
     commit: Literal<3, 7>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
     at_3: Literal<4, 3>,
-    at_8: Literal<4, 8>,
-    at_11: Literal<4, 11>,
-    at_16: Literal<5, 16>,
-    at_20: Literal<5, 20>,
+    at_5: Literal<4, 5>,
+    at_14: Literal<4, 14>,
+    at_18: Literal<5, 18>,
+    at_25: Literal<5, 25>,
+}
+
+impl Queue {
+    /// Makes the queue of axes with this number of slots, 8, 16 or 32, of a build with cuts or
+    /// without.
+    pub fn new(slots: usize, cuts: bool) -> Self {
+        let slots = slots as u64;
+        Self {
+            lasts: Memory::of_few_formulas((8 * slots).ilog2() as usize, &[]),
+            has_cuts: Parameter::of(&CUTS.of::<32>(cuts).bits(0)),
+            slots: Parameter::new(slots - 1),
+            beyond: Parameter::new(0x3f & !(slots - 1)),
+            ..Self::default()
+        }
+    }
 }
 
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, filled, took, wrong, forward, backward, gone);
+        dff_setup!(self, clock, spare, took, wrong);
         clock!(self, clock, control, lasts);
 
-        // The control word of this time slot.
+        // The control word of this time slot. A cut takes effect before anything else.
         self.word.next = self.control.read_data.val();
-        self.old_live.next = self.word.val().get_bits::<3>(CONTROL_LIVE);
-        self.newest.next = self.word.val().get_bits::<3>(CONTROL_NEWEST);
+        self.old_live.next = self.word.val().get_bits::<5>(CONTROL_LIVE) & self.slots.val();
+        self.target.next = self.word.val().get_bits::<5>(CONTROL_TARGET) & self.slots.val();
+        self.is_named.next = self.word.val().get_bit(CONTROL_NAMED) & self.has_cuts.val().any();
+        self.ends_here.next = self.cuts.val() & self.is_named.val();
+        self.newest.next = self.word.val().get_bits::<5>(CONTROL_NEWEST) & self.slots.val();
+        if self.ends_here.val() {
+            self.newest.next = self.target.val();
+        }
         self.live_now.next = self.old_live.val();
         if self.starts.val() {
-            self.live_now.next = self.old_live.val() + self.one.val();
+            self.live_now.next = (self.old_live.val() + self.one_slot.val()) & self.slots.val();
         }
-        self.fresh_now.next = self.newest.val() + self.one.val();
+        self.fresh_now.next = (self.newest.val() + self.one_slot.val()) & self.slots.val();
+        self.space.next = (self.live_now.val() + !self.newest.val()) & self.slots.val();
         self.runs.next =
             (self.word.val().get_bit(CONTROL_RUNNING) | self.starts.val()) & !self.halted.val();
         self.fits.next = self.runs.val() & !self.word.val().get_bit(CONTROL_UNFIT);
@@ -222,6 +252,8 @@ impl Logic for Queue {
         }
         self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
+        self.steps_on.next = self.moves.val() & self.follows.val();
+        self.advances.next = self.steps_on.val();
         self.too_fast.next =
             self.runs.val() & (self.word.val().get_bit(CONTROL_UNFIT) | self.least.val());
         self.dry.next = self.moves.val()
@@ -230,46 +262,50 @@ impl Logic for Queue {
             & self.none.val()
             & !self.ramp.val();
 
-        // Pulses and discarded steps are transferred to memory one per tick. The difference of the
-        // low bits shows which are not transferred yet.
-        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(CONTROL_POSITION);
-        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(CONTROL_DISCARDED);
-        if self.beat.val().get_bit(BEAT_COMPARE) {
-            self.forward.d.next =
-                self.missing.val().any() & !self.missing.val().get_bit(MISSING_SIGN);
-            self.backward.d.next = self.missing.val().get_bit(MISSING_SIGN);
-            self.gone.d.next = self.unseen.val().any() & !self.runs.val();
-        }
+        // The segment that was named for a cut. It waits if its distance from the running one is at
+        // most the number of waiting segments, which is the complement of the space.
+        self.distance.next = (self.target.val() - self.live_now.val()) & self.slots.val();
+        self.span.next = bit_cast::<6, 5>(self.distance.val()) + bit_cast::<6, 5>(self.space.val());
+        self.is_live.next = !self.distance.val().any();
+        self.waits.next = !(self.span.val() & self.beyond.val()).any()
+            & !self.is_live.val()
+            & !self.empties.val()
+            & !self.clear.val();
+        self.keeps.next =
+            self.waits.val() | (self.is_live.val() & self.stays.val() & !self.follows.val());
 
         // The host's words and its commit.
+        self.takes_word.next = self.take.val() & !self.put_word.val().get_bit(PUT_NAMES);
+        self.names.next =
+            self.take.val() & self.put_word.val().get_bit(PUT_NAMES) & self.has_cuts.val().any();
         self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
-        self.fits_in.next = self.put_word.val() == self.due.val();
-        self.wrong.d.next = self.take.val() & !self.fits_in.val();
+        self.fits_in.next = self.put_word.val().get_bits::<3>(PUT_NUMBER) == self.due.val();
+        self.wrong.d.next = self.takes_word.val() & !self.fits_in.val();
         self.misplaced.next = self.wrong.q.val();
         if self.beat.val().get_bit(BEAT_FIRST) {
             self.took.d.next = false;
         }
-        if self.take.val() & self.fits_in.val() {
+        if self.takes_word.val() & self.fits_in.val() {
             self.took.d.next = true;
         }
-        self.lasts.read_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
-            | bit_cast::<6, 3>(self.live_now.val());
-        self.lasts.write_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
-            | bit_cast::<6, 3>(self.fresh_now.val());
+        self.lasts.read_address.next = (bit_cast::<8, 5>(self.live_now.val()) << self.at_3.val())
+            | bit_cast::<8, 3>(self.axis.val());
+        self.lasts.write_address.next = (bit_cast::<8, 5>(self.fresh_now.val()) << self.at_3.val())
+            | bit_cast::<8, 3>(self.axis.val());
         self.lasts.write_data.next = self.unset.val();
         if self.last.val() {
             self.lasts.write_data.next = self.set.val();
         }
         self.lasts.write_bits.next = self.unset.val();
         // Each word writes the mark; that of the commit is the last one and stays.
-        if self.take.val() {
+        if self.takes_word.val() {
             self.lasts.write_bits.next = self.set.val();
         }
 
         // The control word for the next time slot of this axis.
         self.next_live.next = self.live_now.val();
-        if self.moves.val() & self.follows.val() {
-            self.next_live.next = self.live_now.val() + self.one.val();
+        if self.steps_on.val() {
+            self.next_live.next = (self.live_now.val() + self.one_slot.val()) & self.slots.val();
         }
         // Emptying the queue changes `live` only, so that the slot that the host writes stays the
         // same.
@@ -285,8 +321,8 @@ impl Logic for Queue {
             self.next_due.next = self.due.val() + self.one.val();
         }
         if self.clear.val() {
-            self.next_live.next = self.zero.val();
-            self.next_newest.next = self.zero.val();
+            self.next_live.next = self.no_slot.val();
+            self.next_newest.next = self.no_slot.val();
             self.next_due.next = self.zero.val();
         }
         self.next_running.next = self.no.val();
@@ -307,65 +343,35 @@ impl Logic for Queue {
         {
             self.next_back.next = self.back_bit.val();
         }
-        self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION);
-        if self.forward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION) + self.one.val();
-        } else if self.backward.q.val() {
-            self.next_seen.next =
-                self.word.val().get_bits::<3>(CONTROL_POSITION) + self.minus_one.val();
-        }
-        self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED);
-        if self.gone.q.val() {
-            self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
-        }
         self.next_met.next = self.no.val();
         if self.meets.val() {
             self.next_met.next = self.met_bit.val();
         }
-        self.ahead.next = self.moves.val() & self.crosses.val() & !self.back.val();
-        self.behind.next = self.moves.val() & self.crosses.val() & self.back.val();
-        self.gain.next = self.none_on_way.val();
-        if self.forward.q.val() {
-            self.gain.next = self.one_less.val();
+        self.next_target.next = self.target.val();
+        self.next_named.next = self.no.val();
+        if self.is_named.val() & !self.closes.val() & !self.clear.val() {
+            self.next_named.next = self.named_bit.val();
         }
-        if self.backward.q.val() {
-            self.gain.next = self.one_more.val();
+        if self.names.val() {
+            self.next_target.next = self.put_slot.val() & self.slots.val();
+            self.next_named.next = self.named_bit.val();
         }
-        if self.ahead.val() {
-            self.gain.next = self.one_more.val();
-            if self.forward.q.val() {
-                self.gain.next = self.none_on_way.val();
-            }
-            if self.backward.q.val() {
-                self.gain.next = self.two_more.val();
-            }
-        }
-        if self.behind.val() {
-            self.gain.next = self.one_less.val();
-            if self.forward.q.val() {
-                self.gain.next = self.two_less.val();
-            }
-            if self.backward.q.val() {
-                self.gain.next = self.none_on_way.val();
-            }
-        }
-        self.next_on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY) + self.gain.val();
-        if self.clear.val() {
-            self.next_on_way.next = self.none_on_way.val();
-        }
+        self.misses.next = self.checks.val()
+            & self.is_named.val()
+            & (!self.keeps.val() | self.next_due.val().any());
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
-        self.control.write_data.next = bit_cast::<24, 3>(self.next_live.val())
-            | (bit_cast::<24, 3>(self.next_newest.val()) << self.at_3.val())
+        self.control.write_data.next = bit_cast::<31, 5>(self.next_live.val())
+            | (bit_cast::<31, 5>(self.next_newest.val()) << self.at_5.val())
             | self.next_running.val()
             | self.next_unfit.val()
             | self.next_known.val()
             | self.next_back.val()
-            | (bit_cast::<24, 3>(self.next_seen.val()) << self.at_8.val())
-            | (bit_cast::<24, 3>(self.next_lost.val()) << self.at_11.val())
-            | (bit_cast::<24, 3>(self.next_due.val()) << self.at_16.val())
+            | (bit_cast::<31, 3>(self.next_due.val()) << self.at_14.val())
             | self.next_met.val()
-            | (bit_cast::<24, 4>(self.next_on_way.val()) << self.at_20.val());
+            | (bit_cast::<31, 7>(self.next_counts.val()) << self.at_18.val())
+            | (bit_cast::<31, 5>(self.next_target.val()) << self.at_25.val())
+            | self.next_named.val();
         self.control.write_bits.next = self.no.val();
         if self.beat.val().get_bit(BEAT_LAST) {
             self.control.write_bits.next = self.all.val();
@@ -373,20 +379,17 @@ impl Logic for Queue {
 
         self.live.next = self.live_now.val();
         self.fresh.next = self.fresh_now.val();
-        self.filled.d.next = self.fresh_now.val() == self.live_now.val();
-        self.full.next = self.filled.q.val();
-        self.room.next = self.live_now.val() + !self.newest.val();
+        self.spare.d.next = self.space.val();
+        self.full.next = !self.spare.q.val().any();
+        self.room.next = self.spare.q.val();
         self.empty.next = self.none.val();
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();
         self.slows.next = self.ramps.val();
         self.upward.next = self.word.val().get_bit(CONTROL_BACK);
         self.steady.next = self.ramp.val() & !self.word.val().get_bit(CONTROL_KNOWN);
-        self.up.next = self.forward.q.val();
-        self.down.next = self.backward.q.val();
-        self.lost.next = self.gone.q.val();
         self.met.next = self.word.val().get_bit(CONTROL_MET);
-        self.on_way.next = self.word.val().get_bits::<4>(CONTROL_ON_WAY);
+        self.counts.next = self.word.val().get_bits::<7>(CONTROL_COUNTS);
     }
 }
 
@@ -397,6 +400,8 @@ mod tests {
 
     #[test]
     fn queue_synthesizes() {
-        assert_synthesizes(Queue::default(), "carrystep_queue");
+        for slots in [8, 32] {
+            assert_synthesizes(Queue::new(slots, slots == 8), &format!("carrystep_queue_{slots}"));
+        }
     }
 }

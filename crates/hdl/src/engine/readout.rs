@@ -27,7 +27,7 @@ use super::layout::{
     BEAT_LAST, BEAT_STATE_LEFT, BEAT_STATE_P_HIGH, BEAT_STATE_P_LOW, BEAT_STATE_POSITION,
     BEAT_STATE_STATUS, BEAT_STATE_SWITCH, BEAT_STATE_TICK,
 };
-use crate::primitives::constant::Literal;
+use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{SWITCH_LEVEL, SWITCH_STATE};
@@ -69,11 +69,11 @@ pub struct Readout {
     /// The word that the memory returns.
     pub word: Input<Word<32>>,
     /// The slot of the running segment.
-    pub live: Input<Word<3>>,
+    pub live: Input<Word<5>>,
     /// The axis runs in this tick.
     pub running: Input<Bit>,
     /// The number of segments for which the queue has space.
-    pub room: Input<Word<3>>,
+    pub room: Input<Word<5>>,
     /// Carries less counted steps, modulo 16.
     pub on_way: Input<Word<4>>,
     /// A word of the state of the axis of this time slot is output.
@@ -101,10 +101,11 @@ pub struct Readout {
     status: Signal<Local, Word<16>>,
     low: Signal<Local, Word<16>>,
     running_now: Signal<Local, Word<16>>,
-    waiting: Signal<Local, Word<3>>,
+    waiting: Signal<Local, Word<5>>,
     ticks_left: Signal<Local, Bit>,
     p_or_position: Signal<Local, Bit>,
     odd: Signal<Local, Bit>,
+    slots: Parameter<5>, // the greatest number of a slot
     high_half: Literal<32, 0xffff_0000>,
     no_status: Literal<16, 0>,
     running_bit: Literal<16, 0x20>,
@@ -121,6 +122,13 @@ pub struct Readout {
     odd_item: Literal<3, 1>,
     middle_item: Literal<3, 2>,
     high_item: Literal<3, 4>,
+}
+
+impl Readout {
+    /// Makes the readout of axes with this number of slots, 8, 16 or 32.
+    pub fn new(slots: usize) -> Self {
+        Self { slots: Parameter::new(slots as u64 - 1), ..Self::default() }
+    }
 }
 
 impl Logic for Readout {
@@ -200,15 +208,15 @@ impl Logic for Readout {
             | self.beat.val().get_bit(BEAT_STATE_TICK)
             | self.beat.val().get_bit(BEAT_STATE_STATUS);
 
-        // The word. A queue of seven slots has room for the complement of what waits.
+        // The word. A queue has room for the complement of what waits.
         self.running_now.next = self.no_status.val();
         if self.running.val() {
             self.running_now.next = self.running_bit.val();
         }
-        self.waiting.next = !self.room.val();
-        self.status.next = bit_cast::<16, 3>(self.live.val())
+        self.waiting.next = !self.room.val() & self.slots.val();
+        self.status.next = bit_cast::<16, 5>(self.live.val())
             | self.running_now.val()
-            | (bit_cast::<16, 3>(self.waiting.val()) << self.at_6.val())
+            | (bit_cast::<16, 5>(self.waiting.val()) << self.at_6.val())
             | (bit_cast::<16, 4>(self.on_way.val()) << self.at_12.val());
         self.low.next = self.word.val().get_bits::<16>(0);
         if self.beat.val().get_bit(BEAT_STATE_STATUS) {
@@ -242,6 +250,6 @@ mod tests {
 
     #[test]
     fn readout_synthesizes() {
-        assert_synthesizes(Readout::default(), "carrystep_readout");
+        assert_synthesizes(Readout::new(8), "carrystep_readout");
     }
 }

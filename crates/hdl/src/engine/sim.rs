@@ -51,6 +51,7 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.put_data.next = Word::from(u64::from(put.data));
         self.start_valid.next = inputs.start.is_some();
         self.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
+        self.cut.next = inputs.cut;
         self.clear.next = inputs.clear;
         self.reset.next = inputs.reset;
         self.stop.next = inputs.stop;
@@ -75,8 +76,12 @@ impl<const N: usize> AnyEngine for Engine<N> {
         EngineOutputs {
             put_ready: self.put_ready.val(),
             start_ready: self.start_ready.val(),
+            cut_busy: self.cut_busy.val(),
+            cut_refused: self.cut_refused.val(),
             step: mask(&*self.step),
             dir: mask(&*self.dir),
+            outputs: self.outputs.val().value() as u8,
+            pwm: self.pwm.val(),
             enabled: self.enabled.val(),
             idle: self.idle.val(),
             fault: self.fault.val().then(|| (cause, self.culprits.val().value() as u8)),

@@ -2,7 +2,7 @@
 //! an axis keeps between moves.
 //!
 //! ```text
-//! address   axis 3 | slot 3 | word 3
+//! address   slot, high bits 2 | axis 3 | slot, low bits 3 | word 3
 //! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: state of the axis, by slot:
 //! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s    s: stop acceleration
 //!
@@ -18,7 +18,8 @@
 //! written after the last time slot, in the clock after its beat 16. In a ramp the memory returns
 //! -s or s in place of A, so that a ramp needs no additional adder.
 //!
-//! Cost: one memory of 512 words of 32 bits; with eight axes, 1024 words, of which 513 are used.
+//! Cost: one memory of 512 words of 32 bits for eight slots of each axis, 1024 for 16 slots, 2048
+//! for 32. Eight axes with eight slots have 1024 words, of which 513 are used.
 
 use super::layout::{
     BEAT_OVER_SUM_TICK, BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
@@ -26,9 +27,9 @@ use super::layout::{
     BEAT_READ_TICKS, BEAT_READ_V_HIGH, BEAT_READ_V_LOW, BEAT_SUM_TICK, BEAT_WRITE_A_HIGH,
     BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW, BEAT_WRITE_POSITION, BEAT_WRITE_PUT,
     BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW, SLOT_DISCARDED, SLOT_DOWN_HIGH,
-    SLOT_DOWN_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION, SLOT_UP_HIGH, SLOT_UP_LOW, TICK_ADDRESS,
-    WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE, WORD_TICKS, WORD_V_HIGH,
-    WORD_V_LOW, state_address,
+    SLOT_DOWN_LOW, SLOT_HIGH, SLOT_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION, SLOT_UP_HIGH,
+    SLOT_UP_LOW, TICK_ADDRESS, WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE,
+    WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
 };
 use crate::parameters::{START_HALF, STOP_ACCEL};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
@@ -51,9 +52,9 @@ pub struct Store {
     /// The axis of the time slot.
     pub axis: Input<Word<3>>,
     /// The slot of the running segment of the axis.
-    pub live: Input<Word<3>>,
+    pub live: Input<Word<5>>,
     /// The slot that the host writes.
-    pub fresh: Input<Word<3>>,
+    pub fresh: Input<Word<5>>,
     /// The axis runs in this tick.
     pub running: Input<Bit>,
     /// The axis runs, and V is in range as far as is known.
@@ -77,11 +78,11 @@ pub struct Store {
     pub sum: Input<Word<32>>,
     /// The word that was read.
     pub word: Signal<Out, Word<32>>,
-    pub(crate) segments: Memory<10, 32>,
+    pub(crate) segments: Memory<11, 32>,
     counted: Register<Bit>, // the sum is the number of the next tick
-    read_slot: Signal<Local, Word<3>>,
+    read_slot: Signal<Local, Word<5>>,
     read_word: Signal<Local, Word<3>>,
-    write_slot: Signal<Local, Word<3>>,
+    write_slot: Signal<Local, Word<5>>,
     write_word: Signal<Local, Word<3>>,
     writes: Signal<Local, Bit>,
     ticks: Literal<3, WORD_TICKS>,
@@ -92,17 +93,18 @@ pub struct Store {
     j_low: Literal<3, WORD_J_LOW>,
     j_high: Literal<3, WORD_J_HIGH>,
     kept: Literal<3, WORD_STATE>,
-    p_low: Literal<3, SLOT_P_LOW>,
-    p_high: Literal<3, SLOT_P_HIGH>,
-    position: Literal<3, SLOT_POSITION>,
-    discarded: Literal<3, SLOT_DISCARDED>,
-    down_low: Literal<3, SLOT_DOWN_LOW>,
-    down_high: Literal<3, SLOT_DOWN_HIGH>,
-    up_low: Literal<3, SLOT_UP_LOW>,
-    up_high: Literal<3, SLOT_UP_HIGH>,
+    p_low: Literal<5, SLOT_P_LOW>,
+    p_high: Literal<5, SLOT_P_HIGH>,
+    position: Literal<5, SLOT_POSITION>,
+    discarded: Literal<5, SLOT_DISCARDED>,
+    down_low: Literal<5, SLOT_DOWN_LOW>,
+    down_high: Literal<5, SLOT_DOWN_HIGH>,
+    up_low: Literal<5, SLOT_UP_LOW>,
+    up_high: Literal<5, SLOT_UP_HIGH>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
-    tick_address: Literal<10, TICK_ADDRESS>,
+    at_9: Literal<4, 9>,
+    tick_address: Literal<11, TICK_ADDRESS>,
     start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
@@ -112,9 +114,9 @@ pub struct Store {
 
 impl Store {
     /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
-    /// axes in 2^-64 step per tick^2. The first tick has no time slots, so the first number of a
-    /// tick that is read is 1.
-    pub fn new(start: StartPhase, stops: &[u64]) -> Self {
+    /// axes in 2^-64 step per tick^2; `slots` is the number of slots of an axis, 8, 16 or 32. The
+    /// first tick has no time slots, so the first number of a tick that is read is 1.
+    pub fn new(start: StartPhase, stops: &[u64], slots: usize) -> Self {
         let half = START_HALF.of::<32>(start == StartPhase::Half);
         let high = |start: StartPhase| Formula::number(start.start_value() >> 32);
         let start_high = high(StartPhase::Half).where_or(&half.bits(0), high(StartPhase::Zero));
@@ -140,7 +142,8 @@ impl Store {
             store.stop_accel_out_of_range[axis] =
                 ParameterRefusal::of(&stop.is_outside(1, 1 << 62));
         }
-        let bits = if stops.len() < MAX_AXES { 9 } else { 10 };
+        let bits = (8 * 8 * slots).ilog2() as usize;
+        let bits = if stops.len() < MAX_AXES { bits } else { bits.max(10) };
         kept.push((TICK_ADDRESS as usize & ((1 << bits) - 1), Formula::number(1)));
         Self {
             segments: Memory::of_few_formulas(bits, &kept),
@@ -208,9 +211,12 @@ impl Logic for Store {
         if self.beat.val().get_bit(BEAT_READ_P_HIGH) {
             self.read_slot.next = self.p_high.val();
         }
-        self.segments.read_address.next = (bit_cast::<10, 3>(self.axis.val()) << self.at_6.val())
-            | (bit_cast::<10, 3>(self.read_slot.val()) << self.at_3.val())
-            | bit_cast::<10, 3>(self.read_word.val());
+        self.segments.read_address.next =
+            (bit_cast::<11, 2>(self.read_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
+                | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
+                | (bit_cast::<11, 3>(self.read_slot.val().get_bits::<3>(SLOT_LOW))
+                    << self.at_3.val())
+                | bit_cast::<11, 3>(self.read_word.val());
         if self.beat.val().get_bit(BEAT_READ_TICK) | self.beat.val().get_bit(BEAT_READ_TICK_AGAIN) {
             self.segments.read_address.next = self.tick_address.val();
         }
@@ -261,9 +267,12 @@ impl Logic for Store {
             self.write_slot.next = self.p_high.val();
             self.writes.next = self.moves.val() | self.wipe.val();
         }
-        self.segments.write_address.next = (bit_cast::<10, 3>(self.axis.val()) << self.at_6.val())
-            | (bit_cast::<10, 3>(self.write_slot.val()) << self.at_3.val())
-            | bit_cast::<10, 3>(self.write_word.val());
+        self.segments.write_address.next =
+            (bit_cast::<11, 2>(self.write_slot.val().get_bits::<2>(SLOT_HIGH)) << self.at_9.val())
+                | (bit_cast::<11, 3>(self.axis.val()) << self.at_6.val())
+                | (bit_cast::<11, 3>(self.write_slot.val().get_bits::<3>(SLOT_LOW))
+                    << self.at_3.val())
+                | bit_cast::<11, 3>(self.write_word.val());
         // The tail of the last time slot, which no other one overlaps.
         self.counted.d.next =
             self.beat.val().get_bit(BEAT_SUM_TICK) & !self.beat.val().get_bit(BEAT_OVER_SUM_TICK);
@@ -289,6 +298,6 @@ mod tests {
 
     #[test]
     fn store_synthesizes() {
-        assert_synthesizes(Store::new(StartPhase::Half, &[1 << 40; 6]), "carrystep_store");
+        assert_synthesizes(Store::new(StartPhase::Half, &[1 << 40; 6], 8), "carrystep_store");
     }
 }

@@ -8,14 +8,14 @@
 //! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
 //!
-//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of the
-//! mask without a waiting segment is a breach of the protocol. An axis of the mask that has hit the
-//! source of its seek drops the start, because its queue has been emptied.
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of
+//! the mask without a waiting segment is a breach of the protocol. An axis of the mask that has hit
+//! the source of its seek drops the start, because its queue has been emptied.
 
 use super::Engine;
 use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
-    MASK_OF_SLOT,
+    MASK_OF_SLOT, POSITION_LOW, PUT_NAMES, PUT_NUMBER, PUT_SLOT, SLOT_OF_FIRST,
 };
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
@@ -33,8 +33,12 @@ impl<const N: usize> Logic for Engine<N> {
             time_slot,
             adder,
             queue,
+            step_counts,
+            cut_control,
             store,
             event_wheel,
+            output_control,
+            pulse_width,
             switches,
             seek_control,
             edge_latch,
@@ -49,19 +53,25 @@ impl<const N: usize> Logic for Engine<N> {
 
         // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.listens.next = self.time_slot.beat.val().get_bit(BEAT_PUT)
-            & (self.time_slot.axis.val() == self.put_axis.val());
+        self.is_own.next = self.time_slot.axis.val() == self.put_axis.val();
+        self.listens.next = self.time_slot.beat.val().get_bit(BEAT_PUT) & self.is_own.val();
+        self.names.next = self.put_word.val().get_bit(PUT_NAMES);
         self.put_ready.next = !self.stops.fault.val()
-            & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
+            & (self.nobody.val()
+                | (self.listens.val() & !self.names.val() & !self.queue.full.val())
+                | (self.time_slot.beat.val().get_bit(BEAT_LAST)
+                    & self.is_own.val()
+                    & self.names.val()
+                    & !self.cut_control.checks.val()));
         self.room.next = self.queue.room.val();
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
         self.taken.d.next = self.taken.q.val() & !self.time_slot.beat.val().get_bit(BEAT_WRITE_PUT);
         if self.take.val() {
-            self.taken.d.next = self.put_word.val() != self.commit.val();
+            self.taken.d.next = (self.put_word.val() != self.commit.val()) & !self.names.val();
         }
         if self.time_slot.beat.val().get_bit(BEAT_PUT) {
-            self.taken_word.d.next = self.put_word.val();
+            self.taken_word.d.next = self.put_word.val().get_bits::<3>(PUT_NUMBER);
         }
 
         // A start is armed at a strobe. It takes effect at the first later strobe at which every
@@ -108,7 +118,7 @@ impl<const N: usize> Logic for Engine<N> {
             self.rest_1.d.next = !self.active.q.val();
             self.rest_2.d.next = !self.active.q.val() & self.rest_1.q.val();
         }
-        if self.take.val() {
+        if self.take.val() & !self.names.val() {
             self.rest_1.d.next = false;
             self.rest_2.d.next = false;
         }
@@ -159,24 +169,45 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.put_word.next = self.put_word.val();
+        self.queue.put_slot.next = self.put_data.val().get_bits::<5>(PUT_SLOT);
+        self.queue.checks.next = self.cut_control.checks.val();
+        self.queue.cuts.next = self.cut_control.cuts.val();
+        self.queue.closes.next = self.cut_control.closes.val();
         self.queue.last.next = self.put_data.val().get_bit(COMMIT_LAST);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
         self.queue.least.next = self.adder.least.val();
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
-        self.queue.crosses.next = self.adder.crosses.val();
         self.queue.meets.next = self.readout.meets.val();
-        self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
-        self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
+        self.queue.next_counts.next = self.step_counts.next_counts.val();
+
+        self.cut_control.strobe.next = self.strobe.val();
+        self.cut_control.beat.next = self.time_slot.beat.val();
+        self.cut_control.request.next = self.cut.val();
+        self.cut_control.misses.next = self.queue.misses.val();
+        self.cut_control.resetting.next = self.resets.resetting.val();
+        self.cut_busy.next = self.cut_control.busy.val();
+        self.cut_refused.next = self.cut_control.refused.val();
+
+        self.step_counts.beat.next = self.time_slot.beat.val();
+        self.step_counts.running.next = self.queue.running.val();
+        self.step_counts.moves.next = self.queue.moves.val();
+        self.step_counts.crosses.next = self.adder.crosses.val();
+        self.step_counts.back.next = self.adder.back.val();
+        self.step_counts.clear.next = self.stops.clearing.val();
+        self.step_counts.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
+        self.step_counts.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
+        self.step_counts.word.next = self.store.word.val().get_bits::<3>(POSITION_LOW);
+        self.step_counts.counts.next = self.queue.counts.val();
 
         self.adder.beat.next = self.time_slot.beat.val();
         self.adder.word.next = self.store.word.val();
         self.adder.put.next = self.put_data.val();
         self.adder.counts.next = self.queue.running.val();
-        self.adder.lost.next = self.queue.lost.val();
-        self.adder.up.next = self.queue.up.val();
-        self.adder.down.next = self.queue.down.val();
+        self.adder.lost.next = self.step_counts.lost.val();
+        self.adder.up.next = self.step_counts.up.val();
+        self.adder.down.next = self.step_counts.down.val();
         self.adder.wipe.next = self.stops.clearing.val();
         self.adder.forgets.next = self.resets.stage_2.val();
 
@@ -203,6 +234,25 @@ impl<const N: usize> Logic for Engine<N> {
         self.event_wheel.phase_known.next = self.time_slot.beat.val().get_bit(BEAT_PHASE);
         self.event_wheel.q.next = self.adder.q.val();
 
+        self.outputs_off.next = self.stops.frozen.val()
+            | (self.stops.fault.val() & self.off_at_ramps.val().any())
+            | !self.supervisor.enabled.val();
+        self.output_control.beat.next = self.time_slot.beat.val();
+        self.output_control.first.next = self.time_slot.axis_one_hot.val().get_bit(SLOT_OF_FIRST);
+        self.output_control.take.next = self.take.val();
+        self.output_control.put_word.next = self.put_word.val();
+        self.output_control.put_data.next = self.put_data.val();
+        self.output_control.fresh.next = self.queue.fresh.val();
+        self.output_control.live.next = self.queue.live.val();
+        self.output_control.starts.next = self.going.q.val() & self.masked.val();
+        self.output_control.follows.next = self.queue.advances.val();
+        self.output_control.off.next = self.outputs_off.val();
+        self.pulse_width.set.next = self.output_control.sets_duty.val() & self.strobe.val();
+        self.pulse_width.duty.next = self.output_control.duty.val();
+        self.pulse_width.off.next = self.outputs_off.val();
+        self.outputs.next = self.output_control.pins.val();
+        self.pwm.next = self.pulse_width.pin.val();
+
         self.readout.strobe.next = self.strobe.val();
         self.readout.beat.next = self.time_slot.beat.val();
         self.readout.is_last.next = self.time_slot.is_last.val();
@@ -221,7 +271,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.readout.live.next = self.queue.live.val();
         self.readout.running.next = self.queue.running.val();
         self.readout.room.next = self.queue.room.val();
-        self.readout.on_way.next = self.queue.on_way.val();
+        self.readout.on_way.next = self.step_counts.on_way.val();
         self.state_valid.next = self.readout.valid.val();
         self.state_page.next = self.readout.page.val();
         self.state_axis.next = self.time_slot.axis.val();
@@ -273,7 +323,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.stops.pressed.next = self.supervisor.pressed.val();
         self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
             | self.broken.val()
-            | self.queue.misplaced.val())
+            | self.queue.misplaced.val()
+            | self.output_control.stray.val())
             & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val() & !self.drops.q.val());
         self.stops.missed.next = self.supervisor.missed.val() & !self.rest_2.q.val();

@@ -47,8 +47,9 @@ pub struct LinkProcessor<const N: usize> {
     pub facts: Input<Word<32>>,
     /// The machine offers a word of a segment to the engine.
     pub put_valid: Signal<Out, Bit>,
-    /// The number of the offered word in its segment.
-    pub put_word: Signal<Out, Word<3>>,
+    /// The number of the offered word: 0 to 7 in its segment, or 8 where it names the slot of a
+    /// cut.
+    pub put_word: Signal<Out, Word<4>>,
     /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
     /// The engine accepts the offered word in this clock.
@@ -69,6 +70,8 @@ pub struct LinkProcessor<const N: usize> {
     pub latch_arm: Signal<Out, Bit>,
     /// The host requests a snapshot.
     pub snapshot: Signal<Out, Bit>,
+    /// The host requests a cut.
+    pub cut: Signal<Out, Bit>,
     /// The owner of the session has sent a valid request.
     pub kick: Signal<Out, Bit>,
     /// The host requests power for the motor drivers.
@@ -77,6 +80,8 @@ pub struct LinkProcessor<const N: usize> {
     pub stop: Signal<Out, Bit>,
     /// The engine has output all live words of a tick.
     pub refreshed: Input<Bit>,
+    /// The engine has refused the last cut.
+    pub cut_refused: Input<Bit>,
     /// The engine has latched a stop.
     pub fault: Input<Bit>,
     /// No axis moves any more after a stop.
@@ -92,7 +97,7 @@ pub struct LinkProcessor<const N: usize> {
     /// meaning.
     pub cause: Input<Word<CAUSE_BITS>>,
     /// The number of segments for which the queue of the axis in A has space.
-    pub room: Input<Word<3>>,
+    pub room: Input<Word<5>>,
     /// `room` is valid in this clock.
     pub room_valid: Input<Bit>,
     /// The axes that caused the stop; bit i is axis i.
@@ -117,8 +122,8 @@ pub struct LinkProcessor<const N: usize> {
     written: Register<Word<9>>,
     // The address of the next byte to read in the ring buffer.
     read: Register<Word<9>>,
-    word: Register<Word<3>>,  // `put_word`
-    space: Register<Word<3>>, // `room`
+    word: Register<Word<3>>,  // the number of the next word of a segment
+    space: Register<Word<5>>, // the least `room` that was reported
     power: Register<Bit>,     // `enable`
     clears: Register<Bit>,    // `clear`
     code: Signal<Local, Word<16>>,
@@ -127,7 +132,10 @@ pub struct LinkProcessor<const N: usize> {
     stores: Signal<Local, Bit>,
     jumps: Signal<Local, Bit>,
     acts: Signal<Local, Bit>,
-    does: Signal<Local, Bit>, // the instruction acts, and neither sets nor stores nor jumps
+    only_acts: Signal<Local, Bit>, // it acts, and neither sets nor stores nor jumps
+    does: Signal<Local, Bit>,      // it executes, and only acts
+    reports: Signal<Local, Bit>,   // `room` counts
+    is_segment: Signal<Local, Bit>, // an offered word is one of a segment
     waits: Signal<Local, Bit>,
     waited: Signal<Local, Bit>,
     steps: Signal<Local, Bit>,
@@ -153,7 +161,8 @@ pub struct LinkProcessor<const N: usize> {
     no_place: Literal<9, 0>,
     no_code: Literal<16, 0>,
     all: Literal<8, 0xff>,
-    at_4: Literal<3, 4>,
+    any_space: Literal<5, 31>,
+    slot_of_cut: Literal<4, 8>,
     top: Literal<4, 15>,
     bit_0: Literal<8, 1>,
     bit_1: Literal<8, 2>,
@@ -213,10 +222,10 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         self.jumps.next = self.code.val().get_bit(13);
         self.acts.next =
             self.executes.val() & self.code.val().get_bit(12) & !self.code.val().get_bit(13);
-        self.does.next = self.executes.val()
-            & !self.code.val().get_bit(13)
+        self.only_acts.next = !self.code.val().get_bit(13)
             & !self.code.val().get_bit(14)
             & !self.code.val().get_bit(15);
+        self.does.next = self.executes.val() & self.only_acts.val();
         self.steps.next = self.does.val() & self.code.val().get_bit(2);
         self.waits.next = self.does.val() & self.code.val().get_bit(5);
         self.state.next = self.none.val();
@@ -228,6 +237,9 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         }
         if self.armed.val() {
             self.state.next = self.state.val() | self.bit_2.val();
+        }
+        if self.cut_refused.val() {
+            self.state.next = self.state.val() | self.bit_4.val();
         }
         if self.idle.val() {
             self.state.next = self.state.val() | self.bit_6.val();
@@ -288,11 +300,7 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         // The value that an instruction writes to A.
         self.port.next = self.state.val();
         if self.code.val().get_bit(0) {
-            self.port.next = bit_cast::<8, 3>(self.space.q.val()) << self.at_4.val();
-            if self.fault.val() {
-                self.port.next = (bit_cast::<8, 3>(self.space.q.val()) << self.at_4.val())
-                    | bit_cast::<8, CAUSE_BITS>(self.cause.val());
-            }
+            self.port.next = bit_cast::<8, 5>(self.space.q.val());
         }
         if self.code.val().get_bit(1) {
             self.port.next = self.none.val();
@@ -310,6 +318,9 @@ impl<const N: usize> Logic for LinkProcessor<N> {
                 if self.latch_armed.val() {
                     self.port.next = bit_cast::<8, 4>(self.latch_edges.val()) | self.bit_4.val();
                 }
+            }
+            if self.code.val().get_bit(1) {
+                self.port.next = bit_cast::<8, CAUSE_BITS>(self.cause.val());
             }
         }
         // The source in bits 10 to 8: bit 10 is 0 for the data memory.
@@ -383,7 +394,14 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         }
 
         // The ports of the engine.
-        if self.room_valid.val() {
+        self.reports.next = self.only_acts.val()
+            & self.code.val().get_bit(5)
+            & self.code.val().get_bit(3)
+            & self.room_valid.val();
+        if self.does.val() & self.code.val().get_bit(4) {
+            self.space.d.next = self.any_space.val();
+        }
+        if self.reports.val() & (self.room.val() < self.space.q.val()) {
             self.space.d.next = self.room.val();
         }
         if self.does.val()
@@ -422,15 +440,25 @@ impl<const N: usize> Logic for LinkProcessor<N> {
         self.snapshot.next = self.does.val()
             & self.code.val().get_bit(8)
             & self.code.val().get_bit(6)
-            & !self.code.val().get_bit(7);
+            & !self.code.val().get_bit(7)
+            & !self.code.val().get_bit(9);
+        self.cut.next = self.does.val()
+            & self.code.val().get_bit(8)
+            & self.code.val().get_bit(6)
+            & !self.code.val().get_bit(7)
+            & self.code.val().get_bit(9);
         self.clear.next = self.clears.q.val();
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
         self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
-        if self.put_valid.val() & self.over.val() {
+        self.is_segment.next = self.sum.q.val().get_bit(3);
+        if self.put_valid.val() & self.over.val() & self.is_segment.val() {
             self.word.d.next = self.word.q.val() + self.next_word.val();
         }
-        self.put_word.next = self.word.q.val();
+        self.put_word.next = self.slot_of_cut.val();
+        if self.is_segment.val() {
+            self.put_word.next = bit_cast::<4, 3>(self.word.q.val());
+        }
         self.put_data.next = self.crc.word_out.val();
         self.enable.next = self.power.q.val();
         self.x.next = self.index.q.val();

@@ -68,6 +68,8 @@ impl<const N: usize> AnyLink for Link<N> {
         self.state_item.next = Word::from(of_state(|state| state.item as u64));
         self.state.next = Word::from(u64::from(engine.state.map_or(u32::MAX, no_meaning)));
         self.refreshed.next = engine.refreshed;
+        self.cut_busy.next = engine.cut_busy;
+        self.cut_refused.next = engine.cut_refused;
         self.fault.next = engine.fault.is_some();
         self.halted.next = engine.halted;
         self.idle.next = engine.idle;
@@ -81,7 +83,7 @@ impl<const N: usize> AnyLink for Link<N> {
         self.latch_edges.next = Word::from(u64::from(engine.latch_edges));
         settle(self);
         let [axis, word] =
-            [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
+            [self.put_axis.val().value(), self.put_word.val().value()].map(|place| place as u8);
         let data = self.put_data.val().value() as u32;
         LinkOutputs {
             tx: true,
@@ -89,6 +91,7 @@ impl<const N: usize> AnyLink for Link<N> {
                 put: self.put_valid.val().then_some(Put { axis, word, data }),
                 room_of: axis,
                 start: self.start_valid.val().then(|| self.start_mask.val().value() as u8),
+                cut: self.cut.val(),
                 clear: self.clear.val(),
                 stop: self.stop.val(),
                 broken: self.broken.val(),

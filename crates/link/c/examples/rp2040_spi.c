@@ -119,9 +119,9 @@ static bool connect(void)
 /* A move of axis 0 at a tick of 2 us: half a second of acceleration to 5000 steps/s and half a
  * second of deceleration, exactly 2500 steps. */
 static const carrystep_segment move[] = {
-    {250000u, INT64_C(368934881474), INT64_C(737869762948), 0, false},
-    {40000u, INT64_C(184467071802214043), INT64_C(-737869762948), 0, false},
-    {210000u, INT64_C(154952281284294042), INT64_C(-737869762948), 0, true},
+    {250000u, INT64_C(368934881474), INT64_C(737869762948), 0, false, 0},
+    {40000u, INT64_C(184467071802214043), INT64_C(-737869762948), 0, false, 0},
+    {210000u, INT64_C(154952281284294042), INT64_C(-737869762948), 0, true, 0},
 };
 
 typedef struct {

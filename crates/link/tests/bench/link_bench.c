@@ -173,6 +173,15 @@ static void obey(char *words)
         put(yes(carrystep_owns(&session)));
     } else if (strcmp(verb, "seek-ended") == 0) {
         put(yes(carrystep_seek_ended(&session)));
+    } else if (strcmp(verb, "cut-refused") == 0) {
+        put(yes(carrystep_cut_refused(&session)));
+    } else if (strcmp(verb, "cut") == 0) {
+        uint8_t mask = (uint8_t)strtoul(rest, &rest, 16);
+        uint8_t slots[CARRYSTEP_MOST_AXES];
+        for (unsigned axis = 0; axis < CARRYSTEP_MOST_AXES; axis++) {
+            slots[axis] = (uint8_t)strtoul(rest, &rest, 10);
+        }
+        put(yes(carrystep_cut(&session, mask, slots)));
     } else if (strcmp(verb, "stop") == 0) {
         carrystep_stop(&session);
     } else if (strcmp(verb, "read") == 0) {
@@ -182,11 +191,12 @@ static void obey(char *words)
         put(yes(carrystep_write(&session, (uint8_t)a[0], (uint32_t)a[1])));
     } else if (strcmp(verb, "segment") == 0) {
         command *c = add();
-        unsigned last = 0;
+        uint32_t commit = 0;
         c->is_start = false;
-        sscanf(rest, "%" SCNu8 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %u", &c->axis, &c->segment.ticks,
-               &c->segment.v, &c->segment.a, &c->segment.j, &last);
-        c->segment.last = last == 1;
+        sscanf(rest, "%" SCNu8 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %" SCNu32, &c->axis, &c->segment.ticks,
+               &c->segment.v, &c->segment.a, &c->segment.j, &commit);
+        c->segment.last = (commit & 1u) != 0;
+        c->segment.outputs = commit & ~UINT32_C(1);
     } else if (strcmp(verb, "start") == 0) {
         command *c = add();
         c->is_start = true;

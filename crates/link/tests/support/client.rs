@@ -22,8 +22,8 @@
 
 use super::{hex, unhex};
 use carrystep_link::{
-    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Refusal, Segment,
-    Session, Timing, slip,
+    Answer, Body, BuildFacts, Command, CutSlots, Feeder, GatewareMismatch, OutputChange,
+    ProgramError, Refusal, Segment, Session, Timing, slip,
 };
 use std::num::NonZeroU16;
 
@@ -43,12 +43,18 @@ pub struct RustClient {
 /// A program that owns its commands.
 struct Owned {
     segments: Vec<std::collections::VecDeque<Segment>>,
+    /// What changes with each segment of axis 0 that has not been asked for.
+    outputs: std::collections::VecDeque<OutputChange>,
     starts: std::collections::VecDeque<u8>,
 }
 
 impl carrystep_link::SegmentSource for Owned {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         self.segments.get_mut(usize::from(axis))?.pop_front()
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        self.outputs.pop_front().unwrap_or_default()
     }
 
     fn start(&mut self) -> Option<u8> {
@@ -69,7 +75,17 @@ impl Owned {
         let start = |command: &Command| {
             if let Command::Start { mask } = *command { Some(mask) } else { None }
         };
-        Self { segments, starts: commands.iter().filter_map(start).collect() }
+        let mut next = OutputChange::NONE;
+        let change = |command: &Command| match *command {
+            Command::Outputs(change) => {
+                next = change;
+                None
+            }
+            Command::Segment { axis: 0, .. } => Some(std::mem::take(&mut next)),
+            _ => None,
+        };
+        let outputs = commands.iter().filter_map(change).collect();
+        Self { segments, outputs, starts: commands.iter().filter_map(start).collect() }
     }
 }
 
@@ -160,6 +176,15 @@ impl Client for RustClient {
             }
             ("owns", []) => yes(self.session.number().is_some()),
             ("seek-ended", []) => yes(self.session.seek_ended()),
+            ("cut-refused", []) => yes(self.session.cut_refused()),
+            ("cut", [mask, slots @ ..]) => {
+                let mask = hexadecimal(mask);
+                let mut named = CutSlots::default();
+                for (axis, slot) in slots.iter().enumerate() {
+                    named.0[axis] = (mask >> axis & 1 == 1).then(|| number(slot) as u8);
+                }
+                yes(self.session.cut(named).is_ok())
+            }
             ("stop", []) => {
                 self.session.stop();
                 nothing
@@ -172,14 +197,18 @@ impl Client for RustClient {
                 };
                 yes(self.session.write(body).is_ok())
             }
-            ("segment", [axis, ticks, v, a, j, last]) => {
+            ("segment", [axis, ticks, v, a, j, commit]) => {
                 let segment = Segment {
                     ticks: number(ticks),
                     v: long(v),
                     a: long(a),
                     j: long(j),
-                    last: number(last) == 1,
+                    last: number(commit) & 1 == 1,
                 };
+                let change = OutputChange::of_word(number(commit));
+                if !change.is_none() {
+                    self.commands.push(Command::Outputs(change));
+                }
                 self.commands.push(Command::Segment { axis: number(axis) as u8, segment });
                 nothing
             }

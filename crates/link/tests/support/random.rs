@@ -1,6 +1,6 @@
 //! Random numbers that are the same on every machine, and random programs.
 
-use carrystep_link::{Command, Segment};
+use carrystep_link::{Command, OutputChange, Segment};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -61,6 +61,12 @@ pub fn program(random: &mut Random, axes: u8, segments: usize, ticks: u32) -> Ve
         for (index, (_, axis, segment)) in due.into_iter().enumerate() {
             if index == usize::from(axes) {
                 commands.push(Command::Start { mask: ((1_u16 << axes) - 1) as u8 });
+            }
+            if axis == 0 && random.below(3) == 0 {
+                let change = OutputChange::of_word(random.word() as u32);
+                if !change.is_none() {
+                    commands.push(Command::Outputs(change));
+                }
             }
             commands.push(Command::Segment { axis, segment });
         }

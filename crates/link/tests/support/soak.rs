@@ -4,7 +4,7 @@ use super::client::Client;
 use super::device::{Bugs, Device, Done};
 use super::wire::{Faults, Wire};
 use super::{hex, unhex};
-use carrystep_link::Command;
+use carrystep_link::{Command, OutputChange};
 use std::collections::VecDeque;
 
 /// Number of the device's ticks per millisecond.
@@ -47,16 +47,19 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     let (mut there, mut back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
     client.say("begin 12 2");
     open(client, &mut device, seed as u16 | 1);
+    let mut outputs = OutputChange::NONE;
     for command in commands {
         match command {
+            Command::Outputs(change) => outputs = *change,
             Command::Segment { axis, segment: s } => {
+                let change = if *axis == 0 { std::mem::take(&mut outputs).word() } else { 0 };
                 client.say(&format!(
                     "segment {axis} {} {} {} {} {}",
                     s.ticks,
                     s.v,
                     s.a,
                     s.j,
-                    u8::from(s.last)
+                    u32::from(s.last) | change
                 ));
             }
             Command::Start { mask } => {
@@ -168,18 +171,24 @@ fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String
 /// After a fault a prefix is sufficient.
 fn compare(device: &Device, commands: &[Command]) -> Result<(), String> {
     let wanted = |axis: u8| {
+        let mut outputs = OutputChange::NONE;
         commands.iter().filter_map(move |command| match *command {
+            Command::Outputs(change) if axis == 0 => {
+                outputs = change;
+                None
+            }
             Command::Segment { axis: own, segment: s } if own == axis => {
+                let commit = u32::from(s.last) | std::mem::take(&mut outputs).word();
                 let halves = [s.v, s.a, s.j].map(|long| [long as u32, (long >> 32) as u32]);
                 let [[v0, v1], [a0, a1], [j0, j1]] = halves;
-                Some(Done::Segment(axis, [s.ticks - 1, v0, v1, a0, a1, j0, j1, u32::from(s.last)]))
+                Some(Done::Segment(axis, [s.ticks - 1, v0, v1, a0, a1, j0, j1, commit]))
             }
             _ => None,
         })
     };
     let starts = |command: &Command| match *command {
         Command::Start { mask } => Some(Done::Write(0x21, mask.into())),
-        Command::Segment { .. } => None,
+        Command::Segment { .. } | Command::Outputs(_) => None,
     };
     let whole = device.fault.is_none();
     let same = |what: &str, found: Vec<Done>, wanted: Vec<Done>| {

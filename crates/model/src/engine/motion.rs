@@ -1,6 +1,7 @@
 //! The engine without the words of state that it outputs for a host: up to eight accumulators with
 //! queues. The results of a tick take effect for all axes together at the strobe that ends it. The
-//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both together.
+//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both
+//! together.
 //!
 //! ```text
 //! tick     |       n       |     n + 1     |     n + 2     |
@@ -15,10 +16,12 @@
 //! the pin one clock after that.
 
 mod axis_model;
+mod cut;
 mod guard;
 mod inspection;
 mod latch;
 mod observed;
+mod outputs;
 mod plain;
 mod reset;
 mod seek;
@@ -29,14 +32,19 @@ mod words;
 use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, PUT_BEAT, Put};
+use carrystep_core::engine::{
+    COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put,
+};
+use cut::Cut;
 use guard::{Stop, Supervisor};
 use latch::LatchState;
 pub(crate) use observed::Ending;
+use outputs::OutputState;
 use reset::Reset;
 use seek::Seek;
 use std::sync::Arc;
 use strobe::Decision;
+use switches::LAST_BEAT;
 
 /// The state of the motion. [`Motion::outputs`] and [`Motion::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,6 +58,8 @@ pub struct Motion {
     stop: Stop,
     /// The word taken in the cycle before was not the next one of its segment.
     misplaced: bool,
+    /// The commit taken in the cycle before had bits that it must not have.
+    stray: bool,
     reset: Reset,
     supervisor: Supervisor,
     /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
@@ -62,6 +72,8 @@ pub struct Motion {
     interlock: bool,
     seek: Seek,
     latch: LatchState,
+    outputs: OutputState,
+    cut: Cut,
 }
 
 impl Motion {
@@ -71,6 +83,7 @@ impl Motion {
             AxisModel::new(
                 build.phase.start_value(),
                 *stop,
+                build.slots(),
                 shaper::ShaperState::at_configuration(pins),
             )
         };
@@ -81,6 +94,7 @@ impl Motion {
             armed: None,
             stop: Stop::default(),
             misplaced: false,
+            stray: false,
             reset: Reset::default(),
             supervisor: Supervisor::new(),
             rest: 2,
@@ -95,6 +109,8 @@ impl Motion {
             interlock: false,
             seek: Seek::default(),
             latch: LatchState::default(),
+            outputs: OutputState::default(),
+            cut: Cut::default(),
         }
     }
 
@@ -113,8 +129,11 @@ impl Motion {
         let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
         let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
+        let names = inputs.put.is_some_and(|put| put.word & CUT_WORD != 0);
         EngineOutputs {
-            put_ready: free && self.takes(put_axis),
+            put_ready: free && self.takes(put_axis, names),
+            cut_busy: self.cut.is_busy(),
+            cut_refused: self.cut.refused || !self.build.cuts,
             start_ready: free
                 && strobe
                 && self.armed.is_none()
@@ -122,6 +141,8 @@ impl Motion {
                 && self.supervisor.is_warm(guard),
             step: bits(&self.axis_models, |axis_model| axis_model.shaper.step),
             dir: bits(&self.axis_models, |axis_model| axis_model.shaper.dir),
+            outputs: self.outputs.levels,
+            pwm: self.outputs.pwm,
             enabled: self.supervisor.enabled,
             idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
             fault: self.stop.fault,
@@ -153,8 +174,8 @@ impl Motion {
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
         // The order of these calls is the priority of the causes: the first one is latched. It is
-        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, interlock,
-        // stop.
+        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog,
+        // interlock, stop.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
@@ -165,12 +186,14 @@ impl Motion {
             stop.call(Cause::EStop, 0, guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        if (nobody || inputs.broken || self.misplaced) && before.fault.is_none() {
+        if (nobody || inputs.broken || self.misplaced || self.stray) && before.fault.is_none() {
             stop.call(Cause::Protocol, 0, guard);
         }
         self.sample(inputs);
         let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
+        self.stray = taken.is_some_and(|put| self.has_stray_bits(put));
         self.misplaced = taken.is_some_and(|put| !self.put(put));
+        self.clock_outputs(strobe);
         // While the engine is at rest, a silent host calls no stop.
         let waits = self.rest == 2;
         if strobe {
@@ -192,6 +215,7 @@ impl Motion {
         self.watch_interlock();
         self.clock_seek(inputs, strobe);
         self.latch.clock(guard, inputs, strobe);
+        self.clock_cut(inputs, strobe);
         self.supervisor.clock(guard, inputs, strobe, outputs.idle);
         self.stop = stop;
         if strobe && before.clearing {
@@ -241,12 +265,17 @@ impl Motion {
         bits(&self.axis_models, |axis_model| axis_model.shaper.overrun)
     }
 
-    /// True if a word for this axis is accepted in this clock. The axis accepts it in its time slot
-    /// if its queue has room. A word for an axis that does not exist is accepted at once (and is a
-    /// protocol fault).
-    fn takes(&self, axis: usize) -> bool {
+    /// True if a word for this axis is accepted in this clock. The axis accepts a word of a segment
+    /// in its time slot if its queue has room, and one that `names` the slot of a cut at the end of
+    /// its time slot unless a cut is examined. A word for an axis that does not exist is accepted
+    /// at once (and is a protocol fault).
+    fn takes(&self, axis: usize, names: bool) -> bool {
         self.axis_models.get(axis).is_none_or(|axis_model| {
-            self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+            if names {
+                self.time_slot_at(LAST_BEAT) == Some(axis) && !self.cut.checks
+            } else {
+                self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+            }
         })
     }
 
@@ -258,18 +287,30 @@ impl Motion {
     /// Takes a word. Returns false if it is not the next word of its axis' segment.
     fn put(&mut self, put: Put) -> bool {
         let axis_model = &mut self.axis_models[usize::from(put.axis)];
+        if put.word & CUT_WORD != 0 {
+            axis_model.named =
+                self.build.cuts.then_some((put.data % axis_model.slots as u32) as u8);
+            return true;
+        }
         self.rest = 0;
         if put.word != axis_model.next_word {
             return false;
         }
         if put.word == COMMIT {
-            axis_model.fresh = Some(Queued::of_words(axis_model.words, put.data & 1 == 1));
+            axis_model.fresh = Some(Queued::of_words(axis_model.words, Commit::of_word(put.data)));
             axis_model.next_word = 0;
         } else {
             axis_model.words[usize::from(put.word)] = put.data;
             axis_model.next_word += 1;
         }
         true
+    }
+
+    /// True for a commit with a bit that the build has no use for.
+    fn has_stray_bits(&self, put: Put) -> bool {
+        let outputs = self.build.outputs;
+        let bits = if put.axis == 0 { outputs.commit_bits() } else { Commit::LAST };
+        outputs.is_any() && put.word == COMMIT && put.data & !bits != 0
     }
 
     fn tick(&self) -> Tick<'_> {

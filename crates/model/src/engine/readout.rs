@@ -5,8 +5,9 @@
 //! ```text
 //! beat     4        5                  6          7        10       11      12
 //! word     P low    left, discarded    position   switch   P high   ticks   status
+//!          |        |                  compares the position with the shaper
 //!          |        looks at the pin of the switch
-//!          compares position and discarded steps with the shaper
+//!          compares the discarded steps with the shaper
 //! ```
 
 mod counts;
@@ -20,7 +21,7 @@ use carrystep_core::engine::{
     AxisStatus, EngineInputs, EngineOutputs, SWITCH_LEVEL, SWITCH_STATE, StateItem, StatePage,
     StateWord, TIME_SLOT_CLOCKS,
 };
-use counts::{COMPARE_BEAT, Counts};
+use counts::Counts;
 
 /// The beat of a time slot in which the level of a switch is read, and the one in which it is
 /// output.
@@ -75,12 +76,13 @@ impl Readout {
         !self.asked && !self.takes && self.captures == 0 && !motion.latches()
     }
 
-    /// The word of its state that an axis outputs in this beat of its time slot of the present tick.
+    /// The word of its state that an axis outputs in this beat of its time slot of the present
+    /// tick.
     fn word(&self, motion: &Motion, axis: usize, beat: u32) -> Option<StateWord> {
         let (counts, state) = (self.counts[axis], motion.axis_state(axis));
         let page = self.page(motion, axis);
         let (item, word) = match beat {
-            COMPARE_BEAT => (StateItem::PLow, state.p as u32),
+            4 => (StateItem::PLow, state.p as u32),
             5 if page == StatePage::Seek => return None,
             5 => match state.left {
                 Some(left) => (StateItem::Left, left),
@@ -115,7 +117,8 @@ impl Readout {
         }
     }
 
-    /// All words of the present tick but those of switches, each with the clock in which it is output.
+    /// All words of the present tick but those of switches, each with the clock in which it is
+    /// output.
     pub(crate) fn words(&self, motion: &Motion) -> impl Iterator<Item = (u32, StateWord)> {
         (0..self.counts.len()).flat_map(move |axis| {
             (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {
@@ -129,11 +132,9 @@ impl Readout {
     /// [`Readout::clock`].
     pub(crate) fn observe(&mut self, motion: &Motion, inputs: &EngineInputs) -> Option<Ending> {
         if let Some((axis, beat)) = motion.time_slot() {
+            let runs = motion.axis_state(axis).left.is_some();
+            self.counts[axis].compare(beat, motion.shaper(axis), runs);
             match beat {
-                COMPARE_BEAT => {
-                    let runs = motion.axis_state(axis).left.is_some();
-                    self.counts[axis].compare(motion.shaper(axis), runs);
-                }
                 LOOK_BEAT => {
                     self.level = motion.row().is_some_and(|row| motion.pin(inputs, axis, row));
                 }

@@ -90,9 +90,10 @@ impl FastEngine {
     }
 
     /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
-    /// cycles nothing changes but STEP, DIR, the positions, the three `ready` outputs and `room`,
-    /// provided that the inputs stay the same; no word and no start is accepted. If the
-    /// result is 0, the caller must execute the next cycle with [`FastEngine::clock`].
+    /// cycles nothing changes but STEP, DIR, the pin of the PWM, the positions, the three `ready`
+    /// outputs and `room`, provided that the inputs stay the same; no word and no start is
+    /// accepted. If the result is 0, the caller must execute the next cycle with
+    /// [`FastEngine::clock`].
     #[inline]
     pub fn leap(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
         self.leap_fitting(inputs, most, |clocks| clocks, to)

@@ -9,12 +9,12 @@ mod alone;
 pub(super) use alone::Waits;
 
 use super::crc::{CrcUnit, Told};
-use carrystep_core::engine::EngineOutputs;
+use carrystep_core::engine::{CUT_WORD, EngineOutputs};
 use carrystep_core::link::Image;
 use carrystep_core::link::processor::{
-    ACTS, AND, BROKEN, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP,
-    CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH, PUTS, ROOM,
-    SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
+    ACTS, AND, BROKEN, CAUSE, CLEARING, CONDITION, CONSTANTS, CONTROL, CRC_BEGIN, CRC_FEED,
+    CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HITS, INDEXED, INX, JUMPS, KICK, LATCH,
+    PUTS, ROOM, SEEKING, SETS, STARTS, STORES, TARGET, TAX, UNLESS, ValueSource, WAIT, XOR,
 };
 use std::sync::Arc;
 
@@ -23,6 +23,12 @@ const SIZE: usize = 512;
 
 /// Number of words of a segment, the commit included.
 const SEGMENT_WORDS: u8 = 8;
+
+/// The bits of an instruction during which reports of room count.
+const ROOM_WAIT: Code = WAIT | FOR_ROOM;
+
+/// The room before any report: the greatest number of its field.
+const MOST_ROOM: u8 = 31;
 
 /// The clock of an instruction in which it is executed.
 const EXECUTE: u8 = 2;
@@ -48,7 +54,7 @@ pub(super) struct LinkProcessor {
     read_from: u16,
     /// Number of words of a segment that the engine has taken since the last commit.
     put: u8,
-    /// The room that the engine last reported for an axis, in segments.
+    /// The least room that axes have reported since the CRC register was initialised, in segments.
     room: u8,
     enable: bool,
     clear: bool,
@@ -69,7 +75,7 @@ pub(super) struct Inputs<'a> {
 pub(super) struct Outputs {
     pub a: u8,
     pub x: u8,
-    /// A word of a segment.
+    /// A word for an axis.
     pub word: u32,
     /// Its number.
     pub number: u8,
@@ -87,6 +93,8 @@ pub(super) struct Outputs {
     pub broken: bool,
     /// A snapshot is requested.
     pub snapshot: bool,
+    /// A cut is requested.
+    pub cuts: bool,
     pub clear: bool,
     pub stop: bool,
     pub enable: bool,
@@ -131,6 +139,16 @@ impl LinkProcessor {
         acts && self.code & bits == bits
     }
 
+    /// True if a word that is offered belongs to a segment.
+    const fn is_segment(&self) -> bool {
+        self.a & 8 != 0
+    }
+
+    /// True if reports of room count in this clock.
+    fn asks_room(&self) -> bool {
+        self.code & (SETS | STORES | JUMPS) == 0 && self.code & ROOM_WAIT == ROOM_WAIT
+    }
+
     /// The axis whose room is requested.
     pub(super) const fn room_of(&self) -> u8 {
         self.a & 7
@@ -142,7 +160,7 @@ impl LinkProcessor {
             a,
             x,
             word: self.crc.word(),
-            number: self.put,
+            number: if self.is_segment() { self.put } else { CUT_WORD },
             puts: self.does(PUTS),
             starts: self.does(STARTS),
             goes: self.does(WAIT | GOES),
@@ -151,7 +169,8 @@ impl LinkProcessor {
             arms: self.tells(KICK) && self.code & CLEARING != 0,
             kicks: self.tells(KICK),
             broken: self.tells(BROKEN),
-            snapshot: self.tells(CONTROL | BROKEN),
+            snapshot: self.tells(CONTROL | BROKEN) && self.code & CLEARING == 0,
+            cuts: self.tells(CONTROL | BROKEN) && self.code & CLEARING != 0,
             clear,
             stop: self.tells(KICK | BROKEN),
             enable,
@@ -180,7 +199,9 @@ impl LinkProcessor {
         let stores = self.executes(STORES) && code & SETS == 0;
         let acts = self.executes(ACTS) && code & JUMPS == 0;
         let controls = self.tells(CONTROL);
-        let puts = self.does(PUTS) && over;
+        let puts = self.does(PUTS) && over && self.is_segment();
+        let begins = self.does(CRC_BEGIN);
+        let room = inputs.engine.room.filter(|_| self.asks_room());
 
         // The memories are read before this clock writes to them.
         self.code = self.program[usize::from(self.pc)];
@@ -219,8 +240,10 @@ impl LinkProcessor {
         if puts {
             self.put = (self.put + 1) % SEGMENT_WORDS;
         }
-        if let Some(room) = inputs.engine.room {
+        if let Some(room) = room.filter(|&room| room < self.room) {
             self.room = room;
+        } else if begins {
+            self.room = MOST_ROOM;
         }
         if let Some(byte) = inputs.received {
             self.ring[usize::from(self.written)] = byte;
@@ -282,7 +305,8 @@ impl LinkProcessor {
         let (cause, culprits) =
             engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u8, culprits));
         match self.code as u8 & 7 {
-            ROOM => self.room << 4 | cause,
+            ROOM => self.room,
+            CAUSE => cause,
             CULPRITS => culprits,
             SEEKING => engine.seeking,
             HITS => engine.hits,
@@ -292,6 +316,7 @@ impl LinkProcessor {
                     (engine.fault.is_some(), 0),
                     (engine.ready, 1),
                     (engine.armed, 2),
+                    (engine.cut_refused, 4),
                     (engine.idle, 6),
                     (engine.halted, 7),
                 ];

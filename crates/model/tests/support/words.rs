@@ -76,7 +76,7 @@ pub fn positions(history: &[Cycle], axes: usize) -> Vec<Vec<i32>> {
 }
 
 /// The position that an axis counts in the next tick, if it counts `counted` in this one and has
-/// made `made` steps in beat 4.
+/// made `made` steps in beat 6.
 pub fn counted(counted: i32, made: i32) -> i32 {
     counted + (made - counted).clamp(-1, 1)
 }

@@ -27,7 +27,7 @@ impl Fed<'_> {
         // These outputs change several times per tick, or while nothing else does, whether or not
         // the host offers anything.
         let quiet = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..outputs };
-        let told = EngineOutputs { room: None, ..quiet };
+        let told = EngineOutputs { room: None, pwm: false, ..quiet };
         listener.outputs(self.core.cycle(), &told);
         let rests = self.host.is_done() && (outputs.idle || outputs.halted);
         let most = if rests { most_at_rest.min(most) } else { most };

@@ -3,14 +3,15 @@
 //! of its queue. The commands are read as far ahead as this order needs.
 //!
 //! ```text
-//! x  1 2 3 4 5 6 7    8    9        10       there is room for segment k when segment k - 7 begins
+//! x  1 2 3 4 5 6 7    8    9        10       a queue of 7: there is room for segment k when segment
+//!                                            k - 7 begins
 //! y  1 2 3 4 5 6 7        8     9
 //!                  ^ start
 //! ```
 
 use super::{Act, acts_of, puts};
-use carrystep_core::engine::{Put, QUEUE, SEGMENT_WORDS};
-use carrystep_core::{Command, Segment};
+use carrystep_core::engine::{Put, SEGMENT_WORDS};
+use carrystep_core::{Command, OutputChange, Segment};
 use std::collections::{BTreeMap, VecDeque};
 
 /// When a command is sent. Of two commands, the one with the lesser value is sent first.
@@ -30,7 +31,7 @@ struct Due {
 struct AxisFeed {
     /// Number of segments.
     count: u64,
-    /// The ticks at which the last of them begin, at most [`QUEUE`].
+    /// The ticks at which the last of them begin, as many as the queue holds.
     begins: VecDeque<u64>,
     end: u64,
     /// Time at which there was room for the last of them.
@@ -44,34 +45,40 @@ struct AxisFeed {
 pub(super) struct Acts<'a> {
     commands: Box<dyn Iterator<Item = Command> + 'a>,
     axis_feeds: [AxisFeed; 8],
+    /// Number of segments that the queue of an axis holds.
+    queue: usize,
     /// The tick at which the last move that was read begins, plus one.
     started: u64,
     started_before: bool,
     /// Number of commands that were read.
     read: u64,
-    /// Commands that were read and are not sent yet.
-    waiting: BTreeMap<Due, Command>,
+    /// Commands that were read and are not sent yet, each with what it changes at the outputs.
+    waiting: BTreeMap<Due, (Command, OutputChange)>,
+    /// What changes with the next segment of axis 0 that is read.
+    outputs: OutputChange,
     /// Segments of different axes for which there is room at the same time.
-    row: Vec<(u64, u8, Segment)>,
+    row: Vec<Sent>,
     ready: VecDeque<Act>,
 }
 
 impl<'a> Acts<'a> {
-    pub(super) fn new(commands: Box<dyn Iterator<Item = Command> + 'a>) -> Self {
+    pub(super) fn new(commands: Box<dyn Iterator<Item = Command> + 'a>, queue: usize) -> Self {
         Self {
             commands,
             axis_feeds: Default::default(),
+            queue,
             started: 0,
             started_before: false,
             read: 0,
             waiting: BTreeMap::new(),
+            outputs: OutputChange::NONE,
             row: Vec::new(),
             ready: VecDeque::new(),
         }
     }
 
     /// The next command, once no command that has not been read can come before it.
-    fn next_due(&mut self) -> Option<(Due, Command)> {
+    fn next_due(&mut self) -> Option<(Due, (Command, OutputChange))> {
         loop {
             // There is room for a later segment of an axis at the same time as for its last one or
             // later, and for a later start not before there is room for its segments.
@@ -84,8 +91,16 @@ impl<'a> Acts<'a> {
                 return Some(first.remove_entry());
             }
             let Some(command) = self.commands.next() else { return self.waiting.pop_first() };
+            let outputs = match command {
+                Command::Outputs(change) => {
+                    self.outputs = self.outputs.then(change);
+                    continue;
+                }
+                Command::Segment { axis: 0, .. } => std::mem::take(&mut self.outputs),
+                _ => OutputChange::NONE,
+            };
             let due = self.due(&command);
-            self.waiting.insert(due, command);
+            self.waiting.insert(due, (command, outputs));
         }
     }
 
@@ -96,7 +111,7 @@ impl<'a> Acts<'a> {
         if let Command::Segment { axis, segment } = command {
             let axis_feed = &mut self.axis_feeds[usize::from(*axis) % 8];
             let place = axis_feed.count;
-            if axis_feed.begins.len() == QUEUE {
+            if axis_feed.begins.len() == self.queue {
                 axis_feed.room = axis_feed.begins.pop_front().map_or(0, |begin| begin + 1);
             }
             axis_feed.count += 1;
@@ -130,15 +145,15 @@ impl Iterator for Acts<'_> {
     fn next(&mut self) -> Option<Act> {
         while self.ready.is_empty() {
             match self.next_due() {
-                Some((Due { room, .. }, Command::Segment { axis, segment })) => {
-                    if self.row.iter().any(|&(first, other, _)| first != room || other == axis) {
+                Some((Due { room, .. }, (Command::Segment { axis, segment }, outputs))) => {
+                    if self.row.iter().any(|sent| sent.room != room || sent.axis == axis) {
                         self.end_row();
                     }
-                    self.row.push((room, axis, segment));
+                    self.row.push(Sent { room, axis, segment, outputs });
                 }
-                Some((_, other)) => {
+                Some((_, (other, mut outputs))) => {
                     self.end_row();
-                    self.ready.extend(acts_of(&other));
+                    self.ready.extend(acts_of(&other, &mut outputs));
                 }
                 None if self.row.is_empty() => return None,
                 None => self.end_row(),
@@ -148,9 +163,18 @@ impl Iterator for Acts<'_> {
     }
 }
 
+/// A segment, when there is room for it, and what changes at the outputs where it begins.
+struct Sent {
+    room: u64,
+    axis: u8,
+    segment: Segment,
+    outputs: OutputChange,
+}
+
 /// Sends segments of different axes in parallel: one word for each in a tick.
-fn side_by_side(row: &[(u64, u8, Segment)]) -> Vec<Act> {
-    let words: Vec<Vec<Put>> = row.iter().map(|(_, axis, segment)| puts(*axis, segment)).collect();
+fn side_by_side(row: &[Sent]) -> Vec<Act> {
+    let words: Vec<Vec<Put>> =
+        row.iter().map(|sent| puts(sent.axis, &sent.segment, sent.outputs)).collect();
     let word =
         |k: usize| words.iter().filter_map(move |words| words.get(k)).map(|put| Act::Put(*put));
     (0..=usize::from(SEGMENT_WORDS)).flat_map(word).collect()
@@ -210,14 +234,14 @@ mod tests {
     #[test]
     fn queues_are_filled_before_the_start_in_order() {
         let program = program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]);
-        let acts: Vec<Act> = Acts::new(Box::new(program.into_iter())).collect();
+        let acts: Vec<Act> = Acts::new(Box::new(program.into_iter()), 7).collect();
         let start = acts.iter().position(|act| matches!(act, Act::Start(_))).unwrap();
         let commits = |acts: &[Act], of: u8| {
             acts.iter()
                 .filter(|act| matches!(act, Act::Put(put) if put.axis == of && put.word == 7))
                 .count()
         };
-        assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (QUEUE, 2));
+        assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (7, 2));
         assert_eq!((commits(&acts, 0), commits(&acts, 1)), (10, 2));
         assert_eq!(acts.iter().filter(|act| matches!(act, Act::Start(0b11))).count(), 2);
     }
@@ -230,7 +254,7 @@ mod tests {
         let read = std::cell::Cell::new(0);
         let commands = program.iter().copied().inspect(|_| read.set(read.get() + 1));
         let mut sent = 0;
-        for act in Acts::new(Box::new(commands)) {
+        for act in Acts::new(Box::new(commands), 7) {
             sent += usize::from(!matches!(act, Act::Put(put) if put.word != 7));
             assert!(read.get() <= sent + 10 * 42, "{} read, {sent} sent", read.get());
         }
@@ -269,7 +293,7 @@ mod tests {
         assert_eq!(steps(&three, 1720), (vec![moved(1720); 6], None));
         // A host that waits for each command in turn is too late.
         let build = build();
-        let late = EngineHost::new(&build.guard, &begun, &Vec::new());
+        let late = EngineHost::new(&build, &begun, &Vec::new());
         let fault = Recording::of(&build, late, 1_000_000, &[], None)
             .outputs
             .last()

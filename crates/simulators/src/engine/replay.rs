@@ -42,7 +42,7 @@ impl Recording {
     /// Runs a program with its events on the model until the program is over and all axes rest, or
     /// for `max_clocks`. Adds the ticks of rest after which every step has been counted.
     pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
-        Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks, &[], None)
+        Self::of(build, EngineHost::new(build, program, events), max_clocks, &[], None)
     }
 
     /// As [`Self::new`], for any host; ends early if `halt` is set.
@@ -221,18 +221,18 @@ fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> O
 }
 
 /// Parses a line of a bench: cycle, packed outputs and checksum.
-fn parsed(line: &str) -> Option<(u64, u64, u64)> {
+fn parsed(line: &str) -> Option<(u64, u128, u64)> {
     let (cycle, rest) = line.split_once(' ')?;
     let (bits, sum) = rest.split_once(' ')?;
-    let hex = |digits| u64::from_str_radix(digits, 16).ok();
-    Some((cycle.parse().ok()?, hex(bits)?, hex(sum)?))
+    let hex = |digits| u128::from_str_radix(digits, 16).ok();
+    Some((cycle.parse().ok()?, hex(bits)?, u64::try_from(hex(sum)?).ok()?))
 }
 
 /// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
-fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
+fn packed(outputs: &EngineOutputs, axes: usize) -> u128 {
     widths(Direction::Output, axes)
         .zip(driven(Direction::Output, &outputs.at_ports(), axes))
-        .fold(0, |all, (width, value)| all << width | value)
+        .fold(0, |all, (width, value)| all << width | u128::from(value))
 }
 
 fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {

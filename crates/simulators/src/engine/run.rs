@@ -66,7 +66,7 @@ impl<'a> EngineJob<'a> {
     }
 
     pub(super) fn host(&self) -> EngineHost<'_> {
-        EngineHost::feeding(&self.build.guard, self.program)
+        EngineHost::feeding(self.build, self.program)
     }
 
     /// Runs the job at a level.

@@ -2,8 +2,9 @@
 
 use super::rows::{EngineRow, SEEDS};
 use crate::SynthesisError;
-use crate::ice40::{self, Size};
+use crate::ice40::{self, Netlist, Size};
 use carrystep_core::EngineBuild;
+use carrystep_core::engine::{InputRow, Latch, LimitWiring, Outputs};
 use carrystep_files::{Machine, SourceText};
 use carrystep_verilog::{ENGINE_NAME, engine_verilog};
 
@@ -31,7 +32,7 @@ impl RowMeasurement {
     /// # Errors
     /// [`SynthesisError`] if a tool is missing or fails.
     pub fn of(row: &EngineRow) -> Result<Self, SynthesisError> {
-        let size = ice40::synthesise_tight(&verilog(row)?, ENGINE_NAME)?.size(row.part)?;
+        let size = synthesised(row)?.size(row.part)?;
         let mut mhz = [0.0; SEEDS.len()];
         for (mhz, reached) in mhz.iter_mut().zip(placed(row)?) {
             *mhz = reached?;
@@ -60,6 +61,14 @@ pub fn verilog(row: &EngineRow) -> Result<String, SynthesisError> {
     engine_verilog(&machine(row)?, SHIPPED).map_err(failed)
 }
 
+/// The netlist of a row's engine.
+///
+/// # Errors
+/// [`SynthesisError`] if there is no such engine, or if yosys is missing or fails.
+pub fn synthesised(row: &EngineRow) -> Result<Netlist, SynthesisError> {
+    ice40::synthesise_for(&verilog(row)?, ENGINE_NAME, row.part.device)
+}
+
 /// Build parameters of a row's engine.
 pub(super) fn machine(row: &EngineRow) -> Result<EngineBuild, SynthesisError> {
     let EngineRow { clock_hz, tick_ns, .. } = row;
@@ -73,6 +82,15 @@ pub(super) fn machine(row: &EngineRow) -> Result<EngineBuild, SynthesisError> {
     // If the row has more axes than the machine, the machine's axes are repeated.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();
     build.guard.stop = build.guard.stop.into_iter().cycle().take(row.axes).collect();
+    build.queue = row.queue;
+    if row.all {
+        let inputs = InputRow { exist: ((1_u32 << row.axes) - 1) as u8, low: 0 };
+        build.guard.limits = LimitWiring::Pair;
+        build.guard.inputs = [inputs; 2];
+        build.guard.latch = Some(Latch { low: false, looks: 1 });
+        build.outputs = Outputs { exist: 0xff, pwm_divider: 16, off_at_ramps: true };
+        build.cuts = true;
+    }
     Ok(build)
 }
 
@@ -89,7 +107,8 @@ pub fn placed(
     row: &EngineRow,
 ) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
     let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
-    let netlist = ice40::synthesise_tight(&(verilog(row)? + &harness), "budget_harness")?;
+    let netlist =
+        ice40::synthesise_for(&(verilog(row)? + &harness), "budget_harness", row.part.device)?;
     let row = *row;
     Ok(SEEDS.into_iter().map(move |seed| Ok(netlist.place(row.part, row.clock_hz, seed)?.mhz)))
 }

@@ -27,7 +27,8 @@ pub fn page(rows: &[RowMeasurement], links: &[Size], families: &[Mapped]) -> Str
     for (row, found) in ROWS.iter().zip(rows) {
         text += &line(row, found);
     }
-    text += "\nThe schedule needs the clocks of its time slots, and the least clock whose tick holds them and divides into phases.\n\n\
+    text += "\nThe schedule needs the clocks of its time slots, and the least clock whose tick holds them and divides into phases.\n\
+         *all*: with limits at both ends, both rows of inputs, latch, eight outputs, PWM and cuts, and queues of so many segments.\n\n\
          ## The host link\n\n\
          Beside the engine of the first row: the link and its line, each by itself.\n\n\
          | line | logic cells (budget) | block RAM |\n|---|---|---|\n";
@@ -57,8 +58,9 @@ fn key(row: &EngineRow) -> String {
     let (part, axes, us) = (row.part, row.axes, row.tick_ns / 1000);
     let [mhz, least] = [row.clock_hz, row.clock_needed_hz()].map(|hz| hz / 1_000_000);
     let (has, needs) = (row.clocks_per_tick(), row.clocks_needed());
+    let built = if row.all { format!(", all, {} deep", row.queue) } else { String::new() };
     format!(
-        "| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |",
+        "| {} {}{built} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |",
         part.device, part.package
     )
 }

@@ -2,7 +2,7 @@
 
 use crate::ice40::{NextpnrPart, Size};
 use carrystep_boards::Mapped;
-use carrystep_core::engine::clocks_of_time_slots;
+use carrystep_core::engine::{QUEUE_DEPTHS, clocks_of_time_slots};
 
 /// Seeds of placement; the best result counts.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
@@ -21,6 +21,11 @@ pub struct EngineRow {
     pub tick_ns: u64,
     /// Clock, Hz.
     pub clock_hz: u64,
+    /// Number of segments that the queue of an axis holds.
+    pub queue: usize,
+    /// Whether the engine has everything that can be left out: limits at both ends, inputs, latch,
+    /// outputs, PWM and cuts.
+    pub all: bool,
     /// Budget of the engine.
     pub budget: Size,
     /// Whether the clock is reached. A row with `false` stands in the table as not reached.
@@ -58,6 +63,8 @@ const TWO: EngineRow = EngineRow {
     axes: 6,
     tick_ns: 2000,
     clock_hz: 48_000_000,
+    queue: QUEUE_DEPTHS[0],
+    all: false,
     budget: Size { logic_cells: 985, block_rams: 9 },
     met: true,
     always: true,
@@ -79,8 +86,24 @@ const EIGHT: EngineRow =
 /// Eight axes, six axes, and the greatest ratio of their logic cells.
 pub const EIGHT_TO_SIX: (EngineRow, EngineRow, f64) = (EIGHT, SIX, 1.15);
 
+/// Everything built in, and the queues of seven segments.
+const ALL_TWO: EngineRow = EngineRow {
+    all: true,
+    budget: Size { logic_cells: 1135, block_rams: 11 },
+    always: false,
+    ..TWO
+};
+
+/// Everything built in, with a tick of 1 us at 80 MHz.
+const ALL_ONE: EngineRow = EngineRow {
+    all: true,
+    budget: Size { logic_cells: 1160, block_rams: 11 },
+    always: false,
+    ..ONE
+};
+
 /// All rows for iCE40.
-pub const ROWS: [EngineRow; 9] = [
+pub const ROWS: [EngineRow; 13] = [
     TWO,
     ONE,
     EngineRow { part: HX1K, ..TWO },
@@ -88,9 +111,26 @@ pub const ROWS: [EngineRow; 9] = [
     EngineRow { part: LP8K, always: false, ..TWO },
     EngineRow { part: LP8K, always: false, met: false, ..ONE },
     // 40 MHz is the slowest clock for a tick of 2 us.
-    EngineRow { part: UP5K, clock_hz: 40_000_000, ..TWO },
+    EngineRow {
+        part: UP5K,
+        clock_hz: 40_000_000,
+        budget: Size { logic_cells: 1000, block_rams: 9 },
+        ..TWO
+    },
     SIX,
     EIGHT,
+    ALL_TWO,
+    ALL_ONE,
+    EngineRow {
+        queue: QUEUE_DEPTHS[1],
+        budget: Size { logic_cells: 1155, block_rams: 15 },
+        ..ALL_TWO
+    },
+    EngineRow {
+        queue: QUEUE_DEPTHS[2],
+        budget: Size { logic_cells: 1175, block_rams: 23 },
+        ..ALL_TWO
+    },
 ];
 
 /// An engine in the cells of a Xilinx family.
@@ -109,16 +149,16 @@ pub const FAMILIES: [FamilyRow; 3] = [
     FamilyRow {
         name: "xc3s",
         of: TWO,
-        budget: Mapped { luts: 815, flip_flops: 425, carries: 375, block_rams: 16 },
+        budget: Mapped { luts: 815, flip_flops: 430, carries: 375, block_rams: 16 },
     },
     FamilyRow {
         name: "xc6s",
         of: TWO,
-        budget: Mapped { luts: 760, flip_flops: 425, carries: 60, block_rams: 8 },
+        budget: Mapped { luts: 760, flip_flops: 430, carries: 60, block_rams: 8 },
     },
     FamilyRow {
         name: "xc7",
         of: TWO,
-        budget: Mapped { luts: 720, flip_flops: 425, carries: 60, block_rams: 6 },
+        budget: Mapped { luts: 720, flip_flops: 430, carries: 60, block_rams: 6 },
     },
 ];

@@ -21,6 +21,10 @@ use minijinja::{Value, context};
 /// Verilator.
 const FILE_LIST: &str = "files.f";
 
+/// The engine's ports for the two rows of inputs, and the port of the board for the first input of
+/// each.
+const INPUTS: [(&str, &str); 2] = [("inputs_0", "probe"), ("inputs_1", "interlock")];
+
 /// The machine that boards are built for where no other is asked for; clock, tick and limits are
 /// put before its axes.
 const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
@@ -49,7 +53,7 @@ impl<'a> Gateware<'a> {
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
-        board.connects_inputs(&build.guard)?;
+        board.connects(&build, matches!(line, LineKind::Uart(_)))?;
         if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
         }
@@ -176,9 +180,12 @@ impl<'a> Gateware<'a> {
             |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
         let switches = self.switches().filter(|(_, pin)| *pin).map(|(port, _)| port.name);
-        let fixed = ["enable_n"].into_iter().chain(switches).map(str::to_owned);
+        let inputs = INPUTS.iter().zip(self.build.guard.inputs);
+        let inputs = inputs.filter(|(_, row)| row.exist & 1 == 1).map(|((_, first), _)| *first);
+        let fixed = ["enable_n"].into_iter().chain(switches).chain(inputs).map(str::to_owned);
         let line = self.line_pins().map(|(_, pin)| pin.to_owned());
         let led = self.has_led().then(|| "led".to_owned());
+        let pwm = self.has_pwm().then(|| "pwm".to_owned());
         [
             bits("step", axes),
             bits("dir", axes),
@@ -186,9 +193,12 @@ impl<'a> Gateware<'a> {
             line.collect(),
             bits("limit_min", low),
             bits("limit_max", high),
+            self.general().collect(),
+            bits("outputs", self.outputs()),
         ]
         .concat()
         .into_iter()
+        .chain(pwm)
         .chain(led)
         .collect()
     }
@@ -202,14 +212,57 @@ impl<'a> Gateware<'a> {
         line_pins(self.line).iter().zip(board.iter().copied())
     }
 
-    /// The switches of the engine that are not switches of an axis, and whether the board has a pin
-    /// for each. One without a pin is tied to its inactive level.
+    /// The general inputs, as ports of the top level.
+    fn general(&self) -> impl Iterator<Item = String> + use<'_> {
+        let count = self.general_bits().iter().flatten().flatten().count();
+        (0..count).map(move |bit| bit_of("general", bit, count))
+    }
+
+    /// The number of the general input at each bit of the two rows of inputs, if there is one: they
+    /// take turns, from bit 1 on (`[machine.inputs]` in docs/machine-files.md).
+    fn general_bits(&self) -> [Vec<Option<usize>>; 2] {
+        let exists = |row: usize, bit: usize| self.build.guard.inputs[row].exist >> bit & 1 == 1;
+        [0, 1].map(|row| {
+            let number = |bit: usize| (bit > 0 && exists(row, bit)).then(|| 2 * (bit - 1) + row);
+            (0..self.build.axes()).map(number).collect()
+        })
+    }
+
+    /// The Verilog of a row of inputs: its pins, and the inactive level where there is none.
+    fn row_of_inputs(&self, row: usize) -> String {
+        let (port, first) = INPUTS[row];
+        let (general, count) = (self.general_bits(), self.general().count());
+        let inactive = self.inactive(port).unwrap_or_default();
+        let bit = |bit: usize| match general[row][bit] {
+            Some(number) => bit_of("general", number, count),
+            None if bit == 0 && self.build.guard.inputs[row].exist & 1 == 1 => first.to_owned(),
+            None => format!("1'b{}", inactive >> bit & 1),
+        };
+        let bits: Vec<String> = (0..self.build.axes()).rev().map(bit).collect();
+        format!("{{{}}}", bits.join(", "))
+    }
+
+    /// The number of outputs besides the PWM.
+    fn outputs(&self) -> usize {
+        self.build.outputs.exist.count_ones() as usize
+    }
+
+    fn has_pwm(&self) -> bool {
+        self.build.outputs.pwm_divider != 0
+    }
+
+    /// The switches of the engine that are not switches of an axis, and whether each has a pin in
+    /// this build. One without a pin is tied to its inactive level.
     fn switches(&self) -> impl Iterator<Item = (&'static Port, bool)> {
         let single = |port: &&Port| {
             let of_all = port.width == Width::Bits(1);
             of_all && port.peer == Peer::Pins && port.direction == Direction::Input
         };
-        ENGINE_PORTS.iter().filter(single).map(|port| (port, self.board.bits(port.name) > 0))
+        let exists = |name: &str| name != "latch" || self.build.guard.latch.is_some();
+        ENGINE_PORTS
+            .iter()
+            .filter(single)
+            .map(move |port| (port, self.board.bits(port.name) > 0 && exists(port.name)))
     }
 
     /// The inactive level of the pins at a port of the engine.
@@ -269,9 +322,15 @@ impl<'a> Gateware<'a> {
             switches => self.switches().map(|(port, pin)| {
                 context! { name => port.name, pin, inactive => self.inactive(port.name) }
             }).collect::<Vec<Value>>(),
-            inputs => ["inputs_0", "inputs_1"].map(|name| {
-                context! { name, inactive => self.inactive(name) }
+            inputs => [0, 1].map(|row| {
+                context! { name => INPUTS[row].0, bits => self.row_of_inputs(row) }
             }),
+            firsts => [0, 1].into_iter().filter(|&row| self.build.guard.inputs[row].exist & 1 == 1)
+                .map(|row| INPUTS[row].1).collect::<Vec<_>>(),
+            general => match self.general().count() { 0 => None, count => Some(range(count)) },
+            outputs => match self.outputs() { 0 => None, count => Some(range(count)) },
+            last_output => self.outputs().saturating_sub(1),
+            pwm => self.has_pwm(),
             unlinked => unlinked(&between).map(|port| {
                 let zero = format!("{}'d0", port.width.of(axes));
                 let tied = if port.direction == Direction::Input { zero } else { String::new() };

@@ -5,9 +5,16 @@ use super::{kind, place, rendered};
 use crate::ExportError;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, ConfigurationMode, Gate, Shared, Wire, boards};
+use carrystep_core::engine::QUEUE_DEPTHS;
 use carrystep_core::tick::mhz;
 use carrystep_files::driver::{Driver, drivers};
 use minijinja::{Value, context};
+
+/// Bits of a block RAM of an iCE40.
+const RAM_BITS: usize = 4096;
+
+/// Block RAMs of engine and link with the shortest queues (`hdl-out/resources.md`).
+const SHORTEST_RAMS: usize = 15;
 
 /// The pages, with their paths in the workspace.
 ///
@@ -62,6 +69,11 @@ fn values(board: &Board) -> Value {
         clocks => board.clocks.iter().map(clocking).collect::<Vec<_>>(),
         wires => board.wires.iter().map(wire).collect::<Vec<_>>(),
         limits => context! { low => board.bits("limit_min"), high => board.bits("limit_max") },
+        queues => QUEUE_DEPTHS.map(|depth| {
+            // A slot has eight words of 32 bits for each of eight axes.
+            let more = (depth + 1) * 8 * 8 * 32 / RAM_BITS - 4;
+            context! { depth, block_rams => SHORTEST_RAMS + more }
+        }).to_vec(),
         ties => super::ties(board),
         gate => board.gate.as_ref().map(gate),
         configured => listed(&board.configured),
@@ -109,7 +121,8 @@ fn clocking(clock: &Clocking) -> Value {
 
 fn wire(wire: &Wire) -> Value {
     let (connector, label) = place(wire);
-    context! { port => &wire.port, pin => &wire.pin, connector, label, what => kind(wire).map_or("", |port| port.what) }
+    let beside_uart = wire.beside_uart;
+    context! { port => &wire.port, pin => &wire.pin, connector, label, beside_uart, what => kind(wire).map_or("", |port| port.what) }
 }
 
 /// A number given in thousandths, without trailing zeros.

@@ -23,6 +23,18 @@ module {{ top }} (
 {% if high is not none %}
     input wire {{ high }}limit_max,
 {% endif %}
+{% for name in firsts %}
+    input wire {{ name }},
+{% endfor %}
+{% if general is not none %}
+    input wire {{ general }}general,
+{% endif %}
+{% if outputs is not none %}
+    output wire {{ outputs }}outputs,
+{% endif %}
+{% if pwm %}
+    output wire pwm,
+{% endif %}
 {% for tie in ties %}
     output wire {{ tie.port }},
 {% endfor %}
@@ -80,6 +92,10 @@ module {{ top }} (
     );
 
     wire enabled;
+{% if outputs is not none %}
+    wire [7:0] levels;
+    assign outputs = levels[{{ last_output }}:0];
+{% endif %}
     assign enable_n = !enabled;
     {{ engine }}{{ engine_parameters }}engine (
 {% for wire in between %}
@@ -98,7 +114,7 @@ module {{ top }} (
 {% endif %}
         .limit_max({{ "limit_max" if high is not none else count ~ "'d0" }}),
 {% for port in inputs %}
-        .{{ port.name }}({{ count }}'d{{ port.inactive }}),
+        .{{ port.name }}({{ port.bits }}),
 {% endfor %}
 {% for port in unlinked %}
         .{{ port.name }}({{ port.tied }}),
@@ -106,6 +122,8 @@ module {{ top }} (
         .step(step),
         .dir(dir),
         .enabled(enabled),
+        .outputs({{ "levels" if outputs is not none }}),
+        .pwm({{ "pwm" if pwm }}),
         .started(),
         .reset(1'b0), // the host stops and clears; it needs no reset
         .resetting()

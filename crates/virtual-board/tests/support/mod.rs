@@ -99,6 +99,7 @@ pub fn build() -> EngineBuild {
     build.guard.watchdog = 49;
     build.guard.limits = LimitWiring::Pair;
     build.guard.stop[1] = 1 << 54;
+    build.cuts = true;
     build
 }
 

@@ -6,7 +6,7 @@ use super::link::{hex, unhex};
 use carrystep_link::registers::{
     AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLEAR, CONTROL, CONTROL_ENABLE, IDENTITY, POSITION, PROTOCOL,
 };
-use carrystep_link::{Clock, Command, Line, frame};
+use carrystep_link::{Clock, Command, Line, OutputChange, frame};
 use std::fmt::Debug;
 
 /// Time limit for anything that is waited for, ms.
@@ -188,16 +188,22 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
     /// Executes moves; stops when `watch` returns true. Returns the cause if the machine has
     /// stopped.
     pub fn stream(&mut self, commands: &[Command], mut watch: impl FnMut() -> bool) -> Option<u8> {
+        let mut outputs = OutputChange::NONE;
         for command in commands {
             self.client.say(&match command {
+                Command::Outputs(change) => {
+                    outputs = *change;
+                    continue;
+                }
                 Command::Segment { axis, segment: s } => {
+                    let change = if *axis == 0 { std::mem::take(&mut outputs).word() } else { 0 };
                     format!(
                         "segment {axis} {} {} {} {} {}",
                         s.ticks,
                         s.v,
                         s.a,
                         s.j,
-                        u8::from(s.last)
+                        u32::from(s.last) | change
                     )
                 }
                 Command::Start { mask } => format!("start {mask:02x}"),

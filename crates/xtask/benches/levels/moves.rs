@@ -99,7 +99,7 @@ impl Moves {
                     Inputs { start: Some(mask), ..Inputs::default() },
                     format!("1 {mask:x} 0 0 0 0 0"),
                 ),
-                Command::Wait { .. } | Command::Clear => continue,
+                Command::Wait { .. } | Command::Clear | Command::Outputs(_) => continue,
             };
             loop {
                 let outputs = core.outputs(&inputs);

@@ -5,13 +5,12 @@ use super::layout::{
     ADDRESS, ANSWER, ANSWERS, CHECKED, DATA, FAULT_BIT, NEXT, REASON, SEQUENCE, WRITTEN,
 };
 use super::segments::rooms;
-use crate::link::WRITE;
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{X7, Zero};
 use crate::link::processor::{
-    CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, ROOM, SEEKING, STATE, TAX, ValueSource, WAIT,
+    CAUSE, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, SEEKING, STATE, TAX, ValueSource, WAIT,
 };
-use crate::link::registers::{POSITION, SEGMENT, SEGMENTS};
+use crate::link::registers::{CUT, POSITION, SEGMENT, SEGMENTS};
 
 pub(super) fn answer(a: &mut Assembler) {
     a.label("answer");
@@ -20,7 +19,6 @@ pub(super) fn answer(a: &mut Assembler) {
     a.store(ANSWER + 3);
     a.store_number(ANSWERS, 1);
     rooms(a);
-    a.load_x();
     a.store(ANSWER + 4);
     register(a);
     // The flags are sampled before this wait, and every live word is stored again during it. The
@@ -34,8 +32,7 @@ pub(super) fn answer(a: &mut Assembler) {
     a.jump_if(Zero, "no fault");
     a.load_from(ValueSource::Engine, CULPRITS);
     a.store(ANSWER + 5);
-    a.load_from(ValueSource::Engine, ROOM);
-    a.and_number(0x0f);
+    a.load_from(ValueSource::Engine, CAUSE);
     a.jump("cause");
     a.label("no fault");
     a.store(ANSWER + 5);
@@ -77,16 +74,12 @@ fn register(a: &mut Assembler) {
     a.load(WRITTEN);
     a.jump_if(Zero, "as asked");
     a.load(ADDRESS);
-    a.xor_number(WRITE | SEGMENTS);
-    a.jump_if(Zero, "of axis 0");
-    a.load(ADDRESS);
     a.and_number(SEGMENT);
     a.jump_if(Zero, "of axis 0");
     a.load(ADDRESS);
-    a.xor_number((WRITE | SEGMENT) ^ POSITION);
-    a.jump("place");
+    a.and_number(7);
     a.label("of axis 0");
-    a.load_number(POSITION);
+    a.xor_number(POSITION);
     a.jump("place");
     a.label("as asked");
     a.load(ADDRESS);
@@ -94,4 +87,7 @@ fn register(a: &mut Assembler) {
     a.acts(TAX);
 }
 
-const _: () = assert!(SEGMENT == 0x40, "this bit of a write's address says that it is a segment");
+const _: () = assert!(
+    SEGMENT == 0x40 && SEGMENTS & 7 == 0 && CUT & 7 == 0,
+    "bit 6 of a write's address says that bits 2..0 are the axis"
+);

@@ -3,8 +3,8 @@
 //! A request without words is a read. The length of a SEGMENTS frame follows from its mask.
 
 use super::layout::{
-    ADDRESS, AXIS, BASE, BITS, FRAMES, LAST, LENGTH, MASK, REASON, RESIDUE, WORDS, WRITTEN,
-    WRITTEN_BIT, end, last_of,
+    ADDRESS, ANSWERS, AXIS, BASE, BITS, FRAMES, LAST, LENGTH, MASK, REASON, RESIDUE, WORDS,
+    WRITTEN, WRITTEN_BIT, end, last_of,
 };
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{X7, Zero};
@@ -17,14 +17,14 @@ pub(super) const FREE_READ: u8 = end(0) - SESSION_BYTES as u8;
 
 pub(super) fn check(a: &mut Assembler) {
     a.label("ended");
+    a.store_number(REASON, 0);
+    a.store(ANSWERS);
     a.load_x();
     a.store(LENGTH);
-    a.store_number(REASON, 0);
-    for read in [FREE_READ, end(0)] {
-        a.load(LENGTH);
-        a.xor_number(read);
-        a.jump_if(Zero, "of its axis");
-    }
+    a.xor_number(FREE_READ);
+    a.jump_if(Zero, "of its axis");
+    a.xor_number(FREE_READ ^ end(0));
+    a.jump_if(Zero, "of its axis");
     a.index(ADDRESS);
     a.jump_unless(X7, "begin");
     a.and_number(SEGMENT);

@@ -8,7 +8,8 @@ use crate::link::processor::{
     BROKEN, CLEARING, CONTROL, HITS, KICK, STARTS, STATE, ValueSource, WAIT,
 };
 use crate::link::registers::{
-    CLEAR, CONTROL as CONTROL_REGISTER, LATCH as LATCH_REGISTER, SEEK, SEGMENT, SNAPSHOT, START,
+    CLEAR, CONTROL as CONTROL_REGISTER, CUT, LATCH as LATCH_REGISTER, SEEK, SEGMENT, SNAPSHOT,
+    START,
 };
 
 /// Number of waits during which a clear is asserted. Each of them but the first contains a strobe;
@@ -18,8 +19,11 @@ const CLEAR_WAITS: usize = 6;
 pub(super) fn execute(a: &mut Assembler) {
     a.label("execute");
     a.load(ADDRESS);
+    a.xor_number(WRITE | CUT);
+    a.jump_if(Zero, "cut");
+    // The address of a CUT has the bit of a segment too.
     a.and_number(SEGMENT);
-    a.jump_unless(Zero, "segments");
+    a.jump_if(Zero, "segments");
     // A is the address exclusive or all registers that were compared so far.
     let mut compared = 0;
     a.load(ADDRESS);

@@ -1,7 +1,7 @@
 //! The registers that the program puts together from several words: CAPTURES, INPUTS and
 //! INPUT_LEVELS.
 
-use super::layout::{ADDRESS, AXIS, BITS, DATA, LEAST, ROW, ROWS, WANTED, WRITTEN};
+use super::layout::{ADDRESS, AXIS, BITS, DATA, LEVELS, ROW, ROWS, WANTED, WRITTEN};
 use crate::engine::{SWITCH_LEVEL, SWITCH_ROWS, SWITCH_STATE};
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{X7, Zero};
@@ -41,7 +41,7 @@ fn switches(a: &mut Assembler) {
     a.load_number(ROWS);
     a.label("row");
     a.store(ROW);
-    a.store_number(LEAST, 0);
+    a.store_number(LEVELS, 0);
     a.load_number(BITS);
     a.label("switch");
     a.store(AXIS);
@@ -55,9 +55,9 @@ fn switches(a: &mut Assembler) {
     a.load_from(ValueSource::Crc, 0);
     a.and(WANTED);
     a.jump_if(Zero, "inactive");
-    a.load(LEAST);
+    a.load(LEVELS);
     a.xor_table();
-    a.store(LEAST);
+    a.store(LEVELS);
     a.label("inactive");
     a.acts(INX);
     a.load_x();
@@ -66,14 +66,13 @@ fn switches(a: &mut Assembler) {
     a.load(ROW);
     a.xor_number(ROWS ^ DATA);
     a.acts(TAX);
-    a.load(LEAST);
+    a.load(LEVELS);
     a.store_next();
-    a.index(ROW);
-    a.acts(INX);
+    // X is behind that byte, as the next row is behind this one.
     a.load_x();
-    a.xor_number(ROWS + SWITCH_ROWS);
+    a.xor_number(DATA ^ ROWS ^ (ROWS + SWITCH_ROWS));
     a.jump_if(Zero, "data known");
-    a.load_x();
+    a.xor_number(ROWS + SWITCH_ROWS);
     a.jump("row");
 }
 

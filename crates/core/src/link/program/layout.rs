@@ -6,7 +6,7 @@
 //!             1b .. ef   the request: sequence, address, session, words, CRC
 //!             f0 .. ff   the answer; before that the commit of a segment
 //! constants   00 .. 08   BELOW: n ones
-//!             00, 10 .. 70   BELOW_ROOM: the same, by the item ROOM of the engine
+//!             23 .. 3f   NAMED: at every fourth address an axis
 //!             7c .. 7f   RESIDUE
 //!             80 .. 91   FRAMES: two bytes for each number of axes of a SEGMENTS frame
 //!             a0 .. a3   ROWS: a byte for each row of switches
@@ -48,7 +48,7 @@ pub(super) const OWNER: u8 = 0x05; // two bytes: the session number of the owner
 pub(super) const POWER: u8 = 0x07; // the control register
 pub(super) const MASK: u8 = 0x08; // the axes of the request, one bit each
 pub(super) const AXIS: u8 = 0x09; // an address in BITS, whose bits 2..0 are the axis
-pub(super) const LEAST: u8 = 0x0a; // as many ones as each queue of the mask has room for; a byte of INPUTS
+pub(super) const LEVELS: u8 = 0x0a; // a byte of INPUTS
 pub(super) const ANSWERS: u8 = 0x0b; // 0 while the room is examined before a segment is put
 pub(super) const TICKS: u8 = 0x0c; // four bytes: the first word of a segment
 pub(super) const BASE: u8 = 0x10; // the address of a word of a segment
@@ -62,15 +62,19 @@ pub(super) const FAULT_BIT: u8 = 1 << 0;
 pub(super) const READY_BIT: u8 = 1 << 1;
 /// Bit of an answer's flags: a start is armed.
 pub(super) const ARMED_BIT: u8 = 1 << 2;
+/// Bit of an answer's flags: the last cut was refused.
+pub(super) const CUT_REFUSED_BIT: u8 = 1 << 4;
 /// Bit of an answer's flags: the request was a write.
 pub(super) const WRITTEN_BIT: u8 = 1 << 3;
 /// Bits of an answer's flags: nothing moves and nothing waits, or a stop is complete.
 pub(super) const AT_REST: u8 = 1 << 6 | 1 << 7;
 
-/// Table: as many ones as the index says, 0 to 8.
-pub(super) const BELOW: u8 = 0x00;
-/// Bits of the item ROOM that are the room; with a table of ones at these addresses.
-pub(super) const ROOM_BITS: u8 = 0x70;
+/// Table: as many ones as the index says, 0 to 8. The number of axes leads to the bits of those
+/// that exist.
+const BELOW: u8 = 0x00;
+/// Table: by the address behind a word of a CUT frame, the axis to which it belongs. Bit 3 is 0, as
+/// a word that names a slot requires; only the last entry is 0xc0 or more.
+pub(super) const NAMED: u8 = WORDS + 4;
 /// Table: the bytes of the CRC's residue. Bit 7 of X becomes 1 behind the last one.
 pub(super) const RESIDUE: u8 = 0x7c;
 /// Table: the address behind a SEGMENTS frame and that of its last word, by its number of axes.
@@ -93,11 +97,10 @@ pub(super) const fn last_of(end: u8) -> u8 {
 
 /// Places the tables.
 pub(super) fn tables(a: &mut Assembler) {
-    let ones = |count: u32| ((1_u32 << count) - 1) as u8;
-    let below: [u8; 9] = core::array::from_fn(|count| ones(count as u32));
-    a.table(BELOW, &below);
-    for room in 1..8 {
-        a.table(room << 4, &[ones(room.into())]);
+    a.table(BELOW, &core::array::from_fn::<u8, 9, _>(|count| ((1_u32 << count) - 1) as u8));
+    for axis in 0..MAX_AXES as u8 {
+        let last = usize::from(axis) == MAX_AXES - 1;
+        a.table(NAMED + 4 * axis, &[if last { 0xc0 | axis } else { axis }]);
     }
     a.table(RESIDUE, &CRC_RESIDUE.to_le_bytes());
     for axes in 0..=MAX_AXES {

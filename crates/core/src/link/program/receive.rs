@@ -29,8 +29,7 @@ pub(super) fn receive(a: &mut Assembler) {
     a.store(BYTE);
     a.xor_number(END);
     a.jump_if(Zero, "ended");
-    a.load(BYTE);
-    a.xor_number(ESC);
+    a.xor_number(END ^ ESC);
     a.jump_if(Zero, "escaped");
     a.load(BYTE);
     a.jump("plain");
@@ -38,15 +37,13 @@ pub(super) fn receive(a: &mut Assembler) {
     a.label("escaped");
     a.jump_if(Nothing, "escaped");
     a.load_from(ValueSource::Received, 0);
-    a.store(BYTE);
-    for (special, label) in [(ESC_END, "an END"), (ESC_ESC, "an ESC")] {
-        a.xor_number(special);
-        a.jump_if(Zero, label);
-        a.load(BYTE);
-    }
+    a.xor_number(ESC_END);
+    a.jump_if(Zero, "an END");
+    a.xor_number(ESC_END ^ ESC_ESC);
+    a.jump_if(Zero, "an ESC");
     // No other byte may follow an ESC. The frame is damaged; unless this byte is an END, X is set
     // to the length of an over-long frame.
-    a.xor_number(END);
+    a.xor_number(ESC_ESC ^ END);
     a.jump_if(Zero, "begin");
     a.index_number(REQUEST_END);
     a.jump("next");

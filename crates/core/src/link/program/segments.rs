@@ -2,11 +2,10 @@
 //!
 //! The words of an axis go one per tick: its ticks, V, A and J, and the commit. A frame of one axis
 //! has them in this order. In a frame of several axes the ticks come first and the commit last; the
-//! ticks are copied in front of each axis' own words, where only used words are.
+//! ticks are copied in front of each axis' own words, where only used words are. The commit of a
+//! frame of several axes changes outputs as that of its first axis.
 
-use super::layout::{
-    ANSWERS, AXIS, BASE, BELOW, BITS, COMMIT, LAST, LEAST, MASK, ROOM_BITS, TICKS,
-};
+use super::layout::{ANSWERS, AXIS, BASE, BITS, COMMIT, LAST, MASK, TICKS};
 use crate::link::assembler::Assembler;
 use crate::link::processor::Condition::{Commit, Fault, Full, X7, Zero};
 use crate::link::processor::{
@@ -33,17 +32,16 @@ pub(super) fn segments(a: &mut Assembler) {
     a.jump_unless(Zero, "seek ended");
     // A segment of 0 ticks has all ones as its first word, which is ticks minus one.
     a.index(BASE);
+    // A is the last of these bytes.
     copy(a, TICKS);
-    a.load(TICKS);
-    for byte in 1..4 {
+    for byte in 0..3 {
         a.and(TICKS + byte);
     }
     a.xor_number(0xff);
     a.jump_if(Zero, "broken");
-    a.store_number(ANSWERS, 0);
     a.jump("rooms");
-    a.label("room for one");
-    a.load(LEAST);
+    a.label("its room");
+    a.load_from(ValueSource::Engine, ROOM);
     a.jump_unless(Zero, "put");
     a.label("broken");
     a.acts(BROKEN);
@@ -76,10 +74,19 @@ pub(super) fn segments(a: &mut Assembler) {
     }
     a.load(AXIS);
     a.acts(PUTS | WAIT);
-    a.jump_if(Full, "next axis");
+    a.jump_if(Full, "committed");
     a.jump_unless(Commit, "word");
     a.index_number(COMMIT);
     a.jump("bytes");
+    // Only the first axis of a frame changes outputs.
+    a.label("committed");
+    a.load(COMMIT);
+    a.and_number(1);
+    a.store(COMMIT);
+    a.load_number(0);
+    for byte in 1..4 {
+        a.store(COMMIT + byte);
+    }
     a.label("next axis");
     a.index(AXIS);
     a.acts(INX);
@@ -96,10 +103,10 @@ fn copy(a: &mut Assembler, to: u8) {
     }
 }
 
-/// Finds how many segments each queue of the mask has room for.
+/// A <= the number of segments for which every queue of the mask has room.
 pub(super) fn rooms(a: &mut Assembler) {
     a.label("rooms");
-    a.store_number(LEAST, 0x7f);
+    a.acts(CRC_BEGIN);
     a.load_number(BITS);
     a.label("room");
     a.store(AXIS);
@@ -108,30 +115,16 @@ pub(super) fn rooms(a: &mut Assembler) {
     a.and_table();
     a.jump_if(Zero, "next room");
     a.load(AXIS);
-    // The first wait may end with `refreshed` before the axis of A has reported; the room would
-    // then be another axis'. An axis that does not exist never reports.
+    // The first wait may end with `refreshed` before the axis of A has reported. An axis that does
+    // not exist never reports.
     a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
-    a.load_from(ValueSource::Engine, ROOM);
-    a.and_number(ROOM_BITS);
-    a.acts(TAX);
-    a.load(LEAST);
-    a.and_table();
-    a.store(LEAST);
     a.label("next room");
     a.index(AXIS);
     a.acts(INX);
     a.load_x();
     a.jump_if(X7, "room");
     a.load(ANSWERS);
-    a.jump_if(Zero, "room for one");
-    // X <= the number of ones.
-    a.index_number(BELOW);
-    a.label("ones");
-    a.load_from(ValueSource::ConstantAtX, 0);
-    a.xor(LEAST);
-    a.jump_if(Zero, "rooms known");
-    a.acts(INX);
-    a.jump("ones");
-    a.label("rooms known");
+    a.jump_if(Zero, "its room");
+    a.load_from(ValueSource::Engine, ROOM);
 }

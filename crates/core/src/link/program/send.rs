@@ -14,11 +14,11 @@ pub(super) fn send(a: &mut Assembler) {
     a.load_next();
     a.jump_unless(Special, "transmit");
     a.store(BYTE);
-    for (special, label) in [(END, "escape an END"), (ESC, "escape an ESC")] {
-        a.xor_number(special);
-        a.jump_if(Zero, label);
-        a.load(BYTE);
-    }
+    a.xor_number(END);
+    a.jump_if(Zero, "escape an END");
+    a.xor_number(END ^ ESC);
+    a.jump_if(Zero, "escape an ESC");
+    a.load(BYTE);
     a.jump("transmit");
     for (then, label) in [(ESC_END, "escape an END"), (ESC_ESC, "escape an ESC")] {
         a.label(label);

@@ -69,12 +69,17 @@ pub(super) fn session(a: &mut Assembler) {
 
     for (label, refusal) in [
         ("busy", Refusal::Busy),
-        ("stranger", Refusal::Session),
         ("lost", Refusal::Sequence),
         ("seek ended", Refusal::SeekEnded),
+        ("cut refused", Refusal::Cut),
     ] {
         a.label(label);
-        a.store_number(REASON, refusal.number() << 4);
-        a.jump("answer");
+        a.load_number(refusal.number() << 4);
+        a.jump("refuse");
     }
+    a.label("stranger");
+    a.load_number(Refusal::Session.number() << 4);
+    a.label("refuse");
+    a.store(REASON);
+    a.jump("answer");
 }

@@ -3,7 +3,8 @@
 //
 //   parameters   `DUT: the name of the exported adder
 //   assumptions  The beats of a time slot follow one another, and the next one begins at once or at
-//                least two clocks later (proved in time_slot/promises.sv). From beat 6 on, counts, lost, up, down, wipe and forgets do not change within a time slot.
+//                least two clocks later (proved in time_slot/promises.sv). From beat 6 on, counts,
+//                lost, wipe and forgets do not change within a time slot.
 //
 // The memory delivers the low halves of A, J, V and P first and their high halves later. This file
 // joins the halves and computes the expected sums in 64 bits.
@@ -34,17 +35,17 @@ module promises (
     // After a time slot that no other one follows at once: the sum of this clock, and of the clock
     // before, is the number of the tick + 1.
     reg counts_tick = 0, had_counted = 0;
-    reg was_counts = 0, was_lost = 0, was_up = 0, was_down = 0, was_wipe = 0, was_forgets = 0;
+    reg was_counts = 0, was_lost = 0, added = 0, subtracted = 0, was_wipe = 0, was_forgets = 0;
     always @(posedge clock) begin
         first_clock <= 0;
         was_beat <= beat;
-        {was_counts, was_lost, was_up, was_down, was_wipe, was_forgets} <= {counts, lost, up, down, wipe, forgets};
+        {was_counts, was_lost, was_wipe, was_forgets} <= {counts, lost, wipe, forgets};
         if (beat[1]) low_a <= word;
         if (beat[2]) low_j <= word;
         if (beat[3]) low_v <= word;
         if (beat[4]) low_p <= word;
         if (beat[5]) n <= word;
-        if (beat[6]) pos <= word;
+        if (beat[6]) {pos, added, subtracted} <= {word, up, down};
         if (beat[7]) {high_j, was_put} <= {word, put};
         if (beat[8]) high_a <= word;
         if (beat[9]) high_v <= word;
@@ -54,7 +55,7 @@ module promises (
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[16:1] == was_beat[15:0]);
-        assume (was_beat[11:5] == 0 || {counts, lost, up, down, wipe, forgets} == {was_counts, was_lost, was_up, was_down, was_wipe, was_forgets});
+        assume (was_beat[11:5] == 0 || {counts, lost, wipe, forgets} == {was_counts, was_lost, was_wipe, was_forgets});
         assume (!(lost && counts) && !(up && down));
         assume (!(beat[0] && beat[14]));
     end
@@ -79,7 +80,7 @@ module promises (
         promise_6_ticks_and_discarded: assert (!beat[7] || sum == (was_forgets ? 0 : counted));
         promise_6_over_after_the_last_tick: assert (!beat[12] || !counts || ended == (n == 0));
         promise_6_put_as_it_is: assert (!beat[9] || sum == was_put);
-        promise_7_position: assert (!beat[8] || sum == pos + up - down);
+        promise_7_position: assert (!beat[8] || sum == pos + added - subtracted);
         promise_10_ramp_turns_where_the_sign_does: assert (!beat[12] || turned == (faster[63] != v[63]));
         promise_11_sign: assert (!beat[12] || {back, still} == {v[63], v == 0});
         promise_11_direction_stays: assert (beat[12] || first_clock || back == was_back);
@@ -100,7 +101,7 @@ module promises (
     always_comb begin
         cover_6_carry_between_the_halves: cover (beat[12] && crosses && low_p + low_v < low_p && high_v == 0);
         cover_6_overspeed: cover (beat[12] && overflow && !back);
-        cover_7_step_back: cover (beat[8] && down && sum == 32'hffffffff);
+        cover_7_step_back: cover (beat[8] && subtracted && sum == 32'hffffffff);
         cover_15_counts_a_tick_that_wraps: cover (had_counted && sum == 0);
         cover_15_next_tick_has_begun: cover (counts_tick && beat[1]);
         cover_11_least: cover (beat[12] && least);

@@ -2,7 +2,8 @@
 // output in each beat, and in which tick a snapshot is taken.
 //
 //   parameters   `DUT: the name of the exported module `readout`
-//   assumptions  There is no beat 0 to 12 at a strobe, at most one of them in a clock, and a tick has
+//   assumptions  There is no beat 0 to 12 at a strobe, at most one of them in a clock, and a tick
+//   has
 //                a time slot of the last axis (proved in time_slot/promises.sv). A source is hit in beat
 //                12 (proved in seek_control/promises.sv). `met` is asserted in the time slot of an
 //                axis in the tick after `meets` was, and in no other (proved in queue/promises.sv).
@@ -25,9 +26,9 @@ module promises (
     input wire level,
     input wire resetting,
     input wire [31:0] word,
-    input wire [2:0] live,
+    input wire [4:0] live,
     input wire running,
-    input wire [2:0] room,
+    input wire [4:0] room,
     input wire [3:0] on_way
 );
     wire valid, refreshed, meets;
@@ -88,7 +89,7 @@ module promises (
             : beat[10] ? 5 : beat[11] ? 3 : 7));
         promise_15_words_as_the_memory_has_them: assert (!valid || beat[12] || beat[7] || state == word);
         promise_15_switches: assert (!valid || !beat[7] || state[7:6] == {earlier, level});
-        promise_15_status: assert (!beat[12] || state[15:0] == {on_way, 3'b000, 3'd7 - room, running, 2'b00, live});
+        promise_15_status: assert (!beat[12] || live > 7 || room > 7 || state[15:0] == {on_way, 1'b0, 5'd7 - room, running, live});
         promise_15_refreshed: assert (refreshed == (beat[12] && is_last && page_now == 1));
         promise_13_inactive: assert (!first_clock || !valid || of_switch || page == 1);
     end

@@ -6,11 +6,9 @@ use super::switches::{Sample, Switch};
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Guard, QUEUE, SEGMENT_WORDS, SWITCH_ROWS};
+use carrystep_core::OutputChange;
+use carrystep_core::engine::{Cause, Commit, Guard, SEGMENT_WORDS, SWITCH_ROWS};
 use std::collections::VecDeque;
-
-/// Number of slots of an axis: those of its queue, and that of the running segment.
-const SLOTS: usize = QUEUE + 1;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -20,20 +18,20 @@ pub(super) struct Queued {
     pub(super) v: i64,
     pub(super) a: i64,
     pub(super) j: i64,
-    pub(super) last: bool,
+    pub(super) commit: Commit,
 }
 
 impl Queued {
     /// Assembles the segment from its seven words, low half first.
-    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
+    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], commit: Commit) -> Self {
         let [left, v, v_high, a, a_high, j, j_high] = words;
         let long = |low: u32, high: u32| (u64::from(high) << 32 | u64::from(low)).cast_signed();
-        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), last }
+        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), commit }
     }
 }
 
-/// One axis: its accumulator, its queue, its switches, the stages behind the accumulator and the step
-/// shaper.
+/// One axis: its accumulator, its queue, its switches, the stages behind the accumulator and the
+/// step shaper.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct AxisModel {
     pub(super) p: u64,
@@ -46,14 +44,20 @@ pub(super) struct AxisModel {
     pub(super) stop: i64,
     pub(super) seek: AxisSeek,
     pub(super) queue: VecDeque<Queued>,
-    /// Number of segments that have left the queue, modulo [`SLOTS`]: the slot of the running
-    /// segment, or of the last one that ran.
+    /// Number of slots: those of the queue, and that of the running segment.
+    pub(super) slots: usize,
+    /// Number of segments that have left the queue, modulo the number of slots: the slot of the
+    /// running segment, or of the last one that ran.
     pub(super) slot: u8,
+    /// The change of outputs with the segment with which the axis begins this tick.
+    pub(super) begun: Option<OutputChange>,
     /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Queued>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
     /// Number of the word of that segment that must come next.
     pub(super) next_word: u8,
+    /// The slot that the host has named for a cut.
+    pub(super) named: Option<u8>,
     /// The switches of this axis, one of each row.
     pub(super) switches: [Switch; SWITCH_ROWS as usize],
     pub(super) computed: Stage,
@@ -71,7 +75,7 @@ pub(super) struct Tick<'a> {
 }
 
 impl AxisModel {
-    pub(super) fn new(p: u64, stop: u64, shaper: shaper::ShaperState) -> Self {
+    pub(super) fn new(p: u64, stop: u64, slots: usize, shaper: shaper::ShaperState) -> Self {
         Self {
             p,
             running: None,
@@ -80,10 +84,13 @@ impl AxisModel {
             stop: stop.cast_signed(),
             seek: AxisSeek::default(),
             queue: VecDeque::new(),
+            slots,
             slot: 0,
+            begun: None,
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
             next_word: 0,
+            named: None,
             switches: Default::default(),
             computed: Stage::default(),
             emitted: Stage::default(),
@@ -93,12 +100,14 @@ impl AxisModel {
 
     /// Number of segments for which the queue has room.
     pub(super) fn room(&self) -> u8 {
-        (QUEUE - self.queue.len()) as u8
+        (self.slots - 1 - self.queue.len()) as u8
     }
 
     /// Takes the first segment of the queue, if there is one, as the running segment.
     pub(super) fn load(&mut self) {
         self.running = self.queue.pop_front();
+        self.begun =
+            self.running.map(|segment| segment.commit.outputs).filter(|change| !change.is_none());
         self.pass_slots(usize::from(self.running.is_some()));
     }
 
@@ -109,7 +118,7 @@ impl AxisModel {
 
     /// Counts segments that leave the queue.
     fn pass_slots(&mut self, segments: usize) {
-        self.slot = ((usize::from(self.slot) + segments) % SLOTS) as u8;
+        self.slot = ((usize::from(self.slot) + segments) % self.slots) as u8;
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
@@ -118,6 +127,7 @@ impl AxisModel {
         next.emitted = self.computed;
         next.computed = Stage::default();
         next.running = None;
+        next.begun = None;
         next.ramp = None;
         next.unfit = false;
         let mut found = None;
@@ -142,7 +152,7 @@ impl AxisModel {
 
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
     fn add(&self, next: &mut Self, segment: Queued, tick: Tick<'_>) -> Option<Cause> {
-        let Queued { left, v, a, j, last } = segment;
+        let Queued { left, v, a, j, commit } = segment;
         let segment = Queued { left: left.wrapping_sub(1), ..segment };
         let step = crosses(self.p, v)
             .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
@@ -168,7 +178,7 @@ impl AxisModel {
             next.unfit = unfit;
             return None;
         }
-        if last {
+        if commit.last {
             return None;
         }
         next.load();

@@ -20,8 +20,11 @@ impl Motion {
         let of_axis_model = |axis_model: &AxisModel| {
             let all = || axis_model.running.iter().chain(&axis_model.queue);
             let begun = armed || axis_model.running.is_some();
-            let ended =
-                if armed { all().next_back()?.last } else { all().any(|segment| segment.last) };
+            let ended = if armed {
+                all().next_back()?.commit.last
+            } else {
+                all().any(|segment| segment.commit.last)
+            };
             if !begun || ended {
                 return None;
             }
@@ -43,7 +46,7 @@ impl Motion {
     /// The axes that run a segment which is not the last of its move, one bit each.
     pub fn in_a_move(&self) -> u8 {
         bits(&self.axis_models, |axis_model| {
-            axis_model.running.is_some_and(|segment| !segment.last)
+            axis_model.running.is_some_and(|segment| !segment.commit.last)
         })
     }
 }

@@ -88,7 +88,9 @@ impl Motion {
         let idle = self.rest == 2 && self.armed.is_none() && !busy;
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
         self.time_slots
-            && !(inputs.reset || self.reset.ending || self.misplaced)
+            && !(inputs.reset || self.reset.ending || self.misplaced || self.stray)
+            && !(inputs.cut || self.cut.is_busy())
+            && self.outputs_are_steady()
             && (fault || !(inputs.stop || inputs.broken || nobody))
             && inputs.seek.is_none()
             && inputs.seek_source.is_none()
@@ -212,6 +214,7 @@ impl Motion {
         }
         self.supervisor.pass(&self.build.guard, inputs.kick, strobes);
         self.latch.pass(strobes);
+        self.pass_outputs(clocks);
         self.clock = (end % per_tick) as u32;
     }
 
@@ -259,7 +262,7 @@ impl AxisModel {
     fn plain_strobes(&self, ramp: bool) -> u64 {
         let stop = self.stop.unsigned_abs();
         match (self.running, self.ramp) {
-            _ if self.unfit || self.fresh.is_some() => 0,
+            _ if self.unfit || self.fresh.is_some() || self.begun.is_some() => 0,
             (None, None) => u64::MAX,
             (Some(segment), _) if segment.v == i64::MIN => 0,
             (Some(segment), None) if !ramp => segment.left.into(),

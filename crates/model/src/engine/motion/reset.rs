@@ -39,6 +39,7 @@ impl Motion {
             self.interlock = false;
             self.forget_seek();
             self.latch.forget();
+            self.cut.withdraw();
         }
         self.reset.ending |= requested;
     }
@@ -48,6 +49,9 @@ impl Motion {
     pub(super) fn strobe_reset(&mut self, was: Reset, requested: bool, free: bool) {
         if was.ending && was.stage != 1 {
             self.supervisor.tick_of_round = 0;
+        }
+        if was.is_resetting() {
+            self.cut.refused = false;
         }
         match was.stage {
             _ if !was.ending => {}

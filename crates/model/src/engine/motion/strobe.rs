@@ -21,8 +21,8 @@ impl Motion {
         (axis_models.collect(), found)
     }
 
-    /// Decides at this strobe about the armed start. A start of an axis whose seek had hit when this
-    /// tick began is dropped. A hit in this very tick does not change the decision.
+    /// Decides at this strobe about the armed start. A start of an axis whose seek had hit when
+    /// this tick began is dropped. A hit in this very tick does not change the decision.
     pub(super) fn decision(
         &self,
         (ticked, found): &(Vec<AxisModel>, Vec<(Cause, usize)>),
@@ -64,6 +64,7 @@ impl Motion {
         for axis_model in &mut axis_models {
             axis_model.queue.extend(axis_model.fresh.take());
         }
+        self.decide_cut(&mut axis_models);
         match decision {
             Decision::Wait => {}
             Decision::Drop => self.armed = None,
@@ -118,6 +119,7 @@ impl Motion {
             axis_model.queue.clear();
             axis_model.slot = 0;
             axis_model.next_word = 0;
+            axis_model.named = None;
         }
     }
 }

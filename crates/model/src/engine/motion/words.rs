@@ -11,7 +11,8 @@
 //! ```
 
 use super::Motion;
-use carrystep_core::engine::{COMMIT, MAX_AXES, PUT_BEAT, Put, QUEUE, TIME_SLOT_CLOCKS};
+use super::switches::LAST_BEAT;
+use carrystep_core::engine::{COMMIT, CUT_WORD, MAX_AXES, PUT_BEAT, Put, TIME_SLOT_CLOCKS};
 
 impl Motion {
     /// Returns how many clocks, at most `most`, may be skipped before a word causes an event, and
@@ -36,16 +37,20 @@ impl Motion {
             let Some(axis_model) = self.axis_models.get(axis) else {
                 return (end.min(from), taken);
             };
-            if axis_model.queue.len() >= QUEUE {
+            let names = put.word & CUT_WORD != 0;
+            if !names && axis_model.room() == 0 {
                 return (end, taken);
             }
-            let beat = u64::from(u32::from(put.axis) * TIME_SLOT_CLOCKS + PUT_BEAT);
+            let beat = if names { LAST_BEAT } else { PUT_BEAT };
+            let beat = u64::from(u32::from(put.axis) * TIME_SLOT_CLOCKS + beat);
             let at = from + (beat + per_tick - (begin + from) % per_tick) % per_tick;
             if at >= end {
                 return (end, taken);
             }
-            // A word that comes at rest makes the engine active, and a misplaced word is a fault.
-            if !takes || self.rest > 0 || put.word != next_words[axis] {
+            // A word that comes at rest makes the engine active, a misplaced word or a bit without a
+            // use is a fault, and the name of a slot is needed by the next cut.
+            let follows = put.word == next_words[axis] && !self.has_stray_bits(*put);
+            if !takes || self.rest > 0 || !follows {
                 return (at, taken);
             }
             next_words[axis] += 1;

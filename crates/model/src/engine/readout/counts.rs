@@ -3,8 +3,11 @@
 
 use crate::parts::shaper::ShaperState;
 
-/// The beat of a time slot in which the counts are compared with the registers of the shaper.
-pub(super) const COMPARE_BEAT: u32 = 4;
+/// The beat of a time slot in which the discarded steps are compared with those of the shaper.
+pub(super) const DISCARDED_BEAT: u32 = 4;
+
+/// The beat of a time slot in which the position is compared with that of the shaper.
+pub(super) const POSITION_BEAT: u32 = 6;
 
 /// The counts of an axis, and the results of the last comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,10 +25,16 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Compares the counts with the shaper of an axis that `runs` or does not.
-    pub(super) const fn compare(&mut self, shaper: &ShaperState, runs: bool) {
-        self.change = shaper.position.wrapping_sub(self.position).signum();
-        self.lost = shaper.discarded != self.discarded && !runs;
+    /// Compares a count with the shaper of an axis that `runs` or does not, if this is a beat that
+    /// does.
+    pub(super) const fn compare(&mut self, beat: u32, shaper: &ShaperState, runs: bool) {
+        match beat {
+            DISCARDED_BEAT => self.lost = shaper.discarded != self.discarded && !runs,
+            POSITION_BEAT => {
+                self.change = shaper.position.wrapping_sub(self.position).signum();
+            }
+            _ => {}
+        }
     }
 
     /// Counts what the comparison of this tick has found.
@@ -46,12 +55,14 @@ impl Counts {
         self.on_way = (((self.on_way as i32).wrapping_add(carries) << 28) >> 28) as i8;
     }
 
-    /// Makes this number of comparisons and commits each, while the shaper stays the same.
-    pub(super) fn follow(&mut self, shaper: &ShaperState, runs: bool, ticks: u64) {
-        let apart = shaper.position.wrapping_sub(self.position);
-        let steps = u64::from(apart.unsigned_abs()).min(ticks) as u32;
-        self.count(apart.signum().wrapping_mul(steps.cast_signed()));
-        if !runs {
+    /// Makes this number of comparisons in a beat and commits each, while the shaper stays the
+    /// same.
+    pub(super) fn follow(&mut self, beat: u32, shaper: &ShaperState, runs: bool, ticks: u64) {
+        if beat == POSITION_BEAT {
+            let apart = shaper.position.wrapping_sub(self.position);
+            let steps = u64::from(apart.unsigned_abs()).min(ticks) as u32;
+            self.count(apart.signum().wrapping_mul(steps.cast_signed()));
+        } else if !runs {
             let lost = shaper.discarded.wrapping_sub(self.discarded);
             self.discarded = self.discarded.wrapping_add(u64::from(lost).min(ticks) as u32);
         }

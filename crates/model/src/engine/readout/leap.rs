@@ -1,9 +1,9 @@
 //! Access for the fast model: the readout after many clocks in which the axes only repeat their
-//! additions. No step is discarded in them, no switch changes its debounced state, no seek hits, the
-//! latch accepts no edge, nothing is cleared and no snapshot is requested, and an axis that runs
-//! goes on running.
+//! additions. No step is discarded in them, no switch changes its debounced state, no seek hits,
+//! the latch accepts no edge, nothing is cleared and no snapshot is requested, and an axis that
+//! runs goes on running.
 
-use super::counts::COMPARE_BEAT;
+use super::counts::{DISCARDED_BEAT, POSITION_BEAT};
 use super::{LOOK_BEAT, Readout, SWITCH_BEAT, switch_word};
 use crate::engine::Motion;
 use crate::parts::shaper::ShaperState;
@@ -28,19 +28,21 @@ impl Readout {
     /// Passes the counts of one axis through clocks in which the position and the discarded steps
     /// of its shaper are constant.
     pub(crate) fn follow(&mut self, axis: usize, shaper: &ShaperState, runs: bool, span: Span) {
-        let compares = axis as u64 * u64::from(TIME_SLOT_CLOCKS) + u64::from(COMPARE_BEAT);
         let counts = &mut self.counts[axis];
-        let mut strobes = span.strobes();
-        let compared = span.clock > compares;
-        if compared && strobes > 0 {
+        let strobes = span.strobes();
+        if strobes > 0 {
             counts.commit();
-            strobes -= 1;
-        } else if compared {
-            return;
         }
-        counts.follow(shaper, runs, strobes);
-        if (span.clock + span.clocks) % span.per_tick > compares {
-            counts.compare(shaper, runs);
+        for beat in [DISCARDED_BEAT, POSITION_BEAT] {
+            let compares = axis as u64 * u64::from(TIME_SLOT_CLOCKS) + u64::from(beat);
+            let compared = span.clock > compares;
+            // The first strobe has committed what had been compared before.
+            let ticks = strobes.saturating_sub(compared.into());
+            counts.follow(beat, shaper, runs, ticks);
+            let again = !compared || strobes > 0;
+            if again && (span.clock + span.clocks) % span.per_tick > compares {
+                counts.compare(beat, shaper, runs);
+            }
         }
     }
 

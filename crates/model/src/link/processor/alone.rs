@@ -27,7 +27,7 @@ impl LinkProcessor {
         let waits = self.does(WAIT) && !self.does(GOES);
         let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
         let asks = self.executes(JUMPS) && self.code >> CONDITION & 7 == Condition::Fault as Code;
-        acts || waits || reads || asks || self.reads_register()
+        acts || waits || reads || asks || self.asks_room() || self.reads_register()
     }
 
     /// True from the clock on in which the memory is read for an instruction that loads its word
@@ -35,11 +35,6 @@ impl LinkProcessor {
     fn reads_register(&self) -> bool {
         const READS: Code = ACTS | CRC_BEGIN | CRC_FEED;
         self.stage > 0 && self.code & (SETS | STORES | JUMPS) == 0 && self.code & READS == READS
-    }
-
-    /// Stores the room that the engine has reported, in segments.
-    pub(in crate::link) const fn keep_room(&mut self, room: u8) {
-        self.room = room;
     }
 
     pub(in crate::link) fn waits(&self) -> Waits {

@@ -1,0 +1,176 @@
+//! Compares the output pins of a run with the changes that its plan wants.
+//!
+//! ```text
+//! plan     row            | row: output 2 on  | row              each change is due where its row
+//! pins     _____________________/^^^^^^^^^^^^^^^^^^^^^^          begins, plus the latency of a step
+//! ```
+
+use crate::edge::{PinChange, PinSink};
+use crate::error::TraceError;
+use carrystep_core::OutputChange;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt;
+
+/// The check of the output pins. The PWM has no part in it: its pin changes many times for each
+/// duty, and is compared where the gateware is compared with its model.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct OutputReport {
+    /// True if every change was due, and came in its clock.
+    pub passed: bool,
+    /// Changes of one output or more that came in their clock.
+    pub changes: u64,
+    /// Changes that did not come in their clock, and those that were not due.
+    pub wrong: u64,
+    /// The first of them.
+    pub first_wrong: Option<String>,
+}
+
+impl fmt::Display for OutputReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { changes, wrong, first_wrong, .. } = self;
+        writeln!(f, "changes of outputs in their clocks: {changes}; wrong: {wrong}")?;
+        first_wrong.iter().try_for_each(|first| writeln!(f, "  {first}"))
+    }
+}
+
+/// A change of outputs that a plan wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DueChange {
+    /// When it is due, ps of the capture.
+    pub ps: u64,
+    /// What changes.
+    pub change: OutputChange,
+}
+
+/// Takes the levels of the output pins. `due` gives the changes that the plan wants, in order: all
+/// that are due up to the time of the pins.
+pub struct OutputCheck<F> {
+    due: F,
+    /// The next change.
+    next: Option<DueChange>,
+    /// The levels that the plan wants, and those of the pins.
+    wanted: u8,
+    found: u8,
+    report: OutputReport,
+}
+
+impl<F> fmt::Debug for OutputCheck<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OutputCheck").field("report", &self.report).finish_non_exhaustive()
+    }
+}
+
+impl<F: FnMut() -> Option<DueChange>> OutputCheck<F> {
+    /// A check that begins with all outputs inactive.
+    pub const fn new(due: F) -> Self {
+        let report = OutputReport { passed: true, changes: 0, wrong: 0, first_wrong: None };
+        Self { due, next: None, wanted: 0, found: 0, report }
+    }
+
+    /// The result.
+    pub fn finish(self) -> OutputReport {
+        self.report
+    }
+
+    fn wrong(&mut self, ps: u64, what: &str) {
+        let [wanted, found] = [self.wanted, self.found].map(|levels| format!("{levels:08b}"));
+        let first = || format!("at {ps} ps {what}: {wanted} is due, the pins have {found}");
+        self.report.first_wrong.get_or_insert_with(first);
+        self.report.wrong += 1;
+        self.report.passed = false;
+    }
+
+    /// Applies the next change that is due at `ps` or before. Returns its time, and whether a pin
+    /// must change.
+    fn apply(&mut self, ps: u64) -> Option<(u64, bool)> {
+        self.next = self.next.take().or_else(|| (self.due)());
+        let DueChange { ps: at, change } = self.next.take_if(|next| next.ps <= ps)?;
+        let before = self.wanted;
+        self.wanted = (before & !change.mask) | (change.levels & change.mask);
+        Some((at, self.wanted != before))
+    }
+
+    /// The pins have the levels `found` from `ps` on.
+    fn take(&mut self, ps: u64, found: u8) {
+        let mut is_due = false;
+        while let Some((at, changes)) = self.apply(ps) {
+            if at == ps {
+                is_due |= changes;
+            } else if changes && self.found != self.wanted {
+                self.wrong(at, "an output does not change");
+            }
+        }
+        let changes = found != self.found;
+        self.found = found;
+        match (is_due, changes) {
+            _ if found != self.wanted => self.wrong(ps, "an output has the wrong level"),
+            (false, true) => self.wrong(ps, "an output changes late"),
+            (_, changes) => self.report.changes += u64::from(changes),
+        }
+    }
+}
+
+impl<F: FnMut() -> Option<DueChange>> PinSink for OutputCheck<F> {
+    fn change(&mut self, _: PinChange) -> Result<(), TraceError> {
+        Ok(())
+    }
+
+    fn changes(&mut self, _: &[PinChange]) -> Result<(), TraceError> {
+        Ok(())
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        self.take(ps, levels);
+        Ok(())
+    }
+
+    fn end(&mut self, ps: u64) -> Result<(), TraceError> {
+        self.take(ps, self.found);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Output 0 goes on at 100 ps, outputs 0 and 1 change at 200 ps, and 300 ps changes nothing.
+    const PLAN: [(u64, u8, u8); 3] = [(100, 1, 1), (200, 3, 2), (300, 1, 0)];
+
+    fn check(pins: &[(u64, u8)]) -> OutputReport {
+        let mut due = PLAN.into_iter().map(|(ps, mask, levels)| {
+            let change = OutputChange { mask, levels, duty: None };
+            DueChange { ps, change }
+        });
+        let mut check = OutputCheck::new(|| due.next());
+        for (ps, levels) in pins {
+            check.outputs(*ps, *levels).unwrap();
+        }
+        check.end(1000).unwrap();
+        check.finish()
+    }
+
+    #[test]
+    fn changes_in_their_clocks_pass() {
+        let report = check(&[(100, 1), (200, 2)]);
+        assert_eq!((report.passed, report.changes, report.wrong), (true, 2, 0), "{report}");
+    }
+
+    #[test]
+    fn late_early_lost_and_stray_changes_are_found() {
+        for wrong in [
+            [(112, 1), (200, 2)].as_slice(),
+            &[(88, 1), (200, 2)],
+            &[(100, 1)],
+            &[],
+            &[(100, 1), (200, 3)],
+            &[(100, 1), (200, 2), (250, 3)],
+            &[(100, 1), (200, 2), (300, 3)],
+            &[(100, 1), (150, 0), (160, 1), (200, 2)],
+        ] {
+            let report = check(wrong);
+            assert!(!report.passed && report.first_wrong.is_some(), "{wrong:?}: {report}");
+        }
+    }
+}
