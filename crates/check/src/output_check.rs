@@ -73,9 +73,13 @@ impl<F: FnMut() -> Option<DueChange>> OutputCheck<F> {
         self.report
     }
 
-    fn wrong(&mut self, ps: u64, what: &str) {
-        let [wanted, found] = [self.wanted, self.found].map(|levels| format!("{levels:08b}"));
-        let first = || format!("at {ps} ps {what}: {wanted} is due, the pins have {found}");
+    /// Counts what is wrong at `ps` with the outputs of this mask.
+    fn wrong(&mut self, ps: u64, mask: u8, what: &str) {
+        let first = || {
+            let number = mask.trailing_zeros();
+            let level = if self.wanted >> number & 1 == 1 { "on" } else { "off" };
+            format!("at {:.9} s output {number} {what}: it is due to be {level}", ps as f64 / 1e12)
+        };
         self.report.first_wrong.get_or_insert_with(first);
         self.report.wrong += 1;
         self.report.passed = false;
@@ -98,15 +102,15 @@ impl<F: FnMut() -> Option<DueChange>> OutputCheck<F> {
             if at == ps {
                 is_due |= changes;
             } else if changes && self.found != self.wanted {
-                self.wrong(at, "an output does not change");
+                self.wrong(at, self.found ^ self.wanted, "does not change");
             }
         }
-        let changes = found != self.found;
-        self.found = found;
-        match (is_due, changes) {
-            _ if found != self.wanted => self.wrong(ps, "an output has the wrong level"),
-            (false, true) => self.wrong(ps, "an output changes late"),
-            (_, changes) => self.report.changes += u64::from(changes),
+        let changed = std::mem::replace(&mut self.found, found) ^ found;
+        match found ^ self.wanted {
+            0 if changed == 0 => {}
+            0 if is_due => self.report.changes += 1,
+            0 => self.wrong(ps, changed, "changes late"),
+            differs => self.wrong(ps, differs, "has the wrong level"),
         }
     }
 }

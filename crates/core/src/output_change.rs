@@ -7,7 +7,7 @@ pub struct OutputChange {
     pub mask: u8,
     /// Their new levels; 1 is active.
     pub levels: u8,
-    /// The new duty of the PWM, 0 to 4095 of [`PWM_STEPS`](crate::engine::PWM_STEPS); `None` if it stays.
+    /// The new duty of the PWM, 0 to 4095 of 4096; `None` if it stays.
     pub duty: Option<u16>,
 }
 
@@ -15,8 +15,8 @@ impl OutputChange {
     /// Nothing changes.
     pub const NONE: Self = Self { mask: 0, levels: 0, duty: None };
 
-    /// The bits of a [`Commit`](crate::engine::Commit) that are about outputs. Of the duty, only the
-    /// lowest 12 bits count.
+    /// The bits of a commit that are about outputs, as the drawing in `engine/commit.rs` shows them.
+    /// Of the duty, only the lowest 12 bits count.
     pub const fn word(self) -> u32 {
         let duty = match self.duty {
             Some(duty) => 1 << 1 | (duty as u32) << 20,

@@ -15,7 +15,7 @@ pub(crate) struct ProgramOutputs {
     uses: OutputUses,
 }
 
-/// What a code changes, and whether that is all that it asks for.
+/// What a code changes. `is_all` is false if the code asks for more than the machine can switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Effect {
     pub(crate) change: OutputChange,
@@ -32,7 +32,8 @@ impl ProgramOutputs {
         let OutputUses { spindle, spindle_reverse, spindle_rpm, .. } = self.uses;
         let turns = turn != Turn::Off;
         let is_reverse = turn == Turn::Counterclockwise;
-        if spindle.is_some() && spindle_reverse.is_none() && is_reverse {
+        let is_switched = spindle.is_some() || spindle_rpm.is_some();
+        if is_reverse && is_switched && spindle_reverse.is_none() {
             return Err(Fault::NoReverse);
         }
         let mut change = level(spindle, turns).then(level(spindle_reverse, is_reverse));
@@ -43,7 +44,7 @@ impl ProgramOutputs {
             }
             change.duty = Some(duty(rpm / f64::from(most)));
         }
-        Ok(Effect { change, is_all: spindle.is_some() || spindle_rpm.is_some() })
+        Ok(Effect { change, is_all: is_switched })
     }
 
     /// M7, M8, M9: what is on from here on.
@@ -71,7 +72,7 @@ impl ProgramOutputs {
 
     /// M67, M68: the duty of the PWM, from 0 to 1.
     pub(crate) fn analog(&self, index: u32, value: f64) -> Result<Effect, Fault> {
-        if self.exist.pwm_divider == 0 && !self.exist.is_any() {
+        if !self.exist.is_any() {
             return Ok(Effect { change: OutputChange::NONE, is_all: false });
         }
         if index != 0 || self.exist.pwm_divider == 0 || self.uses.spindle_rpm.is_some() {
@@ -127,6 +128,9 @@ mod tests {
         assert_eq!(fast, Err(Fault::SpindleSpeed { rpm: 24_001.0, most: 24_000 }));
         let mut one_way = OUTPUTS;
         one_way.uses.spindle_reverse = None;
+        assert_eq!(one_way.spindle(Turn::Counterclockwise, 1.0), Err(Fault::NoReverse));
+        // A spindle that has only its speed would turn forward.
+        one_way.uses.spindle = None;
         assert_eq!(one_way.spindle(Turn::Counterclockwise, 1.0), Err(Fault::NoReverse));
     }
 

@@ -46,13 +46,13 @@ impl OutputUses {
     /// The names of the uses in machine files, and their outputs.
     pub fn named(&self) -> [(&'static str, Option<u8>); 4] {
         let Self { spindle, spindle_reverse, mist, flood, .. } = *self;
-        [
-            ("spindle", spindle),
-            ("spindle_reverse", spindle_reverse),
-            ("mist", mist),
-            ("flood", flood),
-        ]
+        named([spindle, spindle_reverse, mist, flood])
     }
+}
+
+/// The keys that give an output a use, each with its value of these.
+fn named<T>([spindle, spindle_reverse, mist, flood]: [T; 4]) -> [(&'static str, T); 4] {
+    [("spindle", spindle), ("spindle_reverse", spindle_reverse), ("mist", mist), ("flood", flood)]
 }
 
 /// What a stop by ramps does to the outputs.
@@ -72,12 +72,8 @@ impl RawOutputs {
         outputs: Outputs,
     ) -> Result<OutputUses, InputError> {
         let mut taken = 0_u8;
-        for (key, number) in [
-            ("spindle", &self.spindle),
-            ("spindle_reverse", &self.spindle_reverse),
-            ("mist", &self.mist),
-            ("flood", &self.flood),
-        ] {
+        let all = [&self.spindle, &self.spindle_reverse, &self.mist, &self.flood];
+        for (key, number) in named(all) {
             let Some(number) = number else { continue };
             let bit = 1_u8.checked_shl((*number.as_ref()).into()).unwrap_or(0);
             let wrong = |message: String, help: &str| {
