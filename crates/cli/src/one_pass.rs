@@ -88,8 +88,8 @@ impl<'a> OnePass<'a> {
         LookedAt(self)
     }
 
-    /// The next change of outputs in the rows that the run has taken, and has not been returned yet:
-    /// its time from the beginning of the first row, ps.
+    /// Returns the changes of outputs in the rows that the run has taken, one after the other. Their
+    /// times are in ps from the beginning of the first row.
     pub fn next_due(&self) -> Option<DueChange> {
         self.due.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
     }

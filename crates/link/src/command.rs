@@ -120,8 +120,9 @@ pub enum ProgramError {
 pub trait SegmentSource {
     /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
-    /// What changes at the outputs where the segment of axis 0 begins that was returned last. It is
-    /// asked once for each.
+    /// What changes at the outputs where a segment of axis 0 begins: the one that
+    /// [`segment`](Self::segment) has just returned. The feeder calls this once behind each
+    /// `segment(0)`.
     fn outputs(&mut self) -> OutputChange {
         OutputChange::NONE
     }

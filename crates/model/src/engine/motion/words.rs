@@ -16,7 +16,8 @@ use carrystep_core::engine::{COMMIT, CUT_WORD, MAX_AXES, PUT_BEAT, Put, TIME_SLO
 
 impl Motion {
     /// Returns how many clocks, at most `most`, may be skipped before a word causes an event, and
-    /// how many of the words are taken in these clocks. All of them must be plain but for words.
+    /// how many of the words are taken in these clocks. In all these clocks nothing else may happen
+    /// ([`Motion::plain_clocks`]).
     ///
     /// The host offers `words` one after the other: each from the clock after the one in which the
     /// word before it was taken. If `takes` is false, the taking of a word is an event itself.
