@@ -111,7 +111,7 @@ pub fn run(
     let kept = Kept::default();
     let segments = known.as_ref().map_or(0, |survey| survey.rows * survey.axes.len() as u64);
     let program = OnePass::new(file, detail, segments, &kept)?;
-    let moves = program.begin()?;
+    program.begin()?;
     let mut files = wanted.begin()?;
     // Set when an output fails, so that the run ends early.
     let deaf = AtomicBool::new(false);
@@ -134,8 +134,7 @@ pub fn run(
         }
     };
     let looked_at = program.looked_at();
-    // A job without motion has no start.
-    let load = if moves { on(&looked_at).origin() } else { Ok(0) };
+    let load = on(&looked_at).origin();
     kept.error()?;
     let load = load?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());

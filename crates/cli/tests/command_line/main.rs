@@ -23,6 +23,7 @@ mod curves;
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
 mod documents;
+mod empty_programs;
 mod engine;
 #[cfg(unix)]
 mod homing;
