@@ -8,9 +8,11 @@ use crate::junit::JunitFile;
 use crate::pass::{Kept, RowsAhead};
 use crate::{job, output, program, program_run};
 use carrystep_check::{
-    Capture, JobChecker, JobReport, PlannedRows, SignalMap, TraceError, sink_beside,
+    Capture, JobChecker, JobOutputs, JobReport, PlannedRow, PlannedRows, SignalMap, TraceError,
+    sink_beside,
 };
-use carrystep_program::{Legs, Rows};
+use carrystep_files::InputError;
+use carrystep_program::{Legs, Marks, Row, Rows};
 use carrystep_report::Detail;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -38,7 +40,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
     let failed = |error: TraceError| unusable(arguments, error);
+    let exist = file.machine().outputs.exist;
     let capture = Capture::new(&arguments.capture, &names, &map).map_err(failed)?;
+    let capture = capture.with_outputs(exist);
     let reader = capture.open().map_err(failed)?;
     let timebase = file.machine().timebase;
     let origin = origin(arguments, reader.own(), &timebase)?;
@@ -57,11 +61,17 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     } else {
         setup.total_ps = program_run::length_ps(&survey, &timebase);
         let rows = RowsAhead::new(Rows::new(&file)?);
-        let rows = kept.until_an_error(rows).map(|row| row.segments);
+        let planned = |row: Row| {
+            let outputs = carrystep_program::outputs(&row);
+            PlannedRow { segments: row.segments, outputs }
+        };
+        let rows = kept.until_an_error(rows).map(planned);
         Some(Box::new(rows) as PlannedRows<'_>)
     };
     let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
-    let checker = JobChecker::new(setup, legs, rows, &timebase, origin);
+    let marks = Box::new(kept.until_an_error(Marks::new(&file)?));
+    let outputs = JobOutputs { exist, shown: reader.outputs(), marks };
+    let checker = JobChecker::new(setup, legs, rows, outputs, &timebase, origin);
     // The capture is read while it is checked.
     let (played, checker) = sink_beside(checker, |sink| reader.play(sink)).map_err(failed)?;
     let report = checker.finish();
@@ -74,6 +84,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         junit.case("path".to_owned(), &report.path.failures);
         for axis in report.times.iter().flatten() {
             junit.case(format!("axis {}", axis.axis), &axis.failures);
+        }
+        for output in report.output_times.iter().flatten() {
+            junit.case(format!("output {}", output.output), &output.failures);
         }
         junit.keep()?;
     }

@@ -13,6 +13,7 @@ mod boards;
 mod cache;
 #[cfg(target_os = "linux")]
 mod check_jobs;
+mod check_outputs;
 mod check_slices;
 #[cfg(target_os = "linux")]
 mod ci_action;
