@@ -25,15 +25,27 @@ pub struct CheckedProgram<'a> {
     check: &'a JobReport,
 }
 
+/// Refuses slices, with the reason.
+fn refuse_slices(arguments: &CheckArguments) -> Result<(), Failure> {
+    let CheckArguments { slice, merge, .. } = arguments;
+    let options = [("--slice", slice.is_some()), ("--merge", !merge.is_empty())];
+    let Some((option, _)) = options.iter().find(|(_, given)| *given) else { return Ok(()) };
+    let message = format!(
+        "{option} is not available for G-code programs: each slice would have to plan the program \
+         from its beginning and follow its path from there, which is half of the work of the whole \
+         check or more"
+    );
+    let help = format!(
+        "leave out {option}: the memory of a check does not grow with the capture; --path-only takes \
+         two thirds of the time"
+    );
+    Err(InputError::new(message).help(help).into())
+}
+
 /// Checks a capture against a program and prints the report.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    let CheckArguments { fit_ns, slice, out, merge, .. } = arguments;
-    program::refuse(&[
-        ("--fit-ns", fit_ns.is_some()),
-        ("--slice", slice.is_some()),
-        ("--out", out.is_some()),
-        ("--merge", !merge.is_empty()),
-    ])?;
+    program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
+    refuse_slices(arguments)?;
     let file = program::load(&arguments.file, &arguments.program)?;
     let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
     let map =
