@@ -121,6 +121,9 @@ impl Fault {
             Self::Plan(JobError::Broken { .. } | JobError::Ended) => {
                 "this is a bug of carrystep; please report it with the program".into()
             }
+            Self::Plan(JobError::SlowLine { .. }) => {
+                "raise baud in [machine.link], or use spi = true there".into()
+            }
             Self::Plan(_) => return None,
             Self::Travel { .. } => {
                 "check the work offsets and --at, or correct travel in the machine file".into()
