@@ -26,8 +26,8 @@ pub(crate) struct Piece<const N: usize> {
     pub feed: f64,
     pub tolerance: Tolerance,
     pub line: u64,
-    /// Only rotary letters move, so that the feed is theirs. It is decided by the program: where the
-    /// end of a run is rounded to whole steps, the other letters move a little, too.
+    /// Only rotary letters move, so that the feed is theirs. The program decides it: where the end
+    /// of a run is rounded to whole steps, the other letters move a little, too.
     pub turns_only: bool,
     /// Unit direction of a line; of an arc, the change per length of the letters off the plane.
     along: Point<N>,

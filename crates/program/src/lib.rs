@@ -6,8 +6,8 @@
 //! ```text
 //! file -> gcode: canonical moves -> events: moves with tolerances, rests, outputs, switches
 //!                                    |-> rows   the planner's segments -> survey: figures, limits
-//!                                    |-> legs   the programmed path in straight parts, for the checker
-//!                                    '-> marks  the legs between which outputs change, for the checker
+//!                                    |-> legs   the programmed path in straight legs, for the checker
+//!                                    '-> marks  the legs between which outputs change, for it
 //! ```
 //!
 //! Legs and marks come from the canonical moves and not from the planner, so that the checker

@@ -36,8 +36,8 @@ fn refuse_slices(arguments: &CheckArguments) -> Result<(), Failure> {
          check or more"
     );
     let help = format!(
-        "leave out {option}: the memory of a check does not grow with the capture; --path-only takes \
-         two thirds of the time"
+        "leave out {option}: the memory of a check does not grow with the capture; --path-only \
+         takes two thirds of the time"
     );
     Err(InputError::new(message).help(help).into())
 }
