@@ -1,12 +1,12 @@
 //! The Rust-HDL simulation of the parallel core equals its model in every output in every clock, on
-//! random programs, the demo and every profile. It reproduces the golden vectors to the last edge
-//! and phase.
+//! random programs, the demo and every profile; that of the engine, on moves and on a program. It
+//! reproduces the golden vectors to the last edge and phase.
 
 use carrystep_core::StartPhase;
 use carrystep_hdl::AxisSim;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, Edge, engine_vectors};
-use carrystep_tests::{effort, lockstep, moves, programs};
+use carrystep_tests::{effort, gcode_job, lockstep, moves, programs};
 use proptest::test_runner::{Config, TestRunner};
 
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
@@ -66,6 +66,15 @@ fn every_profile() {
 #[test]
 fn a_move_of_the_shipped_machine_on_the_engine() {
     lockstep::assert_engine_equals_model(Level::RustHdl, &moves::nudge());
+}
+
+/// The outputs and the pin of the PWM are compared in every clock, as all others are.
+#[test]
+fn a_program_in_gcode_with_outputs_on_the_engine() {
+    let job = gcode_job::switching();
+    assert_eq!(job.switches(), 4, "changes at both rests and in motion");
+    let program = (&job.program(), job.survey.ticks);
+    lockstep::assert_engine_runs(Level::RustHdl, &job.engine(), program, job.steps());
 }
 
 #[test]

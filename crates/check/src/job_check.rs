@@ -1,9 +1,11 @@
-//! The check of a capture of a job: the path that the pulses follow, and, against the plan, their
-//! times.
+//! The check of a capture of a job: the path that the pulses follow, the places where outputs
+//! change, and, against the plan, the times of both.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::origin::Origin;
+use crate::output_places::OutputMarks;
+use crate::output_times::OutputTimesReport;
 use crate::path_check::{PathChecker, PathSetup};
 use crate::path_leg::PathLeg;
 use crate::path_report::PathReport;
@@ -27,8 +29,29 @@ pub struct JobReport {
     pub slack_ns: f64,
     /// The times of the pulses of each axis against the plan; none if only the path was checked.
     pub times: Option<Vec<PulseTimesReport>>,
+    /// The times of the changes of each output against the plan; none if only the path was checked.
+    pub output_times: Option<Vec<OutputTimesReport>>,
+    /// The outputs of the machine that the capture does not show, and that were not checked.
+    pub outputs_not_checked: Vec<u8>,
     /// The path that the pulses follow, and the pins.
     pub path: PathReport,
+}
+
+/// The outputs of a machine, one bit each, and how a capture of a job shows them.
+pub struct JobOutputs<'a> {
+    /// The outputs that the machine has.
+    pub exist: u8,
+    /// The outputs that the capture shows.
+    pub shown: u8,
+    /// Where the program changes them.
+    pub marks: OutputMarks<'a>,
+}
+
+impl fmt::Debug for JobOutputs<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { exist, shown, .. } = self;
+        f.debug_struct("JobOutputs").field("exist", exist).field("shown", shown).finish()
+    }
 }
 
 /// Checks a capture of a job, in constant memory.
@@ -38,19 +61,20 @@ pub struct JobChecker<'a> {
     times: Option<PulseTimes<'a>>,
     origin: Origin,
     slack_ps: u64,
+    not_checked: u8,
     /// The level of STEP of each axis.
     steps: Vec<bool>,
     first: Option<u64>,
 }
 
 impl<'a> JobChecker<'a> {
-    /// A checker that has not seen any change. `legs` is the programmed path; `rows` are the
-    /// segments of the plan, or `None` if only the path is checked. The origin of the setup is not
-    /// used.
+    /// A checker that has not seen any change. `legs` is the programmed path; `rows` is the plan,
+    /// or `None` if only the path is checked. The origin of the setup is not used.
     pub fn new(
         mut setup: PathSetup<'a>,
         legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>,
         rows: Option<PlannedRows<'a>>,
+        outputs: JobOutputs<'a>,
         timebase: &Timebase,
         origin: Origin,
     ) -> Self {
@@ -62,9 +86,16 @@ impl<'a> JobChecker<'a> {
         let slack_ps = setup.slack_ps;
         let names: Vec<&str> = setup.axes.iter().map(|axis| axis.name).collect();
         let steps = vec![false; names.len()];
-        let times =
-            rows.map(|rows| PulseTimes::new(rows, names.into_iter(), timebase, known, slack_ps));
-        Self { path: PathChecker::new(setup, legs), times, origin, slack_ps, steps, first: None }
+        let JobOutputs { exist, shown, marks } = outputs;
+        let shown = exist & shown;
+        let times = rows.map(|rows| {
+            PulseTimes::new(rows, names.into_iter(), timebase, (known, slack_ps), shown)
+        });
+        let mut path = PathChecker::new(setup, legs);
+        if shown != 0 {
+            path = path.with_outputs(marks, shown);
+        }
+        Self { path, times, origin, slack_ps, not_checked: exist & !shown, steps, first: None }
     }
 
     /// Ends the check and returns the report.
@@ -74,6 +105,7 @@ impl<'a> JobChecker<'a> {
             Origin::Fixed { ps } => (OriginKind::Fixed, Some(ps)),
             Origin::Midpoint => (OriginKind::Midpoint, None),
         };
+        self.times.iter_mut().for_each(PulseTimes::end);
         let found = self.times.as_ref().and_then(PulseTimes::origin_ps);
         let first = self.first.map(|ps| i64::try_from(ps).unwrap_or(i64::MAX));
         let origin_ps = known.or(found).or(first).unwrap_or(0);
@@ -81,15 +113,19 @@ impl<'a> JobChecker<'a> {
             // The first pulse of a foreign capture may seem to be before a start that is estimated.
             self.path.begin_at(u64::try_from(origin_ps).unwrap_or(0));
         }
-        let times = self.times.map(PulseTimes::finish);
+        let (times, output_times) = self.times.map(PulseTimes::finish).unzip();
         let path = self.path.finish();
-        let on_time = times.iter().flatten().all(|axis| axis.failures.is_empty());
+        let of_axes = times.iter().flatten().map(|axis| &axis.failures);
+        let of_outputs = output_times.iter().flatten().map(|output| &output.failures);
+        let not_checked = self.not_checked;
         JobReport {
-            passed: path.passed && on_time,
+            passed: path.passed && of_axes.chain(of_outputs).all(Vec::is_empty),
             origin: kind,
             origin_ps,
             slack_ns: self.slack_ps as f64 / 1e3,
             times,
+            output_times,
+            outputs_not_checked: (0..8).filter(|number| not_checked >> number & 1 == 1).collect(),
             path,
         }
     }
@@ -116,6 +152,17 @@ impl PinSink for JobChecker<'_> {
         }
         self.path.change(change)
     }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        if let Some(times) = &mut self.times {
+            times.levels(ps, levels);
+        }
+        self.path.outputs(ps, levels)
+    }
+
+    fn end(&mut self, ps: u64) -> Result<(), TraceError> {
+        self.path.end(ps)
+    }
 }
 
 impl fmt::Display for JobReport {
@@ -126,8 +173,8 @@ impl fmt::Display for JobReport {
             OriginKind::Fixed => "given",
         };
         writeln!(f, "the job starts at {} ps of the capture, {origin}", self.origin_ps)?;
+        let ns = |value: Option<f64>| value.map_or_else(|| "-".into(), |ns| format!("{ns:.1}"));
         if let Some(times) = &self.times {
-            let ns = |value: Option<f64>| value.map_or_else(|| "-".into(), |ns| format!("{ns:.1}"));
             let row = |axis: &PulseTimesReport| {
                 let Self { path, .. } = self;
                 let found = path.axes.iter().find(|one| one.axis == axis.axis);
@@ -144,8 +191,31 @@ impl fmt::Display for JobReport {
             table(f, ["axis", "pulses", "e min", "e max", "bound"], &rows)?;
             writeln!(f, "e: edge less the time at which the plan makes it, ns")?;
         }
+        if let Some(outputs) = self.output_times.as_ref().filter(|all| !all.is_empty()) {
+            let row = |one: &OutputTimesReport| {
+                [
+                    one.output.to_string(),
+                    format!("{}/{}", one.changes_found, one.changes_expected),
+                    ns(one.error_min_ns),
+                    ns(one.error_max_ns),
+                    ns(Some(one.error_bound_ns)),
+                ]
+            };
+            let rows: Vec<_> = outputs.iter().map(row).collect();
+            table(f, ["output", "changes", "e min", "e max", "bound"], &rows)?;
+        }
+        if !self.outputs_not_checked.is_empty() {
+            let numbers: Vec<_> = self.outputs_not_checked.iter().map(u8::to_string).collect();
+            writeln!(
+                f,
+                "not checked: output {}; the capture does not show it",
+                numbers.join(", ")
+            )?;
+        }
         write!(f, "{}", self.path)?;
-        let failures = self.times.iter().flatten().flat_map(|axis| &axis.failures);
+        let of_axes = self.times.iter().flatten().flat_map(|axis| &axis.failures);
+        let of_outputs = self.output_times.iter().flatten().flat_map(|output| &output.failures);
+        let failures = of_axes.chain(of_outputs);
         failures.into_iter().try_for_each(|failure| writeln!(f, "FAILED {failure}"))
     }
 }

@@ -4,10 +4,12 @@
 //! Each rising edge of STEP moves one letter of the tool by one step. After each of them, the tool
 //! must be within the tolerance and one step of each axis of the programmed path, in its order
 //! (`path_follow.rs`). At the end, all counts must be exact. The pins must keep the times of their
-//! drivers, and no pulse may come before the start or after the end of the job.
+//! drivers, and no pulse may come before the start or after the end of the job. Outputs must change
+//! where the program changes them (`output_places.rs`).
 
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
+use crate::output_places::{OutputMarks, OutputPlaces};
 use crate::path_follow::{Lost, Off, PathFollow};
 use crate::path_leg::{LETTERS, PathLeg, Place};
 use crate::path_report::{PathAxisReport, PathReport, minimum};
@@ -62,6 +64,9 @@ pub struct PathChecker<'a> {
     /// Pulses by distance.
     counts: Vec<u64>,
     lost: Option<(Lost, u64)>,
+    outputs: Option<OutputPlaces<'a>>,
+    /// The end of the capture, or the last change before it, ps.
+    end_ps: u64,
     /// Times of the first and the last pulse, ps.
     times: Option<[u64; 2]>,
 }
@@ -89,6 +94,8 @@ impl<'a> PathChecker<'a> {
             worst: None,
             counts: vec![0; STRETCHES + 1],
             lost: None,
+            outputs: None,
+            end_ps: 0,
             times: None,
             setup,
         };
@@ -97,6 +104,14 @@ impl<'a> PathChecker<'a> {
         }
         this.follow(this.setup.origin_ps);
         this
+    }
+
+    /// The checker also compares where the outputs of this mask change with the marks of the
+    /// program.
+    #[must_use]
+    pub fn with_outputs(mut self, marks: OutputMarks<'a>, mask: u8) -> Self {
+        self.outputs = Some(OutputPlaces::new(marks, mask, self.setup.slack_ps));
+        self
     }
 
     /// Puts the tool where the position of an axis says.
@@ -109,6 +124,9 @@ impl<'a> PathChecker<'a> {
         if self.lost.is_some() {
             return;
         }
+        if let Some(outputs) = &mut self.outputs {
+            outputs.before(ps, &self.follow);
+        }
         match self.follow.go(&self.place) {
             Ok(Some(off)) => {
                 let stretch = (off.part() * STRETCHES as f64) as usize;
@@ -118,7 +136,13 @@ impl<'a> PathChecker<'a> {
                 }
             }
             Ok(None) => {}
-            Err(lost) => self.lost = Some((lost, ps)),
+            Err(lost) => {
+                self.lost = Some((lost, ps));
+                return;
+            }
+        }
+        if let Some(outputs) = &mut self.outputs {
+            outputs.moved(ps, &self.follow);
         }
     }
 
@@ -156,6 +180,13 @@ impl<'a> PathChecker<'a> {
             let line = self.follow.line().unwrap_or(0);
             failures.push(format!("the pulses end before the path does, near line {line}"));
         }
+        if let Some(outputs) = self.outputs.as_mut().filter(|_| self.lost.is_none()) {
+            outputs.end(self.end_ps, &self.follow);
+        }
+        let wrong = self.outputs.as_ref().and_then(|outputs| outputs.wrong.as_ref());
+        failures.extend(
+            wrong.map(|wrong| format!("{}, at {:.6} s", wrong.what, self.seconds(wrong.ps))),
+        );
         if let Some([first, last]) = self.times {
             let slack = self.setup.slack_ps;
             let end = self.setup.origin_ps.saturating_add(self.setup.total_ps);
@@ -208,6 +239,7 @@ impl<'a> PathChecker<'a> {
             deviation_line: at.map(|_| worst.line),
             deviation_at_s: at,
             deviation_counts: self.counts,
+            output_changes: self.outputs.map(|outputs| outputs.changes),
             axes,
             failures,
         }
@@ -241,6 +273,20 @@ impl PinSink for PathChecker<'_> {
             self.stand(axis);
             self.follow(change.ps);
         }
+        self.end_ps = change.ps;
+        Ok(())
+    }
+
+    fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
+        if let Some(outputs) = self.outputs.as_mut().filter(|_| self.lost.is_none()) {
+            outputs.levels(ps, levels, &self.follow);
+        }
+        self.end_ps = ps;
+        Ok(())
+    }
+
+    fn end(&mut self, ps: u64) -> Result<(), TraceError> {
+        self.end_ps = ps;
         Ok(())
     }
 }

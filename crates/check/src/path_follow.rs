@@ -181,6 +181,19 @@ impl<'a> PathFollow<'a> {
         at_the_end && !self.read(last.leg + 1)
     }
 
+    /// Whether the tool can be where the leg of this number begins, or behind it.
+    pub fn may_be_at(&self, leg: u64) -> bool {
+        let last = self.reached.last();
+        last.is_none_or(|last| last.leg >= leg || (last.leg + 1 == leg && last.to >= 1.0))
+    }
+
+    /// Whether the tool is behind the place where the leg of this number begins, and cannot be
+    /// there any more.
+    pub fn is_behind(&self, leg: u64) -> bool {
+        let first = self.reached.first();
+        first.is_some_and(|first| first.leg > leg || (first.leg == leg && first.from > 0.0))
+    }
+
     /// The line that the tool has reached; `None` if the path has no legs.
     pub fn line(&self) -> Option<u64> {
         let last = self.reached.last()?.leg;

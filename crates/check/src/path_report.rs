@@ -31,6 +31,9 @@ pub struct PathReport {
     /// of what is allowed there: from 0 to 1/40, from 1/40 to 2/40, and so on. The last number
     /// counts the pulses beyond what is allowed.
     pub deviation_counts: Vec<u64>,
+    /// Changes of one output or more, whose places were compared with the program; none if the
+    /// outputs were not checked.
+    pub output_changes: Option<u64>,
     /// Each axis, in the order of the machine file.
     pub axes: Vec<PathAxisReport>,
     /// What is wrong.
@@ -132,6 +135,12 @@ impl fmt::Display for PathReport {
                 )?;
             }
             writeln!(f, " at {at:.6} s, line {line}")?;
+        }
+        if let Some(changes) = self.output_changes {
+            writeln!(
+                f,
+                "changes of outputs, compared with their places in the program: {changes}"
+            )?;
         }
         self.failures.iter().try_for_each(|failure| writeln!(f, "FAILED {failure}"))
     }

@@ -8,14 +8,22 @@ use carrystep_core::AXES;
 use carrystep_core::engine::MAX_AXES;
 use vcd::{IdCode, ReferenceIndex};
 
-/// The signals of a foreign capture: `x.step=top.la.D0`, `y.dir=bench.pins[3]`.
+/// The signals of a foreign capture: `x.step=top.la.D0`, `y.dir=bench.pins[3]`, `output_2=la.D7`.
 ///
 /// A pin that the map does not contain is searched under the names of carrystep: `<axis>.step` and
-/// `<axis>.dir` in any scope, or the vectors `step` and `dir`, whose bit i is axis i.
+/// `<axis>.dir` in any scope, or the vectors `step` and `dir`, whose bit i is axis i; `output_<n>`,
+/// or a vector `outputs` of eight bits.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SignalMap {
     entries: Vec<Entry>,
+    /// The outputs with the paths of their signals.
+    outputs: Vec<(u8, String)>,
 }
+
+/// The name of an output without its number.
+const OUTPUT: &str = "output_";
+/// A vector of all outputs, and its width: the port of the engine.
+const OUTPUTS: (&str, u32) = ("outputs", 8);
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Entry {
@@ -37,8 +45,18 @@ impl SignalMap {
                 entry: line.to_owned(),
                 message: message.to_owned(),
             };
-            let form = || wrong("write <axis>.step=<signal> or <axis>.dir=<signal>");
+            let form = || {
+                wrong("write <axis>.step=<signal>, <axis>.dir=<signal> or output_<number>=<signal>")
+            };
             let (left, path) = line.split_once('=').ok_or_else(form)?;
+            let number = left.trim().strip_prefix(OUTPUT).and_then(|number| number.parse().ok());
+            if let Some(number) = number.filter(|_| !path.trim().is_empty()) {
+                if map.outputs.iter().any(|(known, _)| *known == number) {
+                    return Err(wrong("this output is already mapped"));
+                }
+                map.outputs.push((number, path.trim().to_owned()));
+                continue;
+            }
             let (axis, pin) = left.trim().rsplit_once('.').ok_or_else(form)?;
             let pin = match pin {
                 "step" => Pin::Step,
@@ -173,7 +191,7 @@ impl SignalMap {
             });
         }
         let pin = |index: usize, axis: &str, pin: Pin| match self.path(axis, pin) {
-            Some(path) => explicit(signals, path, axis, pin),
+            Some(path) => explicit(signals, path, &format!("{axis}.{pin}")),
             None => by_name(signals, (index, axes.len()), axis, pin),
         };
         let pair = |(index, axis): (usize, &&str)| {
@@ -181,10 +199,49 @@ impl SignalMap {
         };
         axes.iter().enumerate().map(pair).collect()
     }
+
+    /// The sources of those outputs of this mask that the capture shows.
+    pub(crate) fn resolve_outputs(
+        &self,
+        signals: &[Signal],
+        mask: u8,
+    ) -> Result<Vec<(u8, Source)>, ReadError> {
+        let exists = |number: u8| number < 8 && mask >> number & 1 == 1;
+        if let Some((number, path)) = self.outputs.iter().find(|(number, _)| !exists(*number)) {
+            return Err(ReadError::Map {
+                entry: format!("{OUTPUT}{number}={path}"),
+                message: "outputs are compared with programs on machines that have them".into(),
+            });
+        }
+        let mut found = Vec::new();
+        for number in (0..8).filter(|number| exists(*number)) {
+            let name = format!("{OUTPUT}{number}");
+            let mapped = self.outputs.iter().find(|(known, _)| *known == number);
+            let source = match mapped {
+                Some((_, path)) => Some(explicit(signals, path, &name)?),
+                None => output_by_name(signals, number, &name)?,
+            };
+            found.extend(source.map(|source| (number, source)));
+        }
+        Ok(found)
+    }
 }
 
-fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Source, ReadError> {
-    let wanted = || format!("{path} for {axis}.{pin}");
+/// Finds an output by the names of carrystep; `None` if the capture does not show it.
+fn output_by_name(signals: &[Signal], number: u8, name: &str) -> Result<Option<Source>, ReadError> {
+    let wires = signals.iter().filter(|s| s.bits == 1 && s.ends_with(name));
+    if let Some(signal) = topmost(wires, name)? {
+        return Ok(Some(Source { code: signal.code, place: 0 }));
+    }
+    let (vector, bits) = OUTPUTS;
+    let vectors = signals.iter().filter(|s| s.bits == bits && s.ends_with(vector));
+    let place = |signal: &Signal| Some((signal.code, signal.place(number.into())?));
+    let source = topmost(vectors, vector)?.and_then(place);
+    Ok(source.map(|(code, place)| Source { code, place }))
+}
+
+fn explicit(signals: &[Signal], path: &str, pin: &str) -> Result<Source, ReadError> {
+    let wanted = || format!("{path} for {pin}");
     if let Some(signal) = signals.iter().find(|s| s.path == path) {
         if signal.bits == 1 {
             return Ok(Source { code: signal.code, place: 0 });
@@ -193,7 +250,7 @@ fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Sour
             "the signal has {} bits: name one, as in {path}[{}]",
             signal.bits, signal.range.1
         );
-        return Err(ReadError::Map { entry: format!("{axis}.{pin}={path}"), message });
+        return Err(ReadError::Map { entry: format!("{pin}={path}"), message });
     }
     let bit = path.strip_suffix(']').and_then(|s| s.rsplit_once('['));
     let bit = bit.and_then(|(base, index)| Some((base, index.parse::<i64>().ok()?)));

@@ -41,6 +41,8 @@ pub struct Capture<'a> {
     path: &'a Path,
     names: &'a [&'a str],
     map: &'a SignalMap,
+    /// The outputs that are searched, one bit each.
+    outputs: u8,
     bytes: u64,
 }
 
@@ -102,7 +104,13 @@ impl<'a> Capture<'a> {
     ) -> Result<Self, TraceError> {
         let mut file = carrystep_files::open(path)?;
         let bytes = file.seek(SeekFrom::End(0)).map_err(read)?;
-        Ok(Self { path, names, map, bytes })
+        Ok(Self { path, names, map, outputs: 0, bytes })
+    }
+
+    /// The same capture, in which those outputs of this mask are read that it shows.
+    #[must_use]
+    pub fn with_outputs(self, outputs: u8) -> Self {
+        Self { outputs, ..self }
     }
 
     /// Reads the header and finds the pins.
@@ -114,7 +122,8 @@ impl<'a> Capture<'a> {
     }
 
     fn reader(&self, until: u64) -> Result<VcdReader<'static>, TraceError> {
-        Ok(VcdReader::new(self.bytes(0..until)?, self.names, self.map)?)
+        let Self { names, map, outputs, .. } = self;
+        Ok(VcdReader::with_outputs(self.bytes(0..until)?, names, map, *outputs)?)
     }
 
     fn bytes(&self, range: Range<u64>) -> Result<io::Take<std::fs::File>, TraceError> {

@@ -11,10 +11,13 @@ pub(crate) struct Header {
     pub(crate) unit: Unit,
     pub(crate) own: Option<OwnCapture>,
     /// The pins that each signal carries: the bit, counted from the least significant, and the
-    /// pin's slot (2 x axis for STEP, 2 x axis + 1 for DIR).
+    /// pin's slot (2 x axis for STEP, 2 x axis + 1 for DIR, and behind all axes the outputs by
+    /// their numbers).
     pub(crate) pins: HashMap<IdCode, Vec<(u32, usize)>>,
-    /// The number of pins.
+    /// The number of pins of axes.
     pub(crate) count: usize,
+    /// The outputs that were found, one bit each.
+    pub(crate) outputs: u8,
 }
 
 /// The file's unit of time as a fraction of ps.

@@ -37,7 +37,20 @@ impl<'a> VcdReader<'a> {
     /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, lacks a
     /// signal, or shows only a part of a run.
     pub fn new(reader: impl Read + 'a, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
-        Self::boxed(Box::new(reader), axes, map)
+        Self::with_outputs(reader, axes, map, 0)
+    }
+
+    /// The same, and finds those outputs of this mask that the capture shows.
+    ///
+    /// # Errors
+    /// As [`VcdReader::new`].
+    pub fn with_outputs(
+        reader: impl Read + 'a,
+        axes: &[&str],
+        map: &SignalMap,
+        outputs: u8,
+    ) -> Result<Self, ReadError> {
+        Self::boxed(Box::new(reader), axes, map, outputs)
     }
 
     /// The same without a parameter, so that all of it is compiled with this crate.
@@ -45,6 +58,7 @@ impl<'a> VcdReader<'a> {
         reader: Box<dyn Read + 'a>,
         axes: &[&str],
         map: &SignalMap,
+        outputs: u8,
     ) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
         let mut parser = parser(reader);
@@ -93,7 +107,19 @@ impl<'a> VcdReader<'a> {
         for (slot, source) in sources.iter().flatten().enumerate() {
             pins.entry(source.code).or_default().push((source.place, slot));
         }
-        Ok(Self { parser, header: Header { unit, own, pins, count: 2 * axes.len() } })
+        let count = 2 * axes.len();
+        let mut found = 0;
+        for (number, source) in map.resolve_outputs(&signals, outputs)? {
+            let slot = count + usize::from(number);
+            pins.entry(source.code).or_default().push((source.place, slot));
+            found |= 1 << number;
+        }
+        Ok(Self { parser, header: Header { unit, own, pins, count, outputs: found } })
+    }
+
+    /// The outputs that the capture shows, one bit each.
+    pub fn outputs(&self) -> u8 {
+        self.header.outputs
     }
 
     /// The header of a capture by carrystep; `None` for a foreign capture.

@@ -11,7 +11,7 @@ use vcd::{Command, Parser, Value, Vector};
 pub struct Played {
     /// The last time in the file, ps.
     pub end_ps: u64,
-    /// Number of pin changes.
+    /// Number of changes of pins of axes, and of times at which outputs change.
     pub changes: u64,
     /// How often a pin became unknown or floating (x, z) after its first level. The reader keeps
     /// the old level in this case.
@@ -104,6 +104,8 @@ pub(crate) struct Player<'s> {
     sink: &'s mut dyn PinSink,
     ps: Option<u64>,
     levels: Vec<Option<bool>>,
+    /// The levels of the outputs, and those that the sink has.
+    outputs: [u8; 2],
     /// The level that a STEP and a DIR have before their first value, if that is known.
     assumed: [Option<bool>; 2],
     /// Whether the first time is over, so that values are changes.
@@ -115,7 +117,16 @@ pub(crate) struct Player<'s> {
 impl<'s> Player<'s> {
     pub(crate) fn new(sink: &'s mut dyn PinSink, count: usize) -> Self {
         let (levels, assumed) = (vec![None; count], [Some(false); 2]);
-        Self { sink, ps: None, levels, assumed, settled: false, changes: 0, unknown: 0 }
+        Self {
+            sink,
+            ps: None,
+            levels,
+            outputs: [0; 2],
+            assumed,
+            settled: false,
+            changes: 0,
+            unknown: 0,
+        }
     }
 
     /// Begins in the middle of a capture, with the levels of STEP and DIR of each axis. A STEP that
@@ -145,6 +156,9 @@ impl<'s> Player<'s> {
         if ps > first {
             self.settle()?;
         }
+        if self.ps.is_some_and(|before| ps > before) {
+            self.switch()?;
+        }
         self.ps = Some(ps);
         Ok(())
     }
@@ -161,7 +175,27 @@ impl<'s> Player<'s> {
         Ok(())
     }
 
+    /// Gives the sink the levels of the outputs, all of one time together.
+    fn switch(&mut self) -> Result<(), TraceError> {
+        let [now, known] = &mut self.outputs;
+        if std::mem::replace(known, *now) == *now {
+            return Ok(());
+        }
+        self.changes += 1;
+        self.sink.outputs(self.ps.unwrap_or(0), *now)
+    }
+
     fn value(&mut self, slot: usize, value: Value) -> Result<(), TraceError> {
+        if let Some(number) = slot.checked_sub(self.levels.len()) {
+            let bit = 1 << number;
+            match value {
+                Value::V0 => self.outputs[0] &= !bit,
+                Value::V1 => self.outputs[0] |= bit,
+                // The old level stays, as for the other pins.
+                Value::X | Value::Z => {}
+            }
+            return Ok(());
+        }
         let level = match value {
             Value::V0 => false,
             Value::V1 => true,
@@ -191,6 +225,7 @@ impl<'s> Player<'s> {
 
     fn finish(mut self) -> Result<Played, TraceError> {
         self.settle()?;
+        self.switch()?;
         let end_ps = self.ps.unwrap_or(0);
         self.sink.end(end_ps)?;
         Ok(Played { end_ps, changes: self.changes, unknown: self.unknown })

@@ -243,15 +243,16 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub program: ProgramArguments,
     /// Do not compare the times of pulses with the plan: for a capture of another controller. Path,
-    /// order, end and pin times are checked.
+    /// order, end, places of outputs and pin times are checked.
     #[arg(long, help_heading = program::HEADING)]
     pub path_only: bool,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// The signal of a pin in the capture: x.step=top.la.D0. Repeat for each pin.
-    #[arg(long = "map", value_name = "AXIS.PIN=SIGNAL")]
+    /// The signal of a pin in the capture: x.step=top.la.D0, or output_2=top.la.D7 with a program.
+    /// Repeat for each pin.
+    #[arg(long = "map", value_name = "PIN=SIGNAL")]
     pub map: Vec<String>,
     /// Time of the move's start in the capture; default: found from the pulses, or read from a
     /// capture by carrystep.

@@ -70,12 +70,9 @@ impl<'a> OnePass<'a> {
     }
 
     /// Looks at the first rows, so that a mistake of a short program is found before anything is
-    /// written. Returns whether there is any row.
-    pub fn begin(&self) -> Result<bool, Failure> {
-        match self.look(FIRST - 1) {
-            Some(Err(error)) => Err(error),
-            Some(Ok(_)) | None => Ok(!self.lock().seen.is_empty()),
-        }
+    /// written.
+    pub fn begin(&self) -> Result<(), Failure> {
+        self.look(FIRST - 1).transpose().map(drop)
     }
 
     /// The number of clocks that a run needs at most for the rows that have been read so far.

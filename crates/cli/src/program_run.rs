@@ -19,7 +19,7 @@ use carrystep_check::{
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
-use carrystep_program::{AxisSurvey, Legs, ProgramFile, Survey};
+use carrystep_program::{AxisSurvey, Legs, Marks, ProgramFile, Survey};
 use carrystep_report::Detail;
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::{Job, Level};
@@ -111,7 +111,7 @@ pub fn run(
     let kept = Kept::default();
     let segments = known.as_ref().map_or(0, |survey| survey.rows * survey.axes.len() as u64);
     let program = OnePass::new(file, detail, segments, &kept)?;
-    let moves = program.begin()?;
+    program.begin()?;
     let mut files = wanted.begin()?;
     // Set when an output fails, so that the run ends early.
     let deaf = AtomicBool::new(false);
@@ -134,16 +134,18 @@ pub fn run(
         }
     };
     let looked_at = program.looked_at();
-    // A job without motion has no start.
-    let load = if moves { on(&looked_at).origin() } else { Ok(0) };
+    let load = on(&looked_at).origin();
     kept.error()?;
     let load = load?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());
 
-    let checker =
-        PathChecker::new(setup(file, origin_ps), Box::new(kept.until_an_error(Legs::new(file)?)));
-    let names = || machine.axes.iter().map(|axis| axis.name.as_str());
     let exist = engine.as_ref().map_or(0, |engine| engine.outputs.exist);
+    let mut checker =
+        PathChecker::new(setup(file, origin_ps), Box::new(kept.until_an_error(Legs::new(file)?)));
+    if exist != 0 {
+        checker = checker.with_outputs(Box::new(kept.until_an_error(Marks::new(file)?)), exist);
+    }
+    let names = || machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };
     let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names(), exist)).transpose()?;
     let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();

@@ -58,3 +58,18 @@ pub struct Tolerance {
     /// For each rotary letter, degrees.
     pub rotary: f64,
 }
+
+impl Tolerance {
+    /// The greatest distance in a direction, over all letters alike. The first `linear` ones are in
+    /// mm. Infinite for the direction 0.
+    pub(crate) fn toward(&self, direction: &[f64], linear: usize) -> f64 {
+        let norm = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (mm, degrees) = direction.split_at(linear.min(direction.len()));
+        let most = degrees.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let length = norm(direction);
+        let allowed = |tolerance: f64, part: f64| {
+            if part > 0.0 { tolerance * (length / part) } else { f64::INFINITY }
+        };
+        allowed(self.linear, norm(mm)).min(allowed(self.rotary, most))
+    }
+}

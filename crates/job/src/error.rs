@@ -9,6 +9,19 @@ pub enum JobError {
     /// The machine has no letters, or more than the planner takes.
     #[error("a machine of {0} axes: a job needs 1 to 6")]
     Axes(usize),
+    /// The UART of the machine cannot carry the segments of its axes in time.
+    #[error(
+        "a line of {baud} baud is too slow for jobs of {axes} axes: each needs a segment every 16 \
+         ms at least, and they take {least} baud"
+    )]
+    SlowLine {
+        /// Number of axes.
+        axes: usize,
+        /// The baud rate of the machine.
+        baud: u32,
+        /// The least baud rate for so many axes.
+        least: u32,
+    },
     /// A point has a wrong number of coordinates.
     #[error("line {line}: {found} coordinates, the machine has {axes} axes")]
     Coordinates {

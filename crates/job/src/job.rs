@@ -201,15 +201,18 @@ impl<const N: usize> Job<N> {
     /// Stores the element that was held back; with `end`, it ends there instead.
     fn flush(&mut self, end: Option<Point<N>>) -> Result<(), JobError> {
         let Some(element) = self.pending.take() else { return Ok(()) };
-        self.programmed = coordinates(&element.to, element.line)?;
         let line = element.line;
+        let programmed = coordinates(&element.to, line)?;
+        let from = std::mem::replace(&mut self.programmed, programmed);
         let to = match end {
             Some(end) => end,
-            None => coordinates(&element.to, line)?,
+            None => programmed,
         };
         let feed = element.feed.unwrap_or(f64::INFINITY);
-        let piece =
+        let mut piece =
             Piece::new(self.at, to, element.arc, feed, element.tolerance, line, self.linear);
+        let moves = |letters: std::ops::Range<usize>| from[letters.clone()] != programmed[letters];
+        piece.turns_only = element.arc.is_none() && !moves(0..self.linear) && moves(self.linear..N);
         if piece.length > NO_MOVE {
             let direction = piece.tangent(0.0);
             let speed = feed.min(self.motors.greatest(&direction, |limit| limit.speed));

@@ -52,4 +52,5 @@ pub use element::{Arc, Element, Item, Tolerance};
 pub use error::{JobError, Rule};
 pub use kinematics::{Cartesian, CoreXy, Kinematics};
 pub use planner::{Planner, rows};
+pub use rhythm::check_line;
 pub use row::Row;

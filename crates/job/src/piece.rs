@@ -26,7 +26,8 @@ pub(crate) struct Piece<const N: usize> {
     pub feed: f64,
     pub tolerance: Tolerance,
     pub line: u64,
-    /// Only rotary letters move.
+    /// Only rotary letters move, so that the feed is theirs. The program decides it: where the end
+    /// of a run is rounded to whole steps, the other letters move a little, too.
     pub turns_only: bool,
     /// Unit direction of a line; of an arc, the change per length of the letters off the plane.
     along: Point<N>,
@@ -89,7 +90,8 @@ impl<const N: usize> Piece<N> {
         };
         let arc = arc.map(|arc| Arc { angle: arc.angle / count as f64, ..arc });
         let (start, end) = (place(number), place(number + 1));
-        Self::new(start, end, arc, self.feed, self.tolerance, self.line, linear)
+        let part = Self::new(start, end, arc, self.feed, self.tolerance, self.line, linear);
+        Self { turns_only: self.turns_only, ..part }
     }
 
     /// The point at length `s`.

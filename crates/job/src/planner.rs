@@ -7,6 +7,7 @@ use crate::element::Item;
 use crate::error::JobError;
 use crate::job::{Job, Jobs};
 use crate::kinematics::Kinematics;
+use crate::rhythm::check_line;
 use crate::row::Row;
 use carrystep_files::Machine;
 
@@ -22,7 +23,8 @@ impl Planner {
     /// letters (at most three) are linear, the others rotary. The start is rounded to whole steps.
     ///
     /// # Errors
-    /// [`JobError::Axes`], [`JobError::Coordinates`] and [`JobError::Number`], all with line 0.
+    /// [`JobError::Axes`], [`JobError::SlowLine`], [`JobError::Coordinates`] and
+    /// [`JobError::Number`], all with line 0.
     pub fn new(
         machine: &Machine,
         kinematics: &dyn Kinematics,
@@ -38,6 +40,7 @@ impl Planner {
             6 => Box::new(Job::<6>::new(machine, kinematics, linear, start)?),
             other => return Err(JobError::Axes(other)),
         };
+        check_line(machine)?;
         Ok(Self { job, ended: false })
     }
 

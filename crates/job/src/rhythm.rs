@@ -1,14 +1,18 @@
 //! The rhythm of a job: the time between knots, and how many samples are averaged.
 //!
 //! The filter averages m samples that are dt seconds apart. It keeps the jerk limit J at the
-//! acceleration limit A if m dt >= 2 A / J (`filter.rs`). Each axis has one segment in each dt. A dt
-//! is at least 4 ms, so an axis has at most 250 segments a second, and any eight successive segments
-//! last at least 32 ms. On a slow line dt is longer, up to 16 ms.
+//! acceleration limit A if m dt >= 2 A / J (`filter.rs`). Each axis has one segment in each dt. A
+//! dt is at least 4 ms, so an axis has at most 250 segments a second, and any eight successive
+//! segments last at least 32 ms. On a slow line dt is longer, up to 16 ms; a line that is too slow
+//! even then is refused.
 //!
 //! The time 2 A / J can be filled with fewer, longer dt or with more, shorter ones. The planner takes
 //! the one with the smaller [`Rhythm::spread`]: it moves the curve less.
 
+use crate::error::JobError;
 use crate::limits::{Limit, SHORTEST};
+use carrystep_core::link::{CRC_BYTES, REQUEST_HEAD, SEGMENT_FRAME_WORDS, SESSION_BYTES};
+use carrystep_files::Machine;
 
 /// Longest filter, knots: it bounds the work for a very low jerk limit. Knots then get longer, up to
 /// [`LONGEST`].
@@ -20,6 +24,32 @@ pub(crate) const LONGEST: f64 = 0.016;
 /// many leave room for answers and repeats. It gives 3000 segments a second at 3 Mbaud and 921 at
 /// 921 600 baud; 3000 and 1200 were measured (`docs/performance.md`).
 const BITS_A_SEGMENT: f64 = 1000.0;
+/// Part of the line's time that the rows of a job may take where they are as long as may be. The
+/// rest is for reads of the state, escaped bytes and repeats; a test of the virtual board carries
+/// this much for six axes (`crates/virtual-board/tests/rates.rs`).
+const MOST_OF_THE_LINE: f64 = 0.75;
+
+/// The least baud rate of a UART that carries a row of so many axes in [`LONGEST`]. It counts a
+/// SEGMENT frame for each axis, of ten bits a byte, and its two ENDs: where the axes do not have
+/// room at the same time, the host cannot join their segments to one frame.
+fn least_baud(axes: usize) -> u32 {
+    let words = 4 * SEGMENT_FRAME_WORDS;
+    let bytes = REQUEST_HEAD + SESSION_BYTES + words + CRC_BYTES + 2;
+    (axes as f64 * bytes as f64 * 10.0 / LONGEST / MOST_OF_THE_LINE).ceil() as u32
+}
+
+/// Checks that the line of a machine can carry a job in time.
+///
+/// # Errors
+/// [`JobError::SlowLine`].
+pub fn check_line(machine: &Machine) -> Result<(), JobError> {
+    let (axes, baud) = (machine.axes.len(), machine.baud);
+    let least = least_baud(axes);
+    if machine.spi || baud >= least {
+        return Ok(());
+    }
+    Err(JobError::SlowLine { axes, baud, least })
+}
 
 /// The shortest time between knots in seconds for so many axes on a line of so many baud: 4 ms, or
 /// longer if the line carries fewer segments, but at most 16 ms.
@@ -92,6 +122,12 @@ mod tests {
             assert!(found.ticks >= 4000 && found.average >= 1, "{jerk}: {found:?}");
             assert!(found.ticks < 16_000, "{jerk}: {found:?}");
         }
+    }
+
+    /// A SEGMENT has 40 bytes and two ENDs (docs/protocol.md): 420 bits, 35 000 baud for each axis.
+    #[test]
+    fn least_rate_of_a_line_carries_a_row_in_16_ms() {
+        assert_eq!([1, 3, 6].map(least_baud), [35_000, 105_000, 210_000]);
     }
 
     #[test]

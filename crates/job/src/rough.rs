@@ -37,6 +37,8 @@ struct Leg<const N: usize> {
 #[derive(Debug)]
 pub(crate) struct Rough<const N: usize> {
     motors: Motors<N>,
+    /// Number of linear letters.
+    linear: usize,
     knot_seconds: f64,
     /// Greatest acceleration across the path for each mm of tolerance, 1/s^2: infinite where
     /// smoothing takes the filter into account.
@@ -49,8 +51,8 @@ pub(crate) struct Rough<const N: usize> {
 }
 
 impl<const N: usize> Rough<N> {
-    pub fn new(motors: Motors<N>, knot_seconds: f64, across: f64) -> Self {
-        Self { motors, knot_seconds, across, legs: VecDeque::new(), speed2: 0.0, next: 0.0 }
+    pub fn new(motors: Motors<N>, linear: usize, knot_seconds: f64, across: f64) -> Self {
+        Self { motors, linear, knot_seconds, across, legs: VecDeque::new(), speed2: 0.0, next: 0.0 }
     }
 
     /// Adds the next piece; gives the knots that are certain.
@@ -113,7 +115,8 @@ impl<const N: usize> Rough<N> {
         let acceleration =
             self.motors.greatest(&turn.map(|x| x / size), |limit| limit.acceleration);
         let sine = ((1.0 - -dot(&a, &b)) / 2.0).max(0.0).sqrt();
-        let distance = before.tolerance.linear.min(after.tolerance.linear);
+        let toward = |piece: &Piece<N>| piece.tolerance.toward(&turn, self.linear);
+        let distance = toward(before).min(toward(after));
         // A long filter spreads a jump of the speed over its length: the curve then cuts the corner
         // by about the jump times a quarter of that length.
         let jump = distance * self.across.sqrt();

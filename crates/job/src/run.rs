@@ -62,7 +62,7 @@ impl<const N: usize> Runs<N> {
         let smooth = |round| Smooth::new(weights, part, average, round > 0);
         Self {
             path: Path::new(linear),
-            rough: Rough::new(motors.clone(), rhythm.seconds, across),
+            rough: Rough::new(motors.clone(), linear, rhythm.seconds, across),
             smooth: (0..ROUNDS).map(smooth).collect(),
             retime: (1..ROUNDS).map(|_| Retime::new(rules.clone(), ahead)).collect(),
             settle: Settle::new(rules, ahead, rhythm.average),

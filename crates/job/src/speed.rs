@@ -116,9 +116,10 @@ impl<const N: usize> Rules<N> {
         if square <= 0.0 || self.across.is_infinite() {
             return f64::INFINITY;
         }
-        let across = norm(&plus(second, -dot(first, second) / square, first));
-        let tolerance = path.piece(knot.place.piece).map_or(0.0, |piece| piece.tolerance.linear);
-        self.across * tolerance * self.knot_seconds * self.knot_seconds / across
+        let across = plus(second, -dot(first, second) / square, first);
+        let piece = path.piece(knot.place.piece);
+        let tolerance = piece.map_or(0.0, |piece| piece.tolerance.toward(&across, path.linear));
+        self.across * tolerance * self.knot_seconds * self.knot_seconds / norm(&across)
     }
 }
 

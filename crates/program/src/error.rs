@@ -99,6 +99,12 @@ pub enum Fault {
         /// The value.
         value: f64,
     },
+    /// The plan has no row: nothing could be simulated or checked.
+    #[error(
+        "the program does nothing on this machine: no axis moves by a step, no output changes, and \
+         there is no dwell"
+    )]
+    Nothing,
     /// The file is not the one that was read first.
     #[error("the file has changed while it was used")]
     Changed,
@@ -114,6 +120,9 @@ impl Fault {
             Self::Gcode(kind) => kind.help().to_owned(),
             Self::Plan(JobError::Broken { .. } | JobError::Ended) => {
                 "this is a bug of carrystep; please report it with the program".into()
+            }
+            Self::Plan(JobError::SlowLine { .. }) => {
+                "raise baud in [machine.link], or use spi = true there".into()
             }
             Self::Plan(_) => return None,
             Self::Travel { .. } => {
@@ -142,6 +151,9 @@ impl Fault {
                                             pwm_divider and no spindle_rpm"
                 .into(),
             Self::Duty { .. } => "divide Q by its greatest value".into(),
+            Self::Nothing => "check that this is the program that you mean, and that its end is \
+                              behind its moves"
+                .into(),
             Self::Changed => "leave the file alone until the command has ended".into(),
         })
     }

@@ -20,6 +20,10 @@ use std::path::PathBuf;
 /// degrees.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 
+/// Smaller differences of X, Y and Z are rounding errors of a rotated coordinate system, mm. With
+/// them, a turn of a rotary axis alone would be a move in mm, at a feed in mm.
+const SAME: f64 = 1e-9;
+
 /// A part of what a program does. Places are x, y, z in mm, then a, b, c in degrees.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "nearly all events are moves")]
@@ -220,10 +224,15 @@ impl Events {
     fn go(
         &mut self,
         line: u64,
-        to: Point,
+        mut to: Point,
         arc: Option<Arc>,
         pace: Option<Pace>,
     ) -> Result<(), Fault> {
+        let differs = |letter: usize| (to[letter] - self.at[letter]).abs();
+        let turns = (LINEAR..AXES).any(|letter| differs(letter) > 0.0);
+        if arc.is_none() && turns && (0..LINEAR).all(|letter| differs(letter) < SAME) {
+            to[..LINEAR].copy_from_slice(&self.at[..LINEAR]);
+        }
         let in_plane = |letter| arc.is_some_and(|arc| arc.plane.axes()[..2].contains(&letter));
         for letter in 0..AXES {
             let moves = to[letter] != self.at[letter] || in_plane(letter);

@@ -55,7 +55,8 @@ impl ProgramFile {
     /// process replaces it. `machine_path` is the machine's file, for errors.
     ///
     /// # Errors
-    /// The file cannot be read, the machine cannot run jobs, or it cannot start at that place.
+    /// The file cannot be read, the machine cannot run jobs, its line is too slow for them, or it
+    /// cannot start at that place.
     pub fn open(
         path: &Path,
         machine: Machine,
@@ -67,6 +68,8 @@ impl ProgramFile {
         let there = file.metadata().map_err(|error| InputError::new(error.to_string()))?;
         let letters =
             Letters::new(&machine).map_err(|fault| ProgramError::new(machine_path, 0, fault))?;
+        carrystep_job::check_line(&machine)
+            .map_err(|error| ProgramError::new(machine_path, 0, Fault::Plan(error)))?;
         let signs = (there.len(), there.modified().ok());
         let this = Self { path: path.to_owned(), machine, letters, settings, signs };
         this.check_start()?;

@@ -30,7 +30,7 @@ impl Legs {
 }
 
 /// Number of chords of a move, and their greatest distance from it in mm.
-fn chords(one: &ProgrammedMove) -> (u64, f64) {
+pub(crate) fn chords(one: &ProgrammedMove) -> (u64, f64) {
     let Some(arc) = &one.arc else { return (1, 0.0) };
     let radius = [&one.from, &one.to].map(|place| {
         let [a, b] = arc.radius_vector(place);

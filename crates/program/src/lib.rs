@@ -6,11 +6,12 @@
 //! ```text
 //! file -> gcode: canonical moves -> events: moves with tolerances, rests, outputs, switches
 //!                                    |-> rows   the planner's segments -> survey: figures, limits
-//!                                    '-> legs   the programmed path in straight parts, for the checker
+//!                                    |-> legs   the programmed path in straight legs, for the checker
+//!                                    '-> marks  the legs between which outputs change, for it
 //! ```
 //!
-//! The legs come from the canonical moves and not from the planner, so that the checker judges the
-//! pulses by the program alone.
+//! Legs and marks come from the canonical moves and not from the planner, so that the checker
+//! judges the pins by the program alone.
 
 mod counts;
 mod error;
@@ -19,6 +20,7 @@ mod file;
 mod legs;
 mod letter;
 mod letters;
+mod marks;
 mod outputs;
 mod rows;
 mod survey;
@@ -33,6 +35,7 @@ pub use file::{ProgramFile, Settings, is_program};
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
+pub use marks::Marks;
 pub use rows::{Rows, outputs};
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::Switch;

@@ -1,7 +1,7 @@
 //! The planned segments of a program, row by row.
 
 use crate::counts::Counts;
-use crate::error::ProgramError;
+use crate::error::{Fault, ProgramError};
 use crate::events::{Event, Events, ProgrammedMove};
 use crate::file::ProgramFile;
 use crate::letters::Letters;
@@ -11,7 +11,8 @@ use carrystep_gcode::Point;
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
 use std::path::PathBuf;
 
-/// The rows of a program. After an error there are no more.
+/// The rows of a program. After an error there are no more. A program without any row is an error,
+/// because nothing would be tried.
 #[derive(Debug)]
 pub struct Rows {
     events: Events,
@@ -20,6 +21,8 @@ pub struct Rows {
     /// The place where the last move that was read ends.
     end: Point,
     state: State,
+    /// Whether no row has been given yet.
+    is_empty: bool,
     path: PathBuf,
     machine: Machine,
     letters: Letters,
@@ -51,6 +54,7 @@ impl Rows {
             counts: Counts::default(),
             end: file.settings().start,
             state: State::Reads,
+            is_empty: true,
             path: file.path().to_owned(),
             machine,
             letters,
@@ -137,7 +141,11 @@ impl Iterator for Rows {
         if self.state == State::Over {
             return None;
         }
-        let row = self.row();
+        let row = match self.row() {
+            Ok(None) if self.is_empty => Err(ProgramError::new(&self.path, 0, Fault::Nothing)),
+            row => row,
+        };
+        self.is_empty = false;
         if !matches!(row, Ok(Some(_))) {
             self.state = State::Over;
         }

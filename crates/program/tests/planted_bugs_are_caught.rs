@@ -1,95 +1,17 @@
 //! The checker accepts the pulses of planned programs and notices planted bugs in them. The pulses
-//! come from the rows by an accumulator that is written here, not by the models.
+//! come from the rows by an accumulator of the tests, not by the models.
 
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
 
-use carrystep_check::{PathAxis, PathChecker, PathReport, PathSetup, Pin, PinChange, PinSink};
-use carrystep_files::Machine;
-use carrystep_job::Row;
-use carrystep_program::{Legs, ProgramError, ProgramFile, Settings, Survey};
-use std::path::Path;
+mod common;
 
-const TICK_PS: u64 = 1_000_000;
-/// The first tick begins this late, so that DIR has its set-up time before.
-const ORIGIN_PS: u64 = 10_000_000;
+use carrystep_check::{Pin, PinChange};
+use carrystep_program::ProgramFile;
+use common::{check, job, planned, program_on, pulses};
 
+/// A program on the machine of `sim/jobs/`.
 fn program(text: &str) -> (tempfile::TempDir, ProgramFile) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("job.ngc");
-    std::fs::write(&path, text).unwrap();
-    let machine = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sim/jobs/machine.toml");
-    let file =
-        ProgramFile::open(&path, Machine::load(&machine).unwrap(), &machine, Settings::default());
-    (folder, file.unwrap())
-}
-
-fn job(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sim/jobs");
-    std::fs::read_to_string(folder.join(name)).unwrap()
-}
-
-/// The pulses of rows: P starts in the middle of a step, and a carry in tick n is a pulse in it.
-fn pulses(rows: &[Row]) -> Vec<PinChange> {
-    let mut changes = Vec::new();
-    for axis in 0..rows.first().map_or(0, |row| row.segments.len()) {
-        let (mut p, mut tick, mut dir) = (1_u64 << 63, 0, false);
-        let mut change =
-            |ps, pin, level| changes.push(PinChange { ps, axis: axis as u8, pin, level });
-        for row in rows {
-            let segment = row.segments[axis];
-            let (mut v, mut a) = (segment.v, segment.a);
-            for _ in 0..row.ticks {
-                let (next, carry) = p.overflowing_add(v as u64);
-                if carry != (v < 0) {
-                    let ps = ORIGIN_PS + tick * TICK_PS + TICK_PS / 2;
-                    if dir != (v < 0) {
-                        dir = v < 0;
-                        change(ps - TICK_PS / 4, Pin::Dir, dir);
-                    }
-                    change(ps, Pin::Step, true);
-                    change(ps + 100_000, Pin::Step, false);
-                }
-                p = next;
-                v = v.wrapping_add(a);
-                a = a.wrapping_add(segment.j);
-                tick += 1;
-            }
-        }
-    }
-    changes.sort_by_key(|change| change.ps);
-    changes
-}
-
-fn check(file: &ProgramFile, survey: &Survey, changes: &[PinChange]) -> PathReport {
-    let axes = file.machine().axes.iter().zip(file.letters().of_axes()).zip(&survey.axes);
-    let axes = axes.map(|((axis, &letter), planned)| PathAxis {
-        name: &axis.name,
-        letter,
-        step: file.letters().step()[letter],
-        start_steps: planned.start_steps,
-        steps: planned.steps(),
-        pins_ns: axis.pins_ns,
-    });
-    let setup = PathSetup {
-        axes: axes.collect(),
-        start: file.settings().start,
-        origin_ps: ORIGIN_PS,
-        total_ps: survey.ticks * TICK_PS,
-        slack_ps: 0,
-    };
-    let legs = Legs::new(file).unwrap().map(Result::unwrap);
-    let mut checker = PathChecker::new(setup, Box::new(legs));
-    checker.changes(changes).unwrap();
-    checker.finish()
-}
-
-fn planned(file: &ProgramFile) -> (Survey, Vec<Row>) {
-    let mut rows = Vec::new();
-    let survey = Survey::new(file, |row| {
-        rows.push(row.clone());
-        Ok::<(), ProgramError>(())
-    });
-    (survey.unwrap(), rows)
+    program_on(&job("machine.toml"), text)
 }
 
 #[test]
@@ -98,7 +20,7 @@ fn pulses_of_planned_programs_pass() {
         let (_folder, file) = program(&job(name));
         let (survey, rows) = planned(&file);
         assert!(survey.landed());
-        let report = check(&file, &survey, &pulses(&rows));
+        let report = check(&file, &survey, &pulses(&rows), None);
         assert!(report.passed, "{name}: {:?}", report.failures);
         assert!(report.deviation_mm > 0.005, "the tolerance is used: {report:?}");
     }
@@ -111,7 +33,7 @@ fn caught(bug: impl FnOnce(&mut Vec<PinChange>), says: &str) {
     let (survey, rows) = planned(&file);
     let mut changes = pulses(&rows);
     bug(&mut changes);
-    let report = check(&file, &survey, &changes);
+    let report = check(&file, &survey, &changes, None);
     assert!(!report.passed, "not caught: {report:?}");
     assert!(report.failures.iter().any(|one| one.contains(says)), "{:?}", report.failures);
 }
@@ -198,7 +120,7 @@ fn pulses_of_another_program_are_caught() {
     let changed = job("square_and_arc.ngc").replace("G3 X0 Y0 I-20 J0", "G2 X0 Y0 I-20 J0");
     let (_other_folder, other) = program(&changed);
     let (_, rows) = planned(&other);
-    let report = check(&file, &survey, &pulses(&rows));
+    let report = check(&file, &survey, &pulses(&rows), None);
     assert!(report.failures[0].contains("the tool leaves the path"), "{:?}", report.failures);
     // The arcs of lines 9 and 10 meet where the two programs part.
     assert!(report.failures[0].contains("near line 9:"), "{:?}", report.failures);

@@ -13,12 +13,18 @@ const AXIS: &str = "speed_limit = 100\naccel_limit = 1000\ndriver = \"tmc2209\"\
 
 /// A machine with axes of these names; each has 80 steps a unit and a travel of -100 to 100.
 fn machine(names: &str) -> Machine {
+    let text = text_of_machine(names);
+    Machine::from_source(&SourceText { path: "m.toml".into(), text: text.into() }).unwrap()
+}
+
+/// The file of this machine.
+fn text_of_machine(names: &str) -> String {
     let mut text = "[machine]\n".to_owned();
     for name in names.chars() {
         let axis = format!("[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = 80\n{AXIS}");
         text += &format!("{axis}travel = [-100, 100]\n");
     }
-    Machine::from_source(&SourceText { path: "m.toml".into(), text: text.into() }).unwrap()
+    text
 }
 
 fn open(
@@ -150,6 +156,29 @@ fn machines_that_cannot_run_jobs_are_refused() {
     ] {
         let error = survey("G0 X1\n", names, Settings::default()).unwrap_err();
         assert!(error.message.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn line_that_is_too_slow_for_the_axes_is_refused() {
+    let open = |names: &str, link: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("job.ngc");
+        std::fs::write(&path, "G0 X1\n").unwrap();
+        let text = format!("[machine.link]\n{link}\n{}", text_of_machine(names));
+        let source = SourceText { path: "m.toml".into(), text: text.into() };
+        let machine = Machine::from_source(&source).unwrap();
+        ProgramFile::open(&path, machine, Path::new("m.toml"), Settings::default()).map(drop)
+    };
+    let error = open("xyzabc", "baud = 115_200").unwrap_err();
+    let says = "m.toml: a line of 115200 baud is too slow for jobs of 6 axes: each needs a segment \
+                every 16 ms at least, and they take 210000 baud";
+    assert_eq!(error.message, says);
+    assert!(error.help.is_some_and(|help| help.contains("raise baud")));
+    for (names, link) in
+        [("xyz", "baud = 115_200"), ("xyzabc", "baud = 210_000"), ("xyzabc", "spi = true")]
+    {
+        assert!(open(names, link).is_ok(), "{names}, {link}");
     }
 }
 

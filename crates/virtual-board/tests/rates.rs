@@ -97,6 +97,13 @@ fn verilog_at_3_megabaud_carries_1000_segments_per_second_for_six_axes() {
     carries::<VerilatedBoard>(3_000_000, 1000, asked("CARRYSTEP_VERILOG_MS", 100) as u32, UNSEEN);
 }
 
+/// The slowest line with which a program of six axes is planned (`least_baud` in
+/// `crates/job/src/rhythm.rs`), and segments of almost 16 ms.
+#[test]
+fn uart_at_210_000_baud_carries_63_segments_per_second_for_six_axes() {
+    carries::<ModelBoard>(210_000, 63, 1500, 5);
+}
+
 #[test]
 fn uart_at_921_600_baud_carries_200_segments_per_second_for_six_axes() {
     carries::<ModelBoard>(921_600, 200, 1500, 6);

@@ -8,9 +8,11 @@ use crate::junit::JunitFile;
 use crate::pass::{Kept, RowsAhead};
 use crate::{job, output, program, program_run};
 use carrystep_check::{
-    Capture, JobChecker, JobReport, PlannedRows, SignalMap, TraceError, sink_beside,
+    Capture, JobChecker, JobOutputs, JobReport, PlannedRow, PlannedRows, SignalMap, TraceError,
+    sink_beside,
 };
-use carrystep_program::{Legs, Rows};
+use carrystep_files::InputError;
+use carrystep_program::{Legs, Marks, Row, Rows};
 use carrystep_report::Detail;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -23,22 +25,36 @@ pub struct CheckedProgram<'a> {
     check: &'a JobReport,
 }
 
+/// Refuses slices, with the reason.
+fn refuse_slices(arguments: &CheckArguments) -> Result<(), Failure> {
+    let CheckArguments { slice, merge, .. } = arguments;
+    let options = [("--slice", slice.is_some()), ("--merge", !merge.is_empty())];
+    let Some((option, _)) = options.iter().find(|(_, given)| *given) else { return Ok(()) };
+    let message = format!(
+        "{option} is not available for G-code programs: each slice would have to plan the program \
+         from its beginning and follow its path from there, which is half of the work of the whole \
+         check or more"
+    );
+    let help = format!(
+        "leave out {option}: the memory of a check does not grow with the capture; --path-only \
+         takes two thirds of the time"
+    );
+    Err(InputError::new(message).help(help).into())
+}
+
 /// Checks a capture against a program and prints the report.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    let CheckArguments { fit_ns, slice, out, merge, .. } = arguments;
-    program::refuse(&[
-        ("--fit-ns", fit_ns.is_some()),
-        ("--slice", slice.is_some()),
-        ("--out", out.is_some()),
-        ("--merge", !merge.is_empty()),
-    ])?;
+    program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
+    refuse_slices(arguments)?;
     let file = program::load(&arguments.file, &arguments.program)?;
     let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
     let map =
         SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
     let failed = |error: TraceError| unusable(arguments, error);
+    let exist = file.machine().outputs.exist;
     let capture = Capture::new(&arguments.capture, &names, &map).map_err(failed)?;
+    let capture = capture.with_outputs(exist);
     let reader = capture.open().map_err(failed)?;
     let timebase = file.machine().timebase;
     let origin = origin(arguments, reader.own(), &timebase)?;
@@ -57,11 +73,17 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     } else {
         setup.total_ps = program_run::length_ps(&survey, &timebase);
         let rows = RowsAhead::new(Rows::new(&file)?);
-        let rows = kept.until_an_error(rows).map(|row| row.segments);
+        let planned = |row: Row| {
+            let outputs = carrystep_program::outputs(&row);
+            PlannedRow { segments: row.segments, outputs }
+        };
+        let rows = kept.until_an_error(rows).map(planned);
         Some(Box::new(rows) as PlannedRows<'_>)
     };
     let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
-    let checker = JobChecker::new(setup, legs, rows, &timebase, origin);
+    let marks = Box::new(kept.until_an_error(Marks::new(&file)?));
+    let outputs = JobOutputs { exist, shown: reader.outputs(), marks };
+    let checker = JobChecker::new(setup, legs, rows, outputs, &timebase, origin);
     // The capture is read while it is checked.
     let (played, checker) = sink_beside(checker, |sink| reader.play(sink)).map_err(failed)?;
     let report = checker.finish();
@@ -74,6 +96,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         junit.case("path".to_owned(), &report.path.failures);
         for axis in report.times.iter().flatten() {
             junit.case(format!("axis {}", axis.axis), &axis.failures);
+        }
+        for output in report.output_times.iter().flatten() {
+            junit.case(format!("output {}", output.output), &output.failures);
         }
         junit.keep()?;
     }

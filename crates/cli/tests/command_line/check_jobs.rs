@@ -251,7 +251,14 @@ fn options_of_move_files_and_of_programs_are_not_mixed() {
     for (arguments, says) in [
         ("check own.vcd job.ngc", "needs a machine"),
         ("check own.vcd job.ngc --machine m.toml --fit-ns 5", "--fit-ns is not available"),
-        ("check own.vcd job.ngc --machine m.toml --slice 1/2 --out s", "--slice is not available"),
+        (
+            "check own.vcd job.ngc --machine m.toml --slice 1/2 --out s",
+            "--slice is not available for G-code programs: each slice would have to plan the program",
+        ),
+        (
+            "check own.vcd job.ngc --machine m.toml --merge s",
+            "leave out --merge: the memory of a check does not grow with the capture",
+        ),
         ("check own.vcd move.toml --path-only", "--path-only is an option of G-code programs"),
         ("check own.vcd move.toml --machine m.toml", "--machine is an option of G-code programs"),
         ("check m.toml job.ngc --machine m.toml", "m.toml"),

@@ -13,6 +13,7 @@ mod boards;
 mod cache;
 #[cfg(target_os = "linux")]
 mod check_jobs;
+mod check_outputs;
 mod check_slices;
 #[cfg(target_os = "linux")]
 mod ci_action;
@@ -23,6 +24,7 @@ mod curves;
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
 mod documents;
+mod empty_programs;
 mod engine;
 #[cfg(unix)]
 mod homing;

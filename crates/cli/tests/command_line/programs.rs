@@ -268,3 +268,20 @@ fn memory_does_not_depend_on_the_length_of_a_program() {
         assert!((1..64 << 20).contains(&most), "{arguments}: {most} bytes");
     }
 }
+
+/// A rotary axis alone, with X and Y, in inverse time, and corners within 0.01 degrees.
+#[test]
+fn rotary_axes_are_simulated_in_degrees() {
+    let folder =
+        folder("F600\nG1 A30\nF1200\nX30 Y40 A90\nG93\nG1 A60 F30\nX0 Y1 F20\nA62 F30\nX1 F20\n");
+    folder.write("m.toml", MACHINE.replace("name = \"z\"", "name = \"a\"\nunit = \"deg\""));
+    let done = document(&folder.run("simulate job.ngc --machine m.toml --json --vcd own.vcd"));
+    assert_eq!((&done["passed"], &done["plan"]["rotary_deg"]), (&true.into(), &62.0.into()));
+    let check = &done["check"];
+    let (found, bound) = (number(&check["deviation_deg"]), number(&check["deviation_bound_deg"]));
+    // One step is 1/400 degree.
+    assert!((bound - 0.0125).abs() < 1e-9 && found <= bound + 1e-9, "{check}");
+    assert_eq!(folder.run("check own.vcd job.ngc --machine m.toml").status, 0);
+    folder.write("other.ngc", "F600\nG1 A30.1\n");
+    assert_eq!(folder.run("check own.vcd other.ngc --machine m.toml --path-only").status, 1);
+}
