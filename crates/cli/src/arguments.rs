@@ -17,10 +17,11 @@ pub use machine::{MachineArguments, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{
-    HomeArguments, Jog, PeerArguments, PortArguments, RunArguments, StatusArguments, Stop,
+    HomeArguments, Jog, PeerArguments, PortArguments, ProgramPortArguments, RunArguments,
+    StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
-pub use program::ProgramArguments;
+pub use program::{PlannerArguments, ProgramArguments};
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -64,9 +65,13 @@ pub enum Subcommand {
     /// Run many machines and moves on all processors of this computer and report the worst of each
     /// figure.
     Sweep(Sweep),
-    /// Execute the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C ramps the
-    /// axes down.
+    /// Run a move file or a G-code program on a board: plan, stream, keep its queues full. Ctrl-C
+    /// ramps the axes down; it brings a program to rest on its path, and ends it if it comes again.
     Run(RunArguments),
+    /// Bring the program of a `run` in another terminal to rest, on its path.
+    Hold(ProgramPortArguments),
+    /// Let a program go on that is held, or that waits at M0, M1 or M6.
+    Resume(ProgramPortArguments),
     /// Move one axis of a board.
     Jog(Jog),
     /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.

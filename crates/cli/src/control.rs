@@ -1,12 +1,13 @@
 //! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
 //! that one: `run`, `jog` and `home` listen on a local socket while they hold the port, and
-//! `carrystep stop` and `status` talk to them through it.
+//! `carrystep stop`, `resume` and `status` talk to them through it.
 //!
 //! ```text
 //! claim    a lock file per device, named after its number; it contains the holder of the port
 //! control_socket the socket of the driving command, polled once per exchange with the board
 //! caller   the other end of the socket, for `stop` and `status`
 //! folder   the folder of both files, which only this user can access
+//! program  what the user wants of a program: hold, go on, end
 //! ```
 //!
 //! On systems other than Unix, the claim is a type without files and without a socket.
@@ -22,6 +23,7 @@ mod control_socket;
 mod folder;
 #[cfg(not(unix))]
 mod none;
+mod program;
 
 #[cfg(unix)]
 pub use caller::{Caller, Reply, call};
@@ -36,9 +38,9 @@ use crate::found::{FoundBoard, Known};
 pub use crate::holder::Holder;
 use crate::interrupt;
 use carrystep_link::{BuildFacts, Status, Wish};
+pub use program::ProgramControl;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::sync::atomic::Ordering;
 use strum::{EnumString, IntoStaticStr};
 
 /// A request through the socket; each is one line.
@@ -49,7 +51,19 @@ pub enum SocketRequest {
     Status,
     /// Ramp the axes down and end the command.
     Stop,
+    /// Bring a program to rest on its path.
+    Hold,
+    /// Let a program go on that waits.
+    Resume,
 }
+
+/// The answer to a request that was noted.
+const TAKEN: &str = "taken";
+/// The answer to [`SocketRequest::Hold`] if no program moves.
+pub const NOTHING_MOVES: &str = "nothing moves";
+
+/// The answer to [`SocketRequest::Resume`] if nothing waits.
+pub const NOTHING_WAITS: &str = "nothing waits";
 
 impl SocketRequest {
     /// The word that is sent for the request, without the end of the line.
@@ -75,6 +89,7 @@ pub struct Control {
     claim: PortClaim,
     known: Option<Known>,
     stopped_by: Option<StoppedBy>,
+    program: Option<ProgramControl>,
 }
 
 impl Control {
@@ -84,7 +99,7 @@ impl Control {
     /// The system refuses to create the socket.
     pub fn new(claim: PortClaim, drives: bool) -> std::io::Result<Self> {
         let control_socket = if drives { claim.listen()? } else { None };
-        Ok(Self { control_socket, claim, known: None, stopped_by: None })
+        Ok(Self { control_socket, claim, known: None, stopped_by: None, program: None })
     }
 
     /// Stores the constants of the connected board. From now on requests for the status are
@@ -99,16 +114,30 @@ impl Control {
     /// in the `watch` of [`Host::stream`](carrystep_link::Host::stream)) and before a new move
     /// begins. It also answers requests for the status.
     pub fn wish(&mut self, status: &Status) -> Wish {
-        if interrupt::watch().load(Ordering::Relaxed) {
+        let stops = match &self.program {
+            Some(program) => program.stops(),
+            None => interrupt::is_asked(),
+        };
+        if stops {
             self.stopped_by.get_or_insert(StoppedBy::Interrupt);
         }
         if let Some(control_socket) = &mut self.control_socket {
             let (known, holder) = (&self.known, self.claim.holder());
+            let program = &mut self.program;
             let stop = control_socket.poll(&mut |request| match request {
-                SocketRequest::Stop => "taken".to_owned(),
+                SocketRequest::Stop => TAKEN.to_owned(),
+                SocketRequest::Hold => {
+                    let noted = program.as_mut().is_some_and(ProgramControl::hold);
+                    if noted { TAKEN } else { NOTHING_MOVES }.to_owned()
+                }
+                SocketRequest::Resume => {
+                    let noted = program.as_mut().is_some_and(ProgramControl::resume);
+                    if noted { TAKEN } else { NOTHING_WAITS }.to_owned()
+                }
                 SocketRequest::Status => known.as_ref().map_or_else(String::new, |known| {
                     let found = FoundBoard {
                         held_by: Some(holder.clone()),
+                        waits: program.as_ref().and_then(|program| program.waits.clone()),
                         ..FoundBoard::new(status, known, None)
                     };
                     serde_json::to_string(&found).unwrap_or_default()
@@ -119,6 +148,23 @@ impl Control {
             }
         }
         if self.stopped_by.is_some() { Wish::Stop } else { Wish::GoOn }
+    }
+
+    /// From now on a program runs. While it moves, the first signal that ends programs holds it, the
+    /// second one ends it at rest, and the third one ramps the axes down. While it rests, a signal
+    /// ends it.
+    pub fn runs_program(&mut self) {
+        self.program = Some(ProgramControl::default());
+    }
+
+    /// Notes that the user has ended the program that runs.
+    pub fn ends_program(&mut self) {
+        self.stopped_by.get_or_insert(StoppedBy::Interrupt);
+    }
+
+    /// The program, if one runs.
+    pub const fn program(&mut self) -> Option<&mut ProgramControl> {
+        self.program.as_mut()
     }
 
     /// The source of the stop, or `None` if no stop was requested.

@@ -2,67 +2,30 @@
 //! board, stops on request and reports the outcome. All checks that refuse a run come before the
 //! first segment is sent.
 
-use crate::connection::{self, Connection};
+use crate::connection::{self, ConnectedBoardError, Connection};
 use crate::failure::Failure;
 use crate::found;
-use crate::job;
 use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
 use carrystep_core::engine::Cause;
-use carrystep_files::MoveSource;
-use carrystep_link::supply::Supply;
-use carrystep_link::{Command, Ended, HostError, Status};
-use carrystep_plan::{AxisTotals, Survey};
+use carrystep_link::{Ended, HostError, Status};
+pub use itinerary::{Itinerary, Plan};
 use line::Line;
+pub use moves::Moves;
 pub use outcome::{AxisDriven, Culprit, Driven, How};
-use program::PlannedProgram;
+use pause::{Keys, Waited};
+pub use place::Place;
+pub use program::PlannedProgram;
 use std::time::Instant;
 
+mod itinerary;
 mod line;
+mod moves;
 mod outcome;
+mod pause;
+mod place;
 mod program;
-
-/// A plan that the link can send.
-pub struct Streamed {
-    survey: Survey,
-    seconds: f64,
-    /// Direction of the first motion of each axis: 1, -1, or 0 if it does not move.
-    first: Vec<i8>,
-}
-
-impl Streamed {
-    /// Plans all moves.
-    ///
-    /// # Errors
-    /// A move cannot be made, or the machine's line is too slow to keep the queues full.
-    pub fn new(source: MoveSource) -> Result<Self, Failure> {
-        let (machine, path) = (&source.machine, source.path.display().to_string());
-        let axes = machine.axes.len() as u8;
-        let mut supply =
-            Some(Supply::new(axes, machine.timebase.tick_ns(), machine.queue, machine.baud));
-        // A move that cannot be made is told before a line that is too slow.
-        let mut starved = None;
-        let survey = job::survey(source, |planned| {
-            for command in planned.commands().iter().filter_map(Command::of) {
-                if let Some(Err(error)) = supply.as_mut().map(|supply| supply.add(&command)) {
-                    starved = Some(error);
-                    supply = None;
-                }
-            }
-            Ok(())
-        })?;
-        let starved = starved.or_else(|| supply.and_then(|supply| supply.finish().err()));
-        if let Some(error) = starved {
-            return Err(Failure::input(format!("{path}: {error}")));
-        }
-        let first = |totals: &AxisTotals| {
-            totals.travel.first.as_ref().map_or(0, |leg| leg.forward().signum() as i8)
-        };
-        let first = survey.totals().axes.iter().map(first).collect();
-        let seconds = survey.totals().ticks as f64 * survey.build().timebase.tick_seconds();
-        Ok(Self { survey, seconds, first })
-    }
-}
+mod shared;
 
 /// The direction in which each axis was last seen moving.
 #[derive(Default)]
@@ -83,7 +46,7 @@ impl Ways {
     }
 }
 
-/// Executes the moves and returns the report. An axis moves further toward a limit that it has met
+/// Executes a plan and returns the report. An axis moves further toward a limit that it has met
 /// only if `into_limit` is set.
 ///
 /// # Errors
@@ -91,16 +54,17 @@ impl Ways {
 /// lost.
 pub fn drive(
     mut connection: Connection,
-    streamed: &Streamed,
+    mut memory: BoardMemory,
+    mut plan: Plan<'_>,
+    itinerary: &dyn Itinerary,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
-    let mut memory = BoardMemory::recall(&mut connection);
     if !into_limit {
         // Before the session is opened: a refusal leaves the board and its memory as they are.
         let Connection { board, axes, .. } = &mut connection;
         let closed = ClosedLimits::read(board).map_err(|error| connection::broken(&error, axes))?;
-        let wiring = streamed.survey.machine().guard.limits;
-        closed.check(wiring, &streamed.first, &memory.limits(), axes)?;
+        let wiring = plan.machine.guard.limits;
+        closed.check(wiring, plan.first, &memory.limits(), axes)?;
     }
     connection::open(&mut connection)?;
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
@@ -110,22 +74,54 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    let program = PlannedProgram::new(&streamed.survey);
-    let line = Line::new(&axes, streamed.seconds);
+    let (mut line, mut keys) = (Line::new(&axes, plan.seconds), Keys::default());
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
-    let mut watch = |progress: &carrystep_link::Progress<'_>| {
-        line.show(progress.status);
-        ways.see(progress.status);
-        control.wish(progress.status)
+    if plan.program.is_some() {
+        control.runs_program();
+    }
+    let mut follow = || -> Result<Ended, ConnectedBoardError> {
+        let mut ends = false;
+        'stretches: while let Some(waits) = itinerary.begin() {
+            for at in waits {
+                line.rests();
+                plan.program.iter_mut().for_each(|program| program.waits += 1);
+                match pause::wait(&mut board, &mut control, (&mut keys, &line), at)? {
+                    Waited::GoesOn => {}
+                    Waited::Stopped => return Ok(Ended::Stopped),
+                    Waited::Ends => {
+                        // The outputs go off in a stretch of their own.
+                        itinerary.end();
+                        ends = true;
+                        continue 'stretches;
+                    }
+                }
+            }
+            let mut held = ends;
+            let streamed = board.stream(itinerary.source(), |progress| {
+                line.show(progress.status);
+                ways.see(progress.status);
+                if !held && control.program().is_some_and(|program| program.holds()) {
+                    // Where the stretch ends before by itself, the program waits or ends there.
+                    held = true;
+                    itinerary.hold();
+                }
+                control.wish(progress.status)
+            })?;
+            if streamed == Ended::Stopped {
+                return Ok(Ended::Stopped);
+            }
+        }
+        if ends {
+            // The axes rest anywhere between two steps. A clear takes their places as they are.
+            board.stop()?;
+        }
+        Ok(if ends { Ended::Stopped } else { Ended::Done })
     };
-    let outcome = match powered {
-        Ended::Stopped => Ok(Ended::Stopped),
-        Ended::Done | Ended::SeekEnded => board.stream(program, &mut watch),
-    };
+    // The command seeks nothing here; whether all moves were made is judged by the positions.
+    let outcome = if powered == Ended::Stopped { Ok(powered) } else { follow() };
     drop(line);
     let ended = match outcome {
-        // The command seeks nothing here; whether all moves were made is judged by the positions.
         Ok(Ended::Done | Ended::SeekEnded) => How::Done,
         Ok(Ended::Stopped) => How::Stopped,
         Err(HostError::Fault { .. }) => How::Fault,
@@ -138,12 +134,12 @@ pub fn drive(
         // The stop was requested, so it is cleared here and the next run does not report it.
         board.clear().map_err(told)?;
     }
-    if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.survey.machine().guard) {
+    if ended == How::Fault && memory::freezes(end.answer.cause, &plan.machine.guard) {
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
         let met = |(number, _): &(usize, &i8)| end.answer.culprits >> number & 1 == 1;
-        for (number, &first) in streamed.first.iter().enumerate().filter(met) {
+        for (number, &first) in plan.first.iter().enumerate().filter(met) {
             let direction = if ways.last[number] == 0 { first } else { ways.last[number] };
             memory.set_limit(number, Some(direction));
         }
@@ -157,15 +153,14 @@ pub fn drive(
     let is_culprit =
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
-    streamed.survey.whole()?;
-    let (machine, totals) = (streamed.survey.machine(), streamed.survey.totals());
+    itinerary.whole()?;
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],
         position: end.positions[number],
-        steps_planned: totals.axes[number].travel.position,
-        unit: machine.axes[number].unit.name.clone(),
-        steps_per_unit: machine.axes[number].unit.steps,
+        steps_planned: plan.steps[number],
+        unit: plan.machine.axes[number].unit.name.clone(),
+        steps_per_unit: plan.machine.axes[number].unit.steps,
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| {
@@ -181,8 +176,9 @@ pub fn drive(
         culprits,
         meaning: cause.map(Cause::meaning),
         remedy: cause.map(Cause::remedy),
-        planned_s: streamed.seconds,
+        planned_s: plan.seconds,
         run_s: begun.elapsed().as_secs_f64(),
+        program: plan.program,
         axes,
     })
 }

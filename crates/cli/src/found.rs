@@ -63,6 +63,9 @@ pub struct FoundBoard {
     pub remedy: Option<String>,
     /// The command that holds the port, if this report comes from it and not from the board.
     pub held_by: Option<Holder>,
+    /// What the program of that command waits for, at rest; `carrystep resume` lets it go on.
+    #[serde(default)]
+    pub waits: Option<String>,
     /// The command that `carrystep stop` has stopped, if there was one.
     #[serde(default)]
     pub stopped: Option<Holder>,
@@ -142,6 +145,7 @@ impl FoundBoard {
             meaning: cause.map(|cause| cause.meaning().to_owned()),
             remedy: cause.map(|cause| cause.remedy().to_owned()),
             held_by: None,
+            waits: None,
             stopped: None,
             axes: axes.iter().enumerate().map(axis).collect(),
         }
@@ -160,6 +164,9 @@ impl fmt::Display for FoundBoard {
         }
         if let Some(holder) = &self.held_by {
             writeln!(f, "{holder} drives it")?;
+        }
+        if let Some(waits) = &self.waits {
+            writeln!(f, "it waits: {waits}; `carrystep resume` lets it go on")?;
         }
         let culprits: Vec<&str> =
             self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();

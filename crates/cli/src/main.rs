@@ -62,6 +62,8 @@ fn main() -> ExitCode {
         Subcommand::Verilog(verilog) => commands::verilog::run(verilog),
         Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
         Subcommand::Run(run) => commands::run::run(run),
+        Subcommand::Hold(port) => commands::hold::hold(port),
+        Subcommand::Resume(port) => commands::hold::resume(port),
         Subcommand::Jog(jog) => commands::run::jog(jog),
         Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),

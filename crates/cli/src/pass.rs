@@ -91,14 +91,19 @@ impl<R> RowsAhead<R> {
 }
 
 impl<R: Iterator<Item = Result<Row, ProgramError>> + Send + 'static> RowsAhead<R> {
-    /// Begins to plan.
-    pub fn new(mut rows: R) -> Self {
+    /// Begins to plan; ends early after a signal that ends programs.
+    pub fn new(rows: R) -> Self {
+        Self::until(rows, interrupt::is_asked)
+    }
+
+    /// Begins to plan; ends early where `ends` returns true.
+    pub fn until(mut rows: R, ends: fn() -> bool) -> Self {
         let (sender, receiver) = sync_channel(Self::WAITING);
         let planner = std::thread::spawn(move || {
             loop {
                 let batch: Batch = rows.by_ref().take(Self::BATCH).collect();
                 // Nobody listens where a run has ended early.
-                if batch.is_empty() || interrupt::is_asked() || sender.send(batch).is_err() {
+                if batch.is_empty() || ends() || sender.send(batch).is_err() {
                     return rows;
                 }
             }

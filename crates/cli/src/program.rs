@@ -1,6 +1,6 @@
 //! Opens a G-code program for a machine, and plans it once to its end.
 
-use crate::arguments::ProgramArguments;
+use crate::arguments::{PlannerArguments, ProgramArguments};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::PlanProgress;
@@ -10,19 +10,33 @@ use carrystep_program::{ProgramFile, Row, Settings, Survey};
 use carrystep_report::Detail;
 use std::path::Path;
 
-/// Opens a program.
+/// Opens a program that runs on no board.
 pub fn load(path: &Path, arguments: &ProgramArguments) -> Result<ProgramFile, Failure> {
+    let (machine_path, machine) = machine(path, &arguments.planner)?;
+    let mut settings = settings(&arguments.planner);
+    for &(letter, at) in &arguments.at {
+        settings.start[letter] = at;
+    }
+    Ok(ProgramFile::open(path, machine, machine_path, settings)?)
+}
+
+/// Loads the machine of a program, which the options must name.
+pub fn machine<'a>(
+    path: &Path,
+    arguments: &'a PlannerArguments,
+) -> Result<(&'a Path, Machine), Failure> {
     let Some(machine_path) = &arguments.machine else {
         let message = format!("{}: a G-code program needs a machine", path.display());
         return Err(InputError::new(message).help("add --machine MACHINE.toml").into());
     };
-    let machine = Machine::load(machine_path)?;
-    let mut settings = Settings { tolerance_mm: arguments.tolerance, ..Settings::default() };
-    for &(letter, at) in &arguments.at {
-        settings.start[letter] = at;
-    }
-    settings.blocks = arguments.blocks.unwrap_or(settings.blocks);
-    Ok(ProgramFile::open(path, machine, machine_path, settings)?)
+    Ok((machine_path, Machine::load(machine_path)?))
+}
+
+/// How a program is to be run that begins at machine zero.
+pub fn settings(arguments: &PlannerArguments) -> Settings {
+    let tolerance_mm = arguments.tolerance;
+    let settings = Settings { tolerance_mm, ..Settings::default() };
+    Settings { blocks: arguments.blocks.unwrap_or(settings.blocks), ..settings }
 }
 
 /// Plans a program to its end, so that a mistake is found before anything is written. `watch` sees

@@ -26,6 +26,7 @@ mod emitted;
 mod error;
 mod filter;
 mod halt;
+mod hold;
 mod inspect;
 mod job;
 mod kinematics;
@@ -50,6 +51,7 @@ mod weave;
 
 pub use element::{Arc, Element, Item, Tolerance};
 pub use error::{JobError, Rule};
+pub use hold::{Curve, CurvePlace, Held, Hold};
 pub use kinematics::{Cartesian, CoreXy, Kinematics};
 pub use planner::{Planner, rows};
 pub use rhythm::check_line;

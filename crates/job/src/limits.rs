@@ -57,9 +57,7 @@ impl<const N: usize> Motors<N> {
 pub(crate) fn of_machine<const N: usize>(
     machine: &Machine,
 ) -> Result<([Limit; N], [ExactLimits; N]), JobError> {
-    let tick_seconds = machine.timebase.tick_seconds();
     let mut limits = [Limit { speed: 0.0, acceleration: 0.0, jerk: 0.0 }; N];
-    let mut exact = Vec::with_capacity(N);
     for (limit, axis) in limits.iter_mut().zip(&machine.axes) {
         let float = |value: &carrystep_files::BigDecimal| {
             value.to_f64().filter(|x| x.is_finite() && *x > 0.0)
@@ -70,15 +68,24 @@ pub(crate) fn of_machine<const N: usize>(
         };
         let jerk = axis.jerk_limit.as_ref().and_then(float).unwrap_or(acceleration / SHORTEST);
         *limit = Limit { speed, acceleration, jerk };
-        exact.extend(ExactLimits::new::<f64>(axis, &machine.timebase));
     }
-    let exact: [ExactLimits; N] =
-        exact.try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
-    let exact = exact.map(|limits| {
-        let jerk = limits.jerk.unwrap_or_else(|| default_jerk(&limits, tick_seconds));
-        ExactLimits { jerk: Some(jerk), ..limits }
-    });
+    let exact = exact(machine)?.try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
     Ok((limits, exact))
+}
+
+/// The limits of a machine's motors in exact integers. Without `jerk_limit`, J is A / 4 ms.
+///
+/// # Errors
+/// [`JobError::Axes`].
+pub(crate) fn exact(machine: &Machine) -> Result<Vec<ExactLimits>, JobError> {
+    let tick_seconds = machine.timebase.tick_seconds();
+    let of = |axis| {
+        let limits = ExactLimits::new::<f64>(axis, &machine.timebase)?;
+        let jerk = limits.jerk.unwrap_or_else(|| default_jerk(&limits, tick_seconds));
+        Some(ExactLimits { jerk: Some(jerk), ..limits })
+    };
+    let limits: Option<Vec<_>> = machine.axes.iter().map(of).collect();
+    limits.ok_or(JobError::Axes(machine.axes.len()))
 }
 
 /// J = A / 4 ms in 2^-64 step per tick^3, rounded down; the ticks of 4 ms are rounded up.

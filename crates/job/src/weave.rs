@@ -156,28 +156,37 @@ impl<const N: usize> Weave<N> {
     /// Checks a finished span, in integers, at its ends and extremes.
     fn checked(&mut self, span: Span<N>) -> Result<Span<N>, Broken> {
         for (axis, segment) in span.segments.iter().enumerate() {
-            let limits = &self.limits[axis];
-            let broken = |rule| Err(Broken { axis, rule });
-            let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-            let end = a + (i128::from(segment.ticks) - 1) * j;
-            let fastest = speeds(segment).map(i128::abs).max().unwrap_or(0);
-            if fastest >= 1 << 63 {
-                return broken(Rule::Range);
-            }
-            if fastest > limits.speed {
-                return broken(Rule::Speed);
-            }
-            if a.abs().max(end.abs()) > limits.acceleration {
-                return broken(Rule::Acceleration);
-            }
-            if limits.jerk.is_some_and(|most| j.abs() > most) {
-                return broken(Rule::Jerk);
-            }
-            if (a - self.acceleration[axis]).abs() > limits.acceleration / JUMP {
-                return broken(Rule::Jump);
-            }
-            self.acceleration[axis] = end;
+            let before = self.acceleration[axis];
+            let end = obeys(segment, &self.limits[axis], before);
+            self.acceleration[axis] = end.map_err(|rule| Broken { axis, rule })?;
         }
         Ok(span)
     }
+}
+
+/// Checks a segment, in integers, at its ends and extremes. `before` is A in the last tick of the
+/// segment before; gives that of this one.
+///
+/// # Errors
+/// The rule that the segment breaks.
+pub(crate) fn obeys(segment: &Segment, limits: &ExactLimits, before: i128) -> Result<i128, Rule> {
+    let (a, j) = (i128::from(segment.a), i128::from(segment.j));
+    let end = a + (i128::from(segment.ticks) - 1) * j;
+    let fastest = speeds(segment).map(i128::abs).max().unwrap_or(0);
+    if fastest >= 1 << 63 {
+        return Err(Rule::Range);
+    }
+    if fastest > limits.speed {
+        return Err(Rule::Speed);
+    }
+    if a.abs().max(end.abs()) > limits.acceleration {
+        return Err(Rule::Acceleration);
+    }
+    if limits.jerk.is_some_and(|most| j.abs() > most) {
+        return Err(Rule::Jerk);
+    }
+    if (a - before).abs() > limits.acceleration / JUMP {
+        return Err(Rule::Jump);
+    }
+    Ok(end)
 }

@@ -130,6 +130,20 @@ pub trait SegmentSource {
     fn start(&mut self) -> Option<u8>;
 }
 
+impl<S: SegmentSource + ?Sized> SegmentSource for &mut S {
+    fn segment(&mut self, axis: u8) -> Option<Segment> {
+        (**self).segment(axis)
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        (**self).outputs()
+    }
+
+    fn start(&mut self) -> Option<u8> {
+        (**self).start()
+    }
+}
+
 /// Segments and starts in order, as a [`SegmentSource`] that gives each axis its own segments.
 #[derive(Debug, Clone)]
 pub struct Program<'a> {

@@ -46,8 +46,9 @@ pub use line::{Exchanged, Line};
 pub use session::{Session, SessionLost, Timing, WriteError};
 pub use ticks::{ClockComparison, ClockDifference, TickCount};
 
-/// Name and text of each file of the C library. A project needs all of them.
-pub const C_LIBRARY: [(&str, &str); 7] = [
+/// Name and text of each file of the C library. A project needs all of them; those of the time only
+/// if it compares clocks.
+pub const C_LIBRARY: [(&str, &str); 9] = [
     ("carrystep_registers.h", include_str!("../c/carrystep_registers.h")),
     ("carrystep_frame.h", include_str!("../c/carrystep_frame.h")),
     ("carrystep_frame.c", include_str!("../c/carrystep_frame.c")),
@@ -55,4 +56,6 @@ pub const C_LIBRARY: [(&str, &str); 7] = [
     ("carrystep_session.c", include_str!("../c/carrystep_session.c")),
     ("carrystep_feeder.h", include_str!("../c/carrystep_feeder.h")),
     ("carrystep_feeder.c", include_str!("../c/carrystep_feeder.c")),
+    ("carrystep_time.h", include_str!("../c/carrystep_time.h")),
+    ("carrystep_time.c", include_str!("../c/carrystep_time.c")),
 ];

@@ -116,6 +116,7 @@ fn library_needs_only_memset_and_memcpy() {
         ("carrystep_frame.c", &[][..]),
         ("carrystep_session.c", copies),
         ("carrystep_feeder.c", copies),
+        ("carrystep_time.c", copies),
     ] {
         let object = folder.compile(&[&arguments[..], &[file]].concat()).unwrap();
         let symbols = Command::new("nm").arg("-u").arg(object).output().unwrap();
@@ -130,7 +131,7 @@ fn library_needs_only_memset_and_memcpy() {
         let mut words = text.split(|letter: char| !letter.is_ascii_alphanumeric());
         assert!(words.all(|word| !["float", "double", "malloc"].contains(&word)), "{name}");
     }
-    let both = "#include \"carrystep_feeder.h\"\nint main() { return carrystep_crc(0, 0) == 0 ? 0 : 1; }\n";
+    let both = "#include \"carrystep_feeder.h\"\n#include \"carrystep_time.h\"\nint main() { return carrystep_crc(0, 0) == 0 ? 0 : 1; }\n";
     folder.write("both.cpp", both);
     folder.compile(&["-std=c++11", "-Wno-error", "-fsyntax-only", "both.cpp"]).unwrap();
 }

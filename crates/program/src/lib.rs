@@ -25,6 +25,7 @@ mod outputs;
 mod rows;
 mod survey;
 mod switch;
+mod sync;
 
 pub use carrystep_gcode::AXIS_LETTERS;
 pub use carrystep_job::Row;
@@ -36,6 +37,7 @@ pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
 pub use marks::Marks;
-pub use rows::{Rows, outputs};
+pub use rows::Rows;
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::Switch;
+pub use sync::{SyncPoint, outputs, sync_points};

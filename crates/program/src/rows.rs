@@ -5,7 +5,7 @@ use crate::error::{Fault, ProgramError};
 use crate::events::{Event, Events, ProgrammedMove};
 use crate::file::ProgramFile;
 use crate::letters::Letters;
-use carrystep_core::OutputChange;
+use crate::sync::SyncPoint;
 use carrystep_files::Machine;
 use carrystep_gcode::Point;
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
@@ -111,7 +111,10 @@ impl Rows {
                 let mark = Item::Mark(change.word().into());
                 [rest(0.0, line).filter(|_| !with_motion), Some(mark)]
             }
-            Event::Switch { line, .. } => [rest(0.0, line), None],
+            Event::Switch { switch, line } => {
+                let waits = SyncPoint::of(switch, line);
+                [rest(0.0, line), waits.map(|point| Item::Mark(point.mark()))]
+            }
             Event::End { .. } => [None, None],
         }
     }
@@ -125,13 +128,6 @@ impl Rows {
         let to = self.letters.coordinates(&one.to);
         Element { to, arc, feed: one.feed, tolerance: one.tolerance, line: one.line }
     }
-}
-
-/// What changes at the outputs where a row of a program begins. The planner carries it as marks,
-/// which are the words of these changes.
-pub fn outputs(row: &Row) -> OutputChange {
-    let changes = row.marks.iter().map(|mark| OutputChange::of_word(*mark as u32));
-    changes.fold(OutputChange::NONE, OutputChange::then)
 }
 
 impl Iterator for Rows {

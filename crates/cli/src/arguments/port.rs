@@ -1,6 +1,7 @@
 //! The arguments of the commands that talk to a board. The docstrings of the fields are the
 //! command's help.
 
+use super::program::{HEADING, PlannerArguments};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -28,11 +29,17 @@ pub struct PeerArguments {
 /// The arguments of `carrystep run`.
 #[derive(Debug, Args)]
 pub struct RunArguments {
-    /// The move file.
-    #[arg(value_name = "MOVE.toml")]
+    /// The move file, or a program in G-code: .ngc, .nc or .gcode.
+    #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]
     pub port: PortArguments,
+    #[command(flatten)]
+    pub planner: PlannerArguments,
+    /// Take the place where the machine is for its zero, although it has limit switches and is not
+    /// homed, and ignore `travel`.
+    #[arg(long, help_heading = HEADING)]
+    pub unhomed: bool,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
@@ -44,6 +51,13 @@ pub struct RunArguments {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
+}
+
+/// The arguments of `carrystep hold` and `resume`.
+#[derive(Debug, Args)]
+pub struct ProgramPortArguments {
+    #[command(flatten)]
+    pub port: PortArguments,
 }
 
 /// The arguments of `carrystep home`.

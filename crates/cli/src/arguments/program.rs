@@ -1,4 +1,4 @@
-//! The options of programs in G-code, which `plan`, `simulate` and `check` share.
+//! The options of programs in G-code, which `plan`, `simulate`, `check` and `run` share.
 
 use crate::failure::Failure;
 use carrystep_program::AXIS_LETTERS;
@@ -8,9 +8,9 @@ use std::path::PathBuf;
 /// The heading of these options in the help.
 pub const HEADING: &str = "Options of G-code programs";
 
-/// The options of programs in G-code.
+/// The options of programs in G-code, wherever they run.
 #[derive(Debug, Args)]
-pub struct ProgramArguments {
+pub struct PlannerArguments {
     /// The machine file. Its axes are called x, y, z, a, b or c.
     #[arg(long, help_heading = HEADING, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
@@ -18,12 +18,19 @@ pub struct ProgramArguments {
     /// program, otherwise 0.01.
     #[arg(long, help_heading = HEADING, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// The machine place where the program begins, mm or degrees, for example x=10,z=-2. Default: 0.
-    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
-    pub at: Vec<(usize, f64)>,
     /// How many lines loops and subroutines may run again. Default: 10000000.
     #[arg(long, help_heading = HEADING, value_name = "LINES")]
     pub blocks: Option<u64>,
+}
+
+/// The options of programs in G-code that run on no board.
+#[derive(Debug, Args)]
+pub struct ProgramArguments {
+    #[command(flatten)]
+    pub planner: PlannerArguments,
+    /// The machine place where the program begins, mm or degrees, for example x=10,z=-2. Default: 0.
+    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
+    pub at: Vec<(usize, f64)>,
 }
 
 /// Reads a tolerance, mm.
@@ -46,20 +53,26 @@ fn place(text: &str) -> Result<(usize, f64), String> {
     read.ok_or_else(|| "expected a letter of x, y, z, a, b, c and a place: x=12.5".to_owned())
 }
 
-impl ProgramArguments {
-    /// Refuses options of programs for a move file.
-    pub fn refuse_for_moves(&self) -> Result<(), Failure> {
-        let given = [
+impl PlannerArguments {
+    /// Refuses these options, and other options of programs, for a move file.
+    pub fn refuse_for_moves(&self, others: &[(&str, bool)]) -> Result<(), Failure> {
+        let own = [
             ("--machine", self.machine.is_some()),
             ("--tolerance", self.tolerance.is_some()),
-            ("--at", !self.at.is_empty()),
             ("--blocks", self.blocks.is_some()),
         ];
-        match given.iter().find(|(_, given)| *given) {
+        match own.iter().chain(others).find(|(_, given)| *given) {
             None => Ok(()),
             Some((option, _)) => Err(Failure::input(format!(
                 "{option} is an option of G-code programs: their names end in .ngc, .nc or .gcode"
             ))),
         }
+    }
+}
+
+impl ProgramArguments {
+    /// Refuses options of programs for a move file.
+    pub fn refuse_for_moves(&self) -> Result<(), Failure> {
+        self.planner.refuse_for_moves(&[("--at", !self.at.is_empty())])
     }
 }

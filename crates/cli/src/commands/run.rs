@@ -1,16 +1,23 @@
-//! `carrystep run` and `jog`: plan the moves, connect to the board, stream them and report the
-//! outcome.
+//! `carrystep run` of move files, and `jog`: plan the moves, connect to the board, stream them and
+//! report the outcome.
 
 use crate::arguments::{Jog, PortArguments, RunArguments};
+use crate::commands::run_program;
 use crate::connection;
-use crate::drive::{Driven, Streamed, drive};
+use crate::drive::{Driven, Moves, drive};
 use crate::failure::Failure;
+use crate::memory::BoardMemory;
 use crate::{job, output};
 use carrystep_files::{Machine, MoveFile, MoveSource, SourceText, decimal};
+use carrystep_program::is_program;
 use std::path::Path;
 
-/// Executes the moves of a file.
+/// Executes the moves of a file, or a program.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    if is_program(&arguments.file) {
+        return told(&run_program::run(arguments)?, arguments.json);
+    }
+    arguments.planner.refuse_for_moves(&[("--unhomed", arguments.unhomed)])?;
     let source = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
     told(&moved(source, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
@@ -45,9 +52,10 @@ fn moved(
     into_limit: bool,
 ) -> Result<Driven, Failure> {
     let machine = source.machine.clone();
-    let streamed = Streamed::new(source)?;
-    let connection = connection::to_machine(port, &machine, name, command)?;
-    drive(connection, &streamed, into_limit)
+    let moves = Moves::new(source)?;
+    let mut connection = connection::to_machine(port, &machine, name, command)?;
+    let memory = BoardMemory::recall(&mut connection);
+    drive(connection, memory, moves.plan(), &moves.itinerary(), into_limit)
 }
 
 /// The failure for a jog of less than half a step, which states the size of a step.

@@ -45,8 +45,24 @@ pub struct Driven {
     pub planned_s: f64,
     /// Seconds that the run took, including power-up and status requests.
     pub run_s: f64,
+    /// The G-code program, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program: Option<ProgramDriven>,
     /// Each axis.
     pub axes: Vec<AxisDriven>,
+}
+
+/// What is reported of a G-code program beside the axes.
+#[derive(Debug, Clone, JsonSchema, Serialize)]
+pub struct ProgramDriven {
+    /// The last line that was read.
+    pub lines: u64,
+    /// The axes whose `travel` was a bound: those that are homed and have one.
+    pub soft_limits: Vec<String>,
+    /// How long the motion goes on at least if the host sends nothing more, ms.
+    pub horizon_ms: u64,
+    /// How often the program has waited for somebody to let it go on: M0, M1, M6.
+    pub waits: u64,
 }
 
 /// An axis that caused a stop.
@@ -92,6 +108,7 @@ impl fmt::Display for Driven {
                 "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}"
             )?;
         }
+        self.program.iter().try_for_each(|program| write!(f, "{program}"))?;
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
             (How::Done, false) => {
@@ -123,5 +140,16 @@ impl fmt::Display for Driven {
                 })
             }
         }
+    }
+}
+
+impl fmt::Display for ProgramDriven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { lines, soft_limits, horizon_ms, waits } = self;
+        let bounds = match &soft_limits[..] {
+            [] => "no soft limits".to_owned(),
+            names => format!("soft limits of {}", names.join(", ")),
+        };
+        writeln!(f, "{lines} lines, {waits} waits, {bounds}, horizon {horizon_ms} ms")
     }
 }

@@ -1,55 +1,155 @@
-//! The segments of a plan in the order in which the link asks for them.
+//! A G-code program as a board is driven through it.
 
-use carrystep_core::Segment;
-use carrystep_link::{Command, SegmentSource};
-use carrystep_plan::{PlannedMove, Survey};
-use carrystep_profile::Reader;
-use std::collections::VecDeque;
-use std::sync::Arc;
+use super::itinerary::{Itinerary, Plan};
+use super::outcome::ProgramDriven;
+use super::place::Place;
+use super::shared::Shared;
+use crate::failure::Failure;
+use crate::pass::{Kept, RowsAhead};
+use crate::program;
+use carrystep_core::OutputChange;
+use carrystep_files::Axis;
+use carrystep_job::Hold;
+use carrystep_link::supply::{Starved, Supply};
+use carrystep_link::{Command, SegmentSource, Wish};
+use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey};
+use carrystep_report::Detail;
+use carrystep_runner::{Horizon, Stretches, Wait};
+use std::cell::RefCell;
 
-/// The segments of a plan, which is made while they are sent.
-pub(super) struct PlannedProgram {
-    moves: Reader<Arc<PlannedMove>>,
-    /// For each axis, the segments of the moves that were read and that have not been sent.
-    segments: Vec<VecDeque<Segment>>,
-    /// The starts of these moves.
-    starts: VecDeque<u8>,
+/// The row in which the outputs of a program that is ended go off, seconds.
+const LAST_ROW: f64 = 0.004;
+
+/// Number of rows between two looks at requests for a stop while a program is planned.
+const ROWS_OF_A_LOOK: u64 = 1024;
+
+/// A program that was planned once to its end, and that the link can send.
+pub struct PlannedProgram<'a> {
+    file: &'a ProgramFile,
+    survey: Survey,
+    seconds: f64,
+    first: Vec<i8>,
+    horizon: Horizon,
+    soft_limits: Vec<String>,
 }
 
-impl PlannedProgram {
-    pub(super) fn new(survey: &Survey) -> Self {
-        let segments = survey.machine().axes.iter().map(|_| VecDeque::new()).collect();
-        Self { moves: survey.begin().moves, segments, starts: VecDeque::new() }
-    }
-
-    /// Reads the next move; `None` if there is none.
-    fn read(&mut self) -> Option<()> {
-        for command in self.moves.next()?.commands().iter().filter_map(Command::of) {
-            match command {
-                Command::Segment { axis, segment } => {
-                    self.segments.get_mut(usize::from(axis))?.push_back(segment);
+impl<'a> PlannedProgram<'a> {
+    /// Plans a program to its end. `wish` is called now and then; the planner ends when it is a
+    /// stop.
+    ///
+    /// # Errors
+    /// A mistake in the program, a line that is too slow to keep the queues full, or a stop.
+    pub fn new(
+        file: &'a ProgramFile,
+        place: &Place,
+        mut wish: impl FnMut() -> Wish,
+    ) -> Result<Self, Failure> {
+        let machine = file.machine();
+        let axes = machine.axes.len();
+        let starved =
+            |error: Starved| Failure::input(format!("{}: {error}", file.path().display()));
+        let mut supply =
+            Supply::new(axes as u8, machine.timebase.tick_ns(), machine.queue, machine.baud);
+        let (mut first, mut rows) = (vec![0; axes], 0_u64);
+        let (survey, _) = program::survey(file, Detail::Figures, |row| {
+            for ((number, way), &segment) in (0..).zip(&mut first).zip(&row.segments) {
+                if *way == 0 {
+                    let moves = [segment.v, segment.a, segment.j].into_iter().find(|of| *of != 0);
+                    *way = moves.map_or(0, |of| of.signum() as i8);
                 }
-                Command::Start { mask } => self.starts.push_back(mask),
-                // Move files change no outputs.
-                Command::Outputs(_) => {}
+                supply.add(&Command::Segment { axis: number, segment }).map_err(starved)?;
             }
+            rows += 1;
+            if rows.is_multiple_of(ROWS_OF_A_LOOK) && wish() == Wish::Stop {
+                let message = "stopped while the program was planned; nothing was sent";
+                return Err(Failure::Run(message.to_owned()));
+            }
+            Ok(())
+        })?;
+        supply.finish().map_err(starved)?;
+        let named = |(axis, soft): (&Axis, &bool)| soft.then(|| axis.name.clone());
+        let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
+        let horizon = Horizon::of_queue(machine.queue as u64);
+        let seconds = survey.ticks as f64 * machine.timebase.tick_seconds();
+        Ok(Self { file, survey, seconds, first, horizon, soft_limits })
+    }
+
+    /// A warning if a host that is loaded may well be late.
+    pub fn warning(&self) -> Option<String> {
+        let ms = self.horizon.ms();
+        self.horizon.is_short().then(|| {
+            format!(
+                "the queues of the board hold {ms} ms of motion: if this computer is busy for longer, the axes ramp down. \
+                 queue_depth in the machine file makes them deeper where the part has the memory"
+            )
+        })
+    }
+
+    /// What the board is to do.
+    pub fn plan(&self) -> Plan<'_> {
+        Plan {
+            machine: self.file.machine(),
+            seconds: self.seconds,
+            first: &self.first,
+            steps: self.survey.axes.iter().map(AxisSurvey::steps).collect(),
+            program: Some(ProgramDriven {
+                lines: self.survey.counts.lines,
+                soft_limits: self.soft_limits.clone(),
+                horizon_ms: self.horizon.ms(),
+                waits: 0,
+            }),
         }
-        Some(())
+    }
+
+    /// Runs `drive` with the way there, which is planned again while it is sent.
+    ///
+    /// # Errors
+    /// As [`Rows::new`] and [`Hold::new`].
+    pub fn along<T>(
+        &self,
+        drive: impl FnOnce(&dyn Itinerary) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let (file, kept) = (self.file, Kept::default());
+        let machine = file.machine();
+        // Signals hold the program. What stops it ends the reading of these rows.
+        let rows = RowsAhead::until(Rows::new(file)?, || false);
+        let rows = kept.until_an_error(rows);
+        let hold = Hold::new(machine).map_err(|error| Failure::input(error.to_string()))?;
+        let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold));
+        drive(&ProgramStretches { file, kept: &kept, stretches })
     }
 }
 
-impl SegmentSource for PlannedProgram {
-    fn segment(&mut self, axis: u8) -> Option<Segment> {
-        while self.segments.get(usize::from(axis))?.is_empty() {
-            self.read()?;
-        }
-        self.segments[usize::from(axis)].pop_front()
+/// The stretches of a program.
+struct ProgramStretches<'a, I: Iterator<Item = Row>> {
+    file: &'a ProgramFile,
+    kept: &'a Kept,
+    stretches: RefCell<Stretches<I>>,
+}
+
+impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
+    fn begin(&self) -> Option<Vec<Wait>> {
+        self.stretches.borrow_mut().begin()
     }
 
-    fn start(&mut self) -> Option<u8> {
-        while self.starts.is_empty() {
-            self.read()?;
-        }
-        self.starts.pop_front()
+    fn source(&self) -> Box<dyn SegmentSource + '_> {
+        Box::new(Shared(&self.stretches))
+    }
+
+    fn hold(&self) -> bool {
+        self.stretches.borrow_mut().hold()
+    }
+
+    fn end(&self) {
+        let machine = self.file.machine();
+        let duty = (machine.outputs.pwm_divider != 0).then_some(0);
+        let off = OutputChange { mask: machine.outputs.exist, levels: 0, duty };
+        let ticks = (LAST_ROW / machine.timebase.tick_seconds()).ceil() as u32;
+        self.stretches.borrow_mut().end_with(off, ticks.max(1));
+    }
+
+    fn whole(&self) -> Result<(), Failure> {
+        self.kept.error()?;
+        Ok(self.file.same()?)
     }
 }

@@ -51,6 +51,8 @@ mod program_outputs;
 mod programs;
 #[cfg(target_os = "linux")]
 mod reports;
+#[cfg(unix)]
+mod run_programs;
 mod schemas;
 mod shard_merges;
 #[cfg(unix)]

@@ -14,8 +14,10 @@ pub struct Axis {
     pub distance: i128,
     /// A in the last tick so far.
     pub acceleration: i128,
-    /// Greatest magnitudes: V, A, J, and a jump of A between two rows.
-    pub peaks: [i128; 4],
+    /// V that the last row would have in the tick after its last one.
+    pub speed: i128,
+    /// Greatest magnitudes: V, A, J, a jump of A and a jump of V between two rows.
+    pub peaks: [i128; 5],
 }
 
 impl Axis {
@@ -43,7 +45,9 @@ impl Axis {
         self.peaks[1] = self.peaks[1].max(a.abs()).max(end.abs());
         self.peaks[2] = self.peaks[2].max(j.abs());
         self.peaks[3] = self.peaks[3].max((a - self.acceleration).abs());
+        self.peaks[4] = self.peaks[4].max((i128::from(s.v) - self.speed).abs());
         self.acceleration = end;
+        self.speed = Self::speed(s, last + 1);
         self.distance = self.after(s, last + 1);
     }
 }
@@ -79,15 +83,17 @@ impl Replay {
     }
 
     /// Panics if an axis was over a limit of the machine, J = A / 4 ms where it has none, or if its
-    /// acceleration jumped by over 2 % of its limit. The tick is 1 us.
+    /// acceleration jumped by over 2 % of its limit, or its speed by more than the acceleration limit
+    /// gives in a tick. The tick is 1 us.
     pub fn assert_limits(&self, machine: &Machine) {
         for (state, axis) in self.axes.iter().zip(&machine.axes) {
             let value = |x: &carrystep_files::BigDecimal| x.to_string().parse::<f64>().unwrap();
             let (v, a) = (value(&axis.speed_limit), value(&axis.accel_limit));
             let j = axis.jerk_limit.as_ref().map_or(a / 0.004, value);
-            let most = [v * 1e-6, a * 1e-12, j * 1e-18, a * 1e-12 * 0.02].map(|x| x * STEP);
+            let most =
+                [v * 1e-6, a * 1e-12, j * 1e-18, a * 1e-12 * 0.02, a * 1e-12].map(|x| x * STEP);
             for (what, (peak, most)) in
-                ["V", "A", "J", "jump"].iter().zip(state.peaks.iter().zip(most))
+                ["V", "A", "J", "jump of A", "jump of V"].iter().zip(state.peaks.iter().zip(most))
             {
                 // The limits here are floats, which are exact to 53 bits.
                 assert!(

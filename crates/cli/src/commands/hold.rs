@@ -1,0 +1,40 @@
+//! `carrystep hold` and `resume`: bring the program to rest with which another command drives the
+//! board, and let it go on.
+
+use crate::arguments::ProgramPortArguments;
+use crate::connection;
+use crate::control::{self, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRequest};
+use crate::failure::Failure;
+use crate::output;
+use std::time::Duration;
+
+/// How long the driving command may take to answer. It polls its socket every few milliseconds, but
+/// a busy computer may delay it.
+const ANSWER: Duration = Duration::from_secs(2);
+
+/// Brings the program to rest.
+pub fn hold(arguments: &ProgramPortArguments) -> Result<(), Failure> {
+    ask(&arguments.port.name, SocketRequest::Hold, "comes to rest")
+}
+
+/// Lets the program go on.
+pub fn resume(arguments: &ProgramPortArguments) -> Result<(), Failure> {
+    ask(&arguments.port.name, SocketRequest::Resume, "goes on")
+}
+
+/// Asks the command that drives the board at this port.
+fn ask(port: &str, request: SocketRequest, done: &str) -> Result<(), Failure> {
+    let state = if request == SocketRequest::Hold { "moves" } else { "waits" };
+    let nothing = || {
+        Failure::input(format!("no program {state} at {port}: `carrystep status` shows its state"))
+    };
+    let Some(mut caller) = control::call(port) else { return Err(nothing()) };
+    match caller.ask(request, ANSWER) {
+        Reply::Line(line) if [NOTHING_MOVES, NOTHING_WAITS].contains(&&*line) => Err(nothing()),
+        Reply::Line(_) => output::print(&format!("{} {done}\n", caller.holder)),
+        Reply::Ended => Err(nothing()),
+        Reply::Silent => {
+            Err(Failure::Run(connection::hangs(port, &caller.holder, request, "answer")))
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! `carrystep run` of G-code programs: find where the machine is, plan the program from there to
+//! its end, then stream it while it is planned again.
+
+use crate::arguments::RunArguments;
+use crate::drive::{Driven, Place, PlannedProgram, drive};
+use crate::failure::Failure;
+use crate::memory::BoardMemory;
+use crate::{connection, program};
+use carrystep_program::{Letters, ProgramError, ProgramFile, Settings};
+use std::io::{self, Write as _};
+
+/// Runs a program. Nothing moves before it has been planned to its end.
+pub fn run(arguments: &RunArguments) -> Result<Driven, Failure> {
+    program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
+    let (path, planner) = (&arguments.file, &arguments.planner);
+    let (machine_path, machine) = program::machine(path, planner)?;
+    let fault = |fault| ProgramError::new(machine_path, 0, fault);
+    let letters = Letters::new(&machine).map_err(fault)?;
+    // A file that cannot be opened is reported before the board is looked for.
+    let _ = carrystep_files::open(path).map_err(|error| Failure::input(error.to_string()))?;
+    let mut connection = connection::to_machine(&arguments.port, &machine, machine_path, "run")?;
+    let memory = BoardMemory::recall(&mut connection);
+    let status = *connection.board.status();
+    let place = Place::find(&machine, &letters, &memory, &status.positions, arguments.unhomed)?;
+    let settings = Settings { start: place.start, ..program::settings(planner) };
+    let file = ProgramFile::open(path, place.bounded(&machine), machine_path, settings)?;
+    let planned = PlannedProgram::new(&file, &place, || connection.control.wish(&status))?;
+    if let Some(warning) = planned.warning() {
+        // If this write fails, there is no channel left to report it.
+        let _ = writeln!(io::stderr(), "warning: {warning}");
+    }
+    planned.along(|itinerary| {
+        drive(connection, memory, planned.plan(), itinerary, arguments.into_limit)
+    })
+}

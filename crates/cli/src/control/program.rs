@@ -1,0 +1,69 @@
+//! What the user wants of a program that a command runs: to hold it, to let it go on, to end it.
+
+use crate::interrupt;
+
+/// Signals that ramp the axes down while a program moves.
+const STOP: u32 = 3;
+/// Signals that end a program as soon as it rests.
+const END: u32 = 2;
+
+/// The requests for a program.
+#[derive(Debug, Default)]
+pub struct ProgramControl {
+    /// What the program waits for.
+    pub(super) waits: Option<String>,
+    holds: bool,
+    resumed: bool,
+    /// The number of signals before the present motion.
+    before: u32,
+    /// The number of signals when the present rest began.
+    rested: u32,
+}
+
+impl ProgramControl {
+    /// The program rests from now on, and waits for this.
+    pub fn rests(&mut self, waits: String) {
+        (self.waits, self.resumed, self.rested) = (Some(waits), false, interrupt::count());
+    }
+
+    /// The program moves on.
+    pub fn moves(&mut self) {
+        *self = Self { before: interrupt::count(), ..Self::default() };
+    }
+
+    /// Notes a request for a hold; false if the program rests.
+    pub(super) fn hold(&mut self) -> bool {
+        self.holds |= self.waits.is_none();
+        self.waits.is_none()
+    }
+
+    /// Notes that the program may go on; false if it moves.
+    pub(super) fn resume(&mut self) -> bool {
+        self.resumed |= self.waits.is_some();
+        self.waits.is_some()
+    }
+
+    /// Whether the moving program is to come to rest.
+    pub fn holds(&self) -> bool {
+        self.holds || self.signals() > 0
+    }
+
+    /// Whether the resting program is to go on.
+    pub const fn resumed(&self) -> bool {
+        self.resumed
+    }
+
+    /// Whether the resting program is to end.
+    pub fn ends(&self) -> bool {
+        self.signals() >= END || interrupt::count() > self.rested
+    }
+
+    /// Whether the axes are to ramp down at once.
+    pub(super) fn stops(&self) -> bool {
+        self.signals() >= STOP
+    }
+
+    fn signals(&self) -> u32 {
+        interrupt::count().saturating_sub(self.before)
+    }
+}

@@ -1,0 +1,45 @@
+//! What a board is to do: the plan's figures, and its segments in stretches from rest to rest.
+
+use super::outcome::ProgramDriven;
+use crate::failure::Failure;
+use carrystep_files::Machine;
+use carrystep_link::SegmentSource;
+use carrystep_runner::Wait;
+
+/// The figures of a plan that has been planned to its end.
+pub struct Plan<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// How long the motion lasts, s.
+    pub seconds: f64,
+    /// Direction of the first motion of each axis: 1, -1, or 0 if it does not move.
+    pub first: &'a [i8],
+    /// Steps of each axis from the beginning to the end.
+    pub steps: Vec<i64>,
+    /// What is reported of a G-code program.
+    pub program: Option<ProgramDriven>,
+}
+
+/// The segments of a plan, stretch by stretch.
+pub trait Itinerary {
+    /// Begins the next stretch, and returns what is waited for before. `None` at the end.
+    fn begin(&self) -> Option<Vec<Wait>>;
+
+    /// The segments of the stretch that was begun last.
+    fn source(&self) -> Box<dyn SegmentSource + '_>;
+
+    /// Ends the present stretch early, on the path. Returns false if it ends by itself before, or
+    /// cannot be held.
+    fn hold(&self) -> bool {
+        false
+    }
+
+    /// Drops what is left, except that all outputs go off in a last stretch.
+    fn end(&self) {}
+
+    /// Checks that nothing was missing.
+    ///
+    /// # Errors
+    /// The file has changed since it was planned first, or cannot be read any more.
+    fn whole(&self) -> Result<(), Failure>;
+}

@@ -1,0 +1,337 @@
+//! G-code programs on virtual boards: from the file to the capture, places at which a program waits,
+//! where it begins, and what is refused before anything moves.
+
+use crate::command::{Folder, Ran};
+use crate::schemas;
+use crate::stops::{drives, moving};
+use crate::virtual_boards::{Board, document, passed};
+use serde_json::Value;
+use std::process::{Child, Command};
+use std::time::Duration;
+
+/// Three axes, of which x can be homed. The watchdog is long, because the computer that runs these
+/// tests may be busy.
+const MACHINE: &str = r#"[machine]
+clock_hz = 48_000_000
+tick_ns = 2000
+
+[machine.guard]
+watchdog_ms = 4000
+debounce_us = 100
+
+[machine.link]
+baud = 3_000_000
+
+[machine.outputs]
+count = 2
+spindle = 0
+
+[[machine.axis]]
+name = "x"
+steps_per_unit = 80
+speed_limit = 50
+accel_limit = 1000
+driver = "tmc2209"
+travel = [-5, 20]
+
+[[machine.axis]]
+name = "y"
+steps_per_unit = 80
+speed_limit = 50
+accel_limit = 1000
+driver = "tmc2209"
+
+[[machine.axis]]
+name = "z"
+steps_per_unit = 400
+speed_limit = 20
+accel_limit = 500
+driver = "tmc2209"
+"#;
+
+/// The table of x with which it can be homed, on a machine with switches.
+const HOME: &str = r#"travel = [-5, 20]
+home = { toward = "min", seek_speed = 20, slow_speed = 2, max_travel = 30, pull_off = 1, position = 0 }
+"#;
+
+const JOB: &str = "G21 G90 F1500\nM3 S1000\nG1 X4 Y2\nG3 X2 Y4 I-2\nG0 Z1\nG1 X0 Y0 Z0\nM2\n";
+const PAUSES: &str = "G21 G90 F1500\nG1 X4\nM0\nG1 Y3\nM6 T2\nG1 Z-1\nM2\n";
+
+fn folder(job: &str) -> Folder {
+    let folder = Folder::new();
+    folder.write("machine.toml", MACHINE);
+    folder.write("job.ngc", job);
+    folder
+}
+
+fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
+    let options = format!("--machine machine.toml --port {} {options}", board.port);
+    folder.run(&format!("run job.ngc {}", options.trim_end()))
+}
+
+/// Starts the program in the background.
+fn begins(folder: &Folder, board: &Board) -> Child {
+    drives(folder, "run job.ngc --machine machine.toml", &board.port)
+}
+
+fn status(folder: &Folder, board: &Board) -> Value {
+    let ran = folder.run(&format!("status --port {} --machine machine.toml --json", board.port));
+    serde_json::from_str(&ran.stdout).unwrap_or_default()
+}
+
+/// Waits until the program waits, and returns what for.
+fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
+    loop {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        if let Some(waits) = status(folder, board)["waits"].as_str() {
+            return waits.to_owned();
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn resume(folder: &Folder, board: &Board) -> Ran {
+    folder.run(&format!("resume --port {}", board.port))
+}
+
+/// The document of a run that has passed.
+fn done(child: Child) -> Value {
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    schemas::check(&String::from_utf8(output.stdout).unwrap())
+}
+
+#[test]
+fn program_reaches_the_pins_as_it_was_planned() {
+    let folder = folder(JOB);
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
+    let ran = run(&folder, &board, "");
+    passed(&ran);
+    let told = "7 lines, 0 waits, no soft limits, horizon 28 ms\nDONE\n";
+    assert!(ran.stdout.ends_with(told), "{}", ran.stdout);
+    assert!(
+        ran.stderr.starts_with("warning: the queues of the board hold 28 ms"),
+        "{}",
+        ran.stderr
+    );
+    assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\nwrote a.vcd\n"));
+    // Every pulse in its clock, as `simulate` has it.
+    passed(&folder.run("check a.vcd job.ngc --machine machine.toml"));
+    folder.write("other.ngc", JOB.replace("X4 Y2", "X4 Y2.1"));
+    assert_eq!(folder.run("check a.vcd other.ngc --machine machine.toml").status, 1);
+}
+
+#[test]
+fn program_waits_at_pauses_until_it_is_resumed() {
+    let folder = folder(PAUSES);
+    let board = Board::new(&folder, "--fast");
+    assert_eq!(resume(&folder, &board).status, 2);
+    let mut child = begins(&folder, &board);
+    let first = waits(&folder, &board, &mut child);
+    assert_eq!(first, "pause in line 3 (M0, M1 or M60)");
+    let found = status(&folder, &board);
+    assert_eq!((&found["axes"][0]["position"], &found["idle"]), (&320.into(), &true.into()));
+    let ran = resume(&folder, &board);
+    passed(&ran);
+    assert!(ran.stdout.contains("goes on"), "{}", ran.stdout);
+    let second = waits_for_other(&folder, &board, &mut child, &first);
+    assert_eq!(second, "tool change in line 5 (M6)");
+    passed(&resume(&folder, &board));
+    let told = done(child);
+    assert_eq!((&told["program"]["waits"], &told["ended"]), (&2.into(), &"done".into()));
+    assert!(board.end().contains("\nx at 320\ny at 240\nz at -400\n"));
+}
+
+/// Waits until the program waits for something else.
+fn waits_for_other(folder: &Folder, board: &Board, child: &mut Child, first: &str) -> String {
+    loop {
+        let now = waits(folder, board, child);
+        if now != first {
+            return now;
+        }
+    }
+}
+
+#[test]
+fn stop_while_the_program_waits_ends_it_at_rest() {
+    let folder = folder(PAUSES);
+    let board = Board::new(&folder, "");
+    let mut child = begins(&folder, &board);
+    waits(&folder, &board, &mut child);
+    passed(&folder.run(&format!("stop --port {} --machine machine.toml", board.port)));
+    let told = document(child);
+    assert_eq!((&told["ended"], &told["stopped_by"]), (&"stopped".into(), &"stop".into()));
+    let found = status(&folder, &board);
+    assert_eq!((&found["fault"], &found["axes"][0]["position"]), (&false.into(), &320.into()));
+    // It begins where the machine is: x is there already.
+    let mut child = begins(&folder, &board);
+    waits(&folder, &board, &mut child);
+    assert_eq!(status(&folder, &board)["axes"][0]["position"], 320);
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+#[test]
+fn switch_that_opens_while_the_program_waits_is_reported() {
+    let folder = folder(PAUSES);
+    let mut board = Board::new(&folder, "");
+    let mut child = begins(&folder, &board);
+    waits(&folder, &board, &mut child);
+    board.press("estop 1");
+    let told = document(child);
+    assert_eq!((&told["ended"], &told["cause"]), (&"fault".into(), &"e-stop".into()));
+}
+
+#[test]
+fn program_that_runs_twice_begins_where_it_ended() {
+    let folder = folder("G91 G21 F1000\nG1 X2 Y-1\nM2\n");
+    let board = Board::new(&folder, "--fast");
+    passed(&run(&folder, &board, ""));
+    passed(&run(&folder, &board, ""));
+    assert!(board.end().contains("\nx at 320\ny at -160\nz at 0\n"));
+}
+
+#[test]
+fn machine_that_can_be_homed_has_to_be() {
+    let folder = folder("G21 F1000\nG1 X21\nM2\n");
+    let switches = MACHINE
+        .replace("debounce_us = 100", "debounce_us = 100\nlimits = \"pair\"")
+        .replace("travel = [-5, 20]\n", HOME);
+    folder.write("machine.toml", switches);
+    let board = Board::new(&folder, "--fast --min x=-400");
+    let ran = run(&folder, &board, "");
+    assert_eq!(ran.status, 2);
+    assert!(ran.stderr.contains("x is not homed"), "{}", ran.stderr);
+    // Without its zero, nothing bounds the program.
+    passed(&run(&folder, &board, "--unhomed"));
+    passed(&folder.run(&format!("home --machine machine.toml --port {}", board.port)));
+    // From now on, the soft limit holds, and the line is named.
+    let ran = run(&folder, &board, "");
+    assert_eq!(ran.status, 2);
+    let why = "x would go to 21 mm, beyond its travel of -5 to 20 mm";
+    assert!(ran.stderr.contains(why) && ran.stderr.contains("job.ngc:2"), "{}", ran.stderr);
+    folder.write("job.ngc", "G21 F1000\nG1 X3\nM2\n");
+    let ran = run(&folder, &board, "");
+    passed(&ran);
+    assert!(ran.stdout.contains("soft limits of x"), "{}", ran.stdout);
+    // Machine zero is the switch at -400 steps.
+    assert!(board.end().contains("\nx at -160\n"));
+}
+
+#[test]
+fn mistakes_are_found_before_anything_moves() {
+    let folder = folder("G21 F1000\nG1 X3\nG1 Q7\nM2\n");
+    let board = Board::new(&folder, "--fast");
+    let ran = run(&folder, &board, "");
+    assert_eq!(ran.status, 2);
+    assert!(ran.stderr.contains("job.ngc:3"), "{}", ran.stderr);
+    for (command, why) in [
+        ("run job.ngc", "a G-code program needs a machine"),
+        ("run job.ngc --machine machine.toml --fit-ns 5", "--fit-ns is not available"),
+        ("run none.ngc --machine machine.toml", "none.ngc"),
+        ("run machine.toml --unhomed", "--unhomed is an option of G-code programs"),
+        ("run machine.toml --tolerance 1", "--tolerance is an option of G-code programs"),
+    ] {
+        let ran = folder.run(&format!("{command} --port {}", board.port));
+        assert_eq!(ran.status, 2, "{command}");
+        assert!(ran.stderr.contains(why), "{command}: {}", ran.stderr);
+    }
+    assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
+}
+
+/// A path of some seconds, without a rest.
+fn long() -> String {
+    let mut text = "G21 G90 G64 P0.02 F1800\nM3 S1000\n".to_owned();
+    for turn in 1..6 {
+        text += &format!("G1 X{turn} Y{turn}\nG3 X{turn} Y{turn} I-3 J1\nG1 X-{turn} Z0.{turn}\n");
+    }
+    text + "G1 X0 Y0 Z0\nM2\n"
+}
+
+fn hold(folder: &Folder, board: &Board) -> Ran {
+    folder.run(&format!("hold --port {}", board.port))
+}
+
+fn signal(child: &Child) {
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+}
+
+fn positions(found: &Value) -> Vec<i64> {
+    let axes = found["axes"].as_array().unwrap();
+    axes.iter().map(|axis| axis["position"].as_i64().unwrap()).collect()
+}
+
+#[test]
+fn held_program_rests_on_its_path_and_goes_on() {
+    let folder = folder(&long());
+    let board = Board::new(&folder, "--vcd a.vcd");
+    assert_eq!(hold(&folder, &board).status, 2);
+    let mut child = begins(&folder, &board);
+    moving(&folder, &mut child, &board.port);
+    let mut earlier = Vec::new();
+    for _ in 0..3 {
+        let ran = hold(&folder, &board);
+        passed(&ran);
+        assert!(ran.stdout.contains("comes to rest"), "{}", ran.stdout);
+        assert!(waits(&folder, &board, &mut child).starts_with("hold in line "));
+        let rest = positions(&status(&folder, &board));
+        assert_eq!(rest, positions(&status(&folder, &board)));
+        assert_ne!(rest, earlier);
+        earlier = rest;
+        assert_eq!(hold(&folder, &board).status, 2, "it rests already");
+        passed(&resume(&folder, &board));
+        while status(&folder, &board)["idle"] == true {}
+    }
+    let told = done(child);
+    assert_eq!((&told["ended"], &told["program"]["waits"]), (&"done".into(), &3.into()));
+    assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
+    let ran = folder.run("check a.vcd job.ngc --machine machine.toml --path-only");
+    passed(&ran);
+    // Without the holds, the times would be those of the plan.
+    assert_eq!(folder.run("check a.vcd job.ngc --machine machine.toml").status, 1);
+}
+
+#[test]
+fn second_signal_ends_the_held_program_at_rest() {
+    let folder = folder(&long());
+    let board = Board::new(&folder, "--vcd a.vcd");
+    let mut child = begins(&folder, &board);
+    moving(&folder, &mut child, &board.port);
+    signal(&child);
+    waits(&folder, &board, &mut child);
+    let rest = positions(&status(&folder, &board));
+    signal(&child);
+    let told = document(child);
+    assert_eq!((&told["ended"], &told["stopped_by"]), (&"stopped".into(), &"interrupt".into()));
+    let found = status(&folder, &board);
+    assert_eq!((positions(&found), &found["fault"]), (rest, &false.into()));
+    // The spindle was on, and is off.
+    board.end();
+    let vcd = std::fs::read_to_string(folder.path("a.vcd")).unwrap();
+    let code = vcd.lines().find(|line| line.contains(" output_0 ")).unwrap();
+    let code = code.split_whitespace().nth(3).unwrap();
+    let levels: Vec<&str> = vcd.lines().filter(|line| line.get(1..) == Some(code)).collect();
+    assert_eq!(levels.last(), Some(&&*format!("0{code}")), "{levels:?}");
+    assert!(levels.contains(&&*format!("1{code}")), "{levels:?}");
+}
+
+#[test]
+fn third_signal_ramps_the_axes_down() {
+    let folder = folder("G21 G90 F3000\nG1 X400\nM2\n");
+    // It takes seconds to come to rest.
+    let machine = MACHINE.replacen("accel_limit = 1000", "accel_limit = 15", 1);
+    folder.write("machine.toml", machine);
+    let board = Board::new(&folder, "");
+    let mut child = begins(&folder, &board);
+    while positions(&moving(&folder, &mut child, &board.port))[0] < 2000 {}
+    for _ in 0..3 {
+        signal(&child);
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    let told = document(child);
+    // A hold would have waited.
+    assert_eq!((&told["ended"], &told["program"]["waits"]), (&"stopped".into(), &0.into()));
+    assert_eq!(status(&folder, &board)["idle"], true);
+}

@@ -1,0 +1,308 @@
+//! Holds: the motion comes to rest on the planned curve, and later goes on along it.
+//!
+//! The planned rows stay what they are. Only time changes: the motors are at x(p(t)) where the plan
+//! has x(p), and the rate dp/dt falls from 1 to 0 or rises from 0 to 1 ([`law`]). So the tool stays on
+//! the planned curve, whatever it is, and behind the resumed motion the planned rows follow bit for
+//! bit.
+//!
+//! ```text
+//! planned    |----|----|----|----|----|----|----|----|----|----|    p, rows of equal length
+//!                 ^ from       ^ rest            ^ first row that is as planned
+//! re-timed        |-----|------|     |------|----|----|----|----|    t
+//! ```
+//!
+//! A re-timed row ends where the planned one does, so that its motors follow a piece of one cubic
+//! each. It is checked like all others: exactly, against each limit. A transition that breaks a
+//! limit is tried again over more time. Where the planned motion itself uses the whole
+//! acceleration, none may be possible; then a later row has to begin it.
+
+mod curve;
+mod law;
+
+pub use curve::{Curve, CurvePlace};
+
+use crate::error::JobError;
+use crate::rhythm::LONGEST;
+use crate::row::Row;
+use crate::turn::{Pair, quiet};
+use crate::weave::obeys;
+use carrystep_core::Segment;
+use carrystep_files::Machine;
+use carrystep_plan::exact::{ExactLimits, travel};
+use curve::{Sample, between};
+use law::{Law, Way};
+
+/// The planned time of the shortest stop that is tried, seconds.
+const FIRST_TRY: f64 = 0.008;
+/// By how much each try is longer than the one before.
+const LONGER: f64 = 1.2;
+/// How long a hold may wait before it begins, to be at rest sooner, seconds.
+const PROMPT: f64 = 0.03;
+/// The part of [`Hold::least`] below which no stop is tried: the plan may slow down by itself.
+const HOPELESS: f64 = 0.5;
+/// The planned time of the longest transition, seconds.
+const LONGEST_TRY: f64 = 20.0;
+
+/// Re-times rows of a machine's plans.
+#[derive(Debug, Clone)]
+pub struct Hold {
+    limits: Vec<ExactLimits>,
+    /// For each motor, the ticks around a reversal that have to be free of edges.
+    quiet: Vec<u32>,
+    tick_seconds: f64,
+    /// Ticks of the longest row.
+    longest: u32,
+}
+
+/// A hold: the rows that lead to rest, and those that lead back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    /// The rows with which the motion leaves the plan; the last one ends at rest.
+    pub stop: Vec<Row>,
+    /// The rows with which it comes back; the first one begins at rest.
+    pub resume: Vec<Row>,
+    /// Where on the planned curve the motors rest.
+    pub place: CurvePlace,
+    /// The planned row that follows the last one of `resume`; the number of rows if the plan ends
+    /// there.
+    pub next: usize,
+}
+
+impl Hold {
+    /// Holds of plans for a machine.
+    ///
+    /// # Errors
+    /// [`JobError::Axes`].
+    pub fn new(machine: &Machine) -> Result<Self, JobError> {
+        let tick_seconds = machine.timebase.tick_seconds();
+        Ok(Self {
+            limits: crate::limits::exact(machine)?,
+            quiet: machine.axes.iter().map(|axis| quiet(&axis.pins, &machine.timebase)).collect(),
+            tick_seconds,
+            longest: ((LONGEST / tick_seconds) as u32).max(1),
+        })
+    }
+
+    /// The hold that brings the motion to rest first, of those that begin with a planned row from
+    /// `first` on. It begins within [`PROMPT`], or else as soon as the limits allow. Gives the row
+    /// too with which it begins. `None` if no hold keeps the limits before the rows end.
+    pub fn hold(&self, curve: &Curve<'_>, first: usize) -> Option<(usize, Held)> {
+        let prompt = (PROMPT / self.tick_seconds) as u64;
+        let begin = |row| curve.ticks_to(CurvePlace { row, tick: 0 });
+        let since = begin(first);
+        let mut best: Option<(u64, usize, Held)> = None;
+        for from in first..curve.rows().len() {
+            let waited = begin(from) - since;
+            let rested = best.as_ref().map_or(u64::MAX, |(rested, ..)| *rested);
+            if waited >= rested || (waited > prompt && best.is_some()) {
+                break;
+            }
+            if let Some(held) = self.from(curve, from, rested - waited) {
+                let ticks = held.stop.iter().map(|row| u64::from(row.ticks)).sum::<u64>();
+                best = Some((waited + ticks, from, held));
+            }
+        }
+        best.map(|(_, from, held)| (from, held))
+    }
+
+    /// The hold that begins with a row and takes the shortest time, if that is less than `most`
+    /// ticks.
+    fn from(&self, curve: &Curve<'_>, from: usize, most: u64) -> Option<Held> {
+        let begin = curve.ticks_to(CurvePlace { row: from, tick: 0 });
+        let longest = ((LONGEST_TRY / self.tick_seconds) as u64).min(curve.ticks() - begin);
+        let before = curve.segments(from.checked_sub(1));
+        let mut planned = (FIRST_TRY / self.tick_seconds).max(self.least(curve, begin) * HOPELESS);
+        while planned as u64 <= longest && 2 * (planned as u64) < most {
+            let law = Law::over(Way::Stop, planned as u64);
+            let end = begin + planned as u64;
+            let place = curve.place(end);
+            if let Some(stop) = self.rows(curve, (begin, end), law)
+                && self.keep(curve.at(curve.place(begin)), &before, &stop, &curve.segments(None))
+                && let Some((resume, next)) = self.resume(curve, place)
+            {
+                return Some(Held { stop, resume, place, next });
+            }
+            planned = (planned * LONGER).ceil();
+        }
+        None
+    }
+
+    /// The planned time of the shortest stop of a motion that goes on evenly from a planned tick,
+    /// ticks: half of the time in which the law's steepest rate changes its speed.
+    fn least(&self, curve: &Curve<'_>, tick: u64) -> f64 {
+        let motors = self.limits.iter().zip(curve.sample(tick as f64));
+        let times = motors.map(|(limits, motor)| motor.speed.abs() / limits.acceleration as f64);
+        Law::STEEPEST / 2.0 * times.fold(0.0, f64::max)
+    }
+
+    /// The rows that bring the motion from rest at a place back to the planned one, soon, and the
+    /// planned row that follows.
+    fn resume(&self, curve: &Curve<'_>, place: CurvePlace) -> Option<(Vec<Row>, usize)> {
+        let begin = curve.ticks_to(place);
+        let mut wanted = FIRST_TRY / self.tick_seconds / 2.0;
+        for next in place.row + 1..=curve.rows().len() {
+            let end = curve.ticks_to(CurvePlace { row: next, tick: 0 });
+            let planned = (end - begin) as f64;
+            if planned * self.tick_seconds > LONGEST_TRY {
+                return None;
+            }
+            if planned >= wanted {
+                let law = Law::over(Way::Resume, end - begin);
+                let before = curve.segments(None);
+                if let Some(rows) = self.rows(curve, (begin, end), law)
+                    && self.keep(curve.at(place), &before, &rows, &curve.segments(Some(next)))
+                {
+                    return Some((rows, next));
+                }
+                wanted = planned * LONGER;
+            }
+        }
+        None
+    }
+
+    /// The rows of a transition between two planned ticks; `None` if there are none of such lengths.
+    fn rows(&self, curve: &Curve<'_>, (begin, end): (u64, u64), law: Law) -> Option<Vec<Row>> {
+        let ends = self.ends(curve, (begin, end), law)?;
+        let first = curve.place(begin);
+        let mut at = curve.at(first);
+        let sample = |tick: u64| -> Vec<Sample> {
+            let rate = law.rate(tick as f64);
+            let mut samples = curve.sample(begin as f64 + law.planned(tick as f64));
+            samples.iter_mut().for_each(|sample| sample.speed *= rate);
+            samples
+        };
+        let (mut before, mut now) = (0, sample(0));
+        let mut rows = Vec::with_capacity(ends.len());
+        let mut source = first.row;
+        for (number, &tick) in ends.iter().enumerate() {
+            let ticks = (tick - before) as u32;
+            let mut next = sample(tick);
+            if number + 1 == ends.len() {
+                let exact = curve.at(curve.place(end));
+                next.iter_mut().zip(exact).for_each(|(next, at)| next.at = at);
+            }
+            let mut segments = Vec::with_capacity(at.len());
+            for ((at, &from), &to) in at.iter_mut().zip(&now).zip(&next) {
+                let segment = between(*at, ticks, from, to)?;
+                *at += travel(&segment, ticks.into());
+                segments.push(segment);
+            }
+            let planned = begin + law.planned(before as f64).round() as u64;
+            let here = curve.place(planned).row.min(curve.rows().len() - 1);
+            // What changes where a planned row begins, changes with the first row from there on.
+            let since = if number == 0 && first.tick == 0 { source } else { source + 1 };
+            let marks = curve.rows().get(since..=here).unwrap_or_default();
+            let marks = marks.iter().flat_map(|row| row.marks.iter().copied()).collect();
+            source = source.max(here);
+            rows.push(Row { ticks, segments, marks, ..curve.rows()[here].clone() });
+            (before, now) = (tick, next);
+        }
+        land(&mut rows, &at, &curve.at(curve.place(end)))?;
+        Some(rows)
+    }
+
+    /// The ends of the rows of a transition, ticks from its beginning: where the planned rows end,
+    /// and between them where a row would be too long. The last two rows have lengths without a
+    /// common divisor ([`land`]).
+    fn ends(&self, curve: &Curve<'_>, (begin, end): (u64, u64), law: Law) -> Option<Vec<u64>> {
+        let first = curve.place(begin).row;
+        let mut planned = curve.ticks_to(CurvePlace { row: first, tick: 0 });
+        let mut corners = Vec::new();
+        for row in &curve.rows()[first..] {
+            planned += u64::from(row.ticks);
+            if planned >= end {
+                break;
+            }
+            corners.push(law.tick_of(planned - begin));
+        }
+        corners.push(law.ticks());
+        let (mut ends, mut before) = (Vec::new(), 0);
+        for corner in corners {
+            let length = corner.checked_sub(before).filter(|&length| length > 0)?;
+            let pieces = length.div_ceil(self.longest.into());
+            let pieces =
+                if ends.is_empty() && corner == law.ticks() { pieces.max(2) } else { pieces };
+            ends.extend((1..=pieces).map(|piece| before + length * piece / pieces));
+            before = corner;
+        }
+        let [.., earlier, _] = ends[..] else { return None };
+        let third = ends.len().checked_sub(3).map_or(0, |at| ends[at]);
+        let lengths = |middle: u64| [middle - third, law.ticks() - middle];
+        let middle = (0..64).find_map(|by| {
+            let middle = earlier.checked_sub(by).filter(|&middle| middle > third)?;
+            let [a, b] = lengths(middle);
+            inverse(a.into(), b.into()).map(|_| middle)
+        })?;
+        let place = ends.len() - 2;
+        ends[place] = middle;
+        Some(ends)
+    }
+
+    /// Whether rows keep all limits, from the segments before them to those behind.
+    fn keep(&self, at: Vec<i128>, before: &[Segment], rows: &[Row], after: &[Segment]) -> bool {
+        let motors = self.limits.iter().zip(&self.quiet).zip(at).enumerate();
+        motors.into_iter().all(|(axis, ((limits, &quiet), at))| {
+            let first = before[axis];
+            let mut held =
+                i128::from(first.a) + (i128::from(first.ticks) - 1) * i128::from(first.j);
+            let (mut at, mut earlier) = (at - travel(&first, first.ticks.into()), first);
+            let segments = rows.iter().map(|row| row.segments[axis]).chain([after[axis]]);
+            segments.into_iter().all(|segment| {
+                let end = obeys(&segment, limits, held);
+                let is_quiet = Pair { at, before: &earlier, now: &segment }.is_quiet(quiet);
+                held = end.unwrap_or(held);
+                at += travel(&earlier, earlier.ticks.into());
+                earlier = segment;
+                end.is_ok() && is_quiet
+            })
+        })
+    }
+}
+
+/// Brings the last row exactly to `goal`, where `at` is P after it: takes from its V and adds to the
+/// V of the row before. Their lengths m and n have no common divisor, so some x m + y n are what is
+/// left, with x and y of at most n and m units.
+fn land(rows: &mut [Row], at: &[i128], goal: &[i128]) -> Option<()> {
+    let [.., before, last] = rows else { return None };
+    let (m, n) = (i128::from(before.ticks), i128::from(last.ticks));
+    let inverse = inverse(m, n)?;
+    let motors = before.segments.iter_mut().zip(&mut last.segments).zip(at.iter().zip(goal));
+    for ((before, last), (at, goal)) in motors {
+        let left = goal - at;
+        let x = (left % n * inverse).rem_euclid(n);
+        let y = (left - x * m) / n;
+        before.v = before.v.checked_add(i64::try_from(x).ok()?)?;
+        last.v = last.v.checked_add(i64::try_from(y).ok()?)?;
+    }
+    Some(())
+}
+
+/// The number x below n with x m = 1 modulo n, after Euclid; `None` if m and n have a common
+/// divisor.
+fn inverse(m: i128, n: i128) -> Option<i128> {
+    let (mut a, mut b, mut x, mut y) = (m.rem_euclid(n), n, 1, 0);
+    while a > 1 {
+        if b == 0 {
+            return None;
+        }
+        (a, b, x, y) = (b, a % b, y, x - a / b * y);
+    }
+    (a == 1 || n == 1).then(|| x.rem_euclid(n))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::inverse;
+
+    #[test]
+    fn inverse_times_its_number_is_one() {
+        for n in 1..60 {
+            for m in 1..60 {
+                match inverse(m, n) {
+                    Some(x) => assert_eq!((x * m).rem_euclid(n), 1 % n, "{m} {n}"),
+                    None => assert!((2..=n).any(|d| m % d == 0 && n % d == 0), "{m} {n}"),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Places of a program at which whoever runs it waits: for the operator, or for a tool.
+//!
+//! The planner carries such a place as a mark, as it carries changes of outputs: the row that begins
+//! there has it, and the tool rests before that row.
+
+use crate::switch::Switch;
+use carrystep_core::OutputChange;
+use carrystep_job::Row;
+use std::fmt;
+
+/// Bit of a mark: the mark is a place to wait at, and not a change of outputs.
+const WAITS: u64 = 1 << 63;
+/// Bit of such a mark: a tool change, and not a pause.
+const TOOL: u64 = 1 << 62;
+/// Bits of such a mark that hold the line.
+const LINE: u64 = TOOL - 1;
+
+/// A place at which whoever runs the program waits until somebody lets it go on. The tool rests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SyncPoint {
+    /// What is waited for: [`Switch::Pause`] or [`Switch::ToolChange`].
+    pub switch: Switch,
+    /// Line of the program.
+    pub line: u64,
+}
+
+impl SyncPoint {
+    /// The place of this event of a program; `None` if nobody waits there.
+    pub(crate) fn of(switch: Switch, line: u64) -> Option<Self> {
+        matches!(switch, Switch::Pause | Switch::ToolChange).then_some(Self { switch, line })
+    }
+
+    /// The mark that the planner carries.
+    pub(crate) const fn mark(self) -> u64 {
+        let tool = if matches!(self.switch, Switch::ToolChange) { TOOL } else { 0 };
+        WAITS | tool | (self.line & LINE)
+    }
+
+    const fn of_mark(mark: u64) -> Option<Self> {
+        if mark & WAITS == 0 {
+            return None;
+        }
+        let switch = if mark & TOOL == 0 { Switch::Pause } else { Switch::ToolChange };
+        Some(Self { switch, line: mark & LINE })
+    }
+}
+
+impl fmt::Display for SyncPoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let codes = if self.switch == Switch::ToolChange { "M6" } else { "M0, M1 or M60" };
+        write!(f, "{} in line {} ({codes})", self.switch, self.line)
+    }
+}
+
+/// The places at which to wait before a row begins, in their order.
+pub fn sync_points(row: &Row) -> impl Iterator<Item = SyncPoint> {
+    row.marks.iter().filter_map(|&mark| SyncPoint::of_mark(mark))
+}
+
+/// What changes at the outputs where a row begins.
+pub fn outputs(row: &Row) -> OutputChange {
+    let changes = row.marks.iter().filter(|&&mark| mark & WAITS == 0);
+    let changes = changes.map(|&mark| OutputChange::of_word(mark as u32));
+    changes.fold(OutputChange::NONE, OutputChange::then)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mark_gives_its_place_back() {
+        for (switch, line) in [(Switch::Pause, 0), (Switch::ToolChange, 1 << 40)] {
+            let point = SyncPoint::of(switch, line).unwrap();
+            assert_eq!(SyncPoint::of_mark(point.mark()), Some(point));
+        }
+        assert_eq!(SyncPoint::of(Switch::Probe, 3), None);
+        assert_eq!(SyncPoint::of_mark(u32::MAX.into()), None);
+    }
+
+    #[test]
+    fn row_has_both_kinds_of_marks() {
+        let change = OutputChange::of_word(1 << 4 | 1 << 12);
+        let pause = SyncPoint { switch: Switch::Pause, line: 7 };
+        let marks = vec![change.word().into(), pause.mark()];
+        let row = Row {
+            ticks: 1,
+            segments: Vec::new(),
+            line: 0,
+            feed: 0.0,
+            off: 0.0,
+            corner: 0.0,
+            marks,
+        };
+        assert_eq!(outputs(&row), change);
+        assert_eq!(sync_points(&row).collect::<Vec<_>>(), [pause]);
+    }
+}

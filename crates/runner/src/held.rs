@@ -1,0 +1,52 @@
+//! The planned rows around a hold: those that are sent as planned, those that bring the motion to
+//! rest, and those that lead back to the plan.
+//!
+//! ```text
+//! window   | r0 | r1 | r2 | r3 | r4 | r5 | r6 | r7 |     r0: sent; the hold may begin with r1
+//! before        | r1 | s0 | s1 | s2 |                    s: the stop, from r2 on; rest in r4
+//! behind                            | t0 | t1 | r7 |     t: the resumption, from the place of rest
+//! ```
+
+use carrystep_job::{Curve, Hold};
+use carrystep_program::Row;
+
+/// Rows that a hold looks at, and where P of each axis is where the first of them begins.
+#[derive(Debug)]
+pub(crate) struct Window {
+    /// The rows of one stretch.
+    pub rows: Vec<Row>,
+    /// P of each axis, 2^-64 step from machine zero.
+    pub at: Vec<i128>,
+    /// The first row that has not been sent.
+    pub first: usize,
+}
+
+/// The rows of a window with a hold among them.
+#[derive(Debug)]
+pub(crate) struct Held {
+    /// The rows up to the rest.
+    pub before: Vec<Row>,
+    /// The rows from the rest on.
+    pub behind: Vec<Row>,
+    /// The line of the program in which the motion rests.
+    pub line: u64,
+}
+
+impl Window {
+    /// Most rows that a hold looks at: 2.4 s of motion or more.
+    pub const ROWS: usize = 600;
+
+    /// The rows with a hold as soon as one is possible; `None` if the stretch ends before.
+    pub fn held(&self, hold: &Hold) -> Option<Held> {
+        let curve = Curve::new(&self.rows, &self.at);
+        let (from, carrystep_job::Held { stop, resume, place, next }) =
+            hold.hold(&curve, self.first)?;
+        let line = self.rows.get(place.row)?.line;
+        let planned = |rows: std::ops::Range<usize>| self.rows.get(rows).unwrap_or_default();
+        Some(Held {
+            before: [planned(self.first..from), &stop].concat(),
+            behind: [&resume, planned(next..self.rows.len())].concat(),
+            line,
+        })
+    }
+}

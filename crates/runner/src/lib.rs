@@ -1,0 +1,16 @@
+//! Planned programs as a board runs them.
+//!
+//! ```text
+//! rows of the planner -> stretches: what the link sends between two places at which the machine
+//!                        ^          rests and somebody must let it go on (M0, M1, M6, a hold)
+//!                  hold -'
+//! ```
+//!
+//! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
+
+mod held;
+mod horizon;
+mod stretches;
+
+pub use horizon::Horizon;
+pub use stretches::{Stretches, Wait};

@@ -1,0 +1,342 @@
+//! A program in stretches, each of which begins and ends at rest.
+//!
+//! ```text
+//! rows      r0  r1  r2  r3  r4  r5  r6
+//! mark                      M0
+//! stretch   |---- first ---||-- second --|
+//! last                  x              x      the queues run empty here
+//! start     ^               ^
+//! ```
+//!
+//! A row with a [`SyncPoint`] begins a stretch. The row before it is marked as the last one of its
+//! move in all axes, so that the gateware finds an empty queue there and no underrun. A hold ends a
+//! stretch early ([`crate::held`]).
+
+use crate::held::{Held, Window};
+use carrystep_core::{OutputChange, Segment};
+use carrystep_job::Hold;
+use carrystep_link::SegmentSource;
+use carrystep_plan::exact::travel;
+use carrystep_program::{Row, SyncPoint, outputs, sync_points};
+use std::collections::VecDeque;
+use std::fmt;
+
+/// What a program waits for before a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wait {
+    /// Somebody at a place of the program.
+    SyncPoint(SyncPoint),
+    /// The end of a hold; the line that was running.
+    Hold(u64),
+}
+
+impl fmt::Display for Wait {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SyncPoint(at) => write!(f, "{at}"),
+            Self::Hold(line) => write!(f, "hold in line {line}"),
+        }
+    }
+}
+
+/// The rows of a program, stretch by stretch: as a [`SegmentSource`], it gives the segments of the
+/// stretch that was begun last. Memory holds only the rows of which an axis has not taken its
+/// segment yet, and those that a hold looks at.
+#[derive(Debug)]
+pub struct Stretches<I: Iterator<Item = Row>> {
+    rows: I,
+    hold: Hold,
+    /// Rows that come before those of `rows`.
+    ahead: VecDeque<Row>,
+    /// The row that was read last, and P of each axis where it begins, 2^-64 step from machine zero.
+    read: Option<(Row, Vec<i128>)>,
+    /// P of each axis where the next row begins.
+    at: Vec<i128>,
+    /// Rows of the present stretch that are still to be read, if a hold has shortened it.
+    left: Option<usize>,
+    /// The line in which a hold brings the motion to rest at the end of this stretch.
+    held: Option<u64>,
+    /// Whether nothing of `rows` is wanted any more.
+    ended: bool,
+    /// Segments of each axis that were read and not taken.
+    segments: Vec<VecDeque<Segment>>,
+    /// The changes of outputs of the rows of which axis 0 has not taken its segment.
+    outputs: VecDeque<OutputChange>,
+    /// What changes with the segment that axis 0 has just taken.
+    change: OutputChange,
+    /// The axes of the start that was not taken.
+    start: Option<u8>,
+    /// Whether the last row that was read is the last of its stretch.
+    whole: bool,
+}
+
+impl<I: Iterator<Item = Row>> Stretches<I> {
+    /// The stretches of these rows, which begin at these steps from machine zero.
+    pub fn new(rows: I, start_steps: &[i64], hold: Hold) -> Self {
+        Self {
+            rows,
+            hold,
+            ahead: VecDeque::new(),
+            read: None,
+            at: start_steps.iter().map(|&steps| i128::from(steps) << 64).collect(),
+            left: None,
+            held: None,
+            ended: false,
+            segments: vec![VecDeque::new(); start_steps.len()],
+            outputs: VecDeque::new(),
+            change: OutputChange::NONE,
+            start: None,
+            whole: true,
+        }
+    }
+
+    /// Begins the next stretch, and returns what the program waits for before. `None` at the end of
+    /// the program. What is left of the stretch before is dropped.
+    pub fn begin(&mut self) -> Option<Vec<Wait>> {
+        while !self.whole {
+            self.next_row();
+        }
+        let waits = match self.held.take() {
+            Some(line) => vec![Wait::Hold(line)],
+            None => sync_points(self.peek()?).map(Wait::SyncPoint).collect(),
+        };
+        self.peek()?;
+        let axes = self.segments.len();
+        self.segments.iter_mut().for_each(VecDeque::clear);
+        self.outputs.clear();
+        self.change = OutputChange::NONE;
+        self.start = Some(((1_u16 << axes) - 1) as u8);
+        self.read = None;
+        self.left = None;
+        self.whole = false;
+        Some(waits)
+    }
+
+    /// Ends the present stretch on the planned curve, as soon as limits allow. Returns false if the
+    /// program comes to rest by itself before, or at the same time.
+    pub fn hold(&mut self) -> bool {
+        if self.whole || self.left.is_some() {
+            return false;
+        }
+        let before = self.read.clone();
+        let base = before.as_ref().map_or_else(|| self.at.clone(), |(_, at)| at.clone());
+        let mut rows: Vec<Row> = before.into_iter().map(|(row, _)| row).collect();
+        let known = rows.len();
+        let within = |rows: &[Row], row: &Row| rows.is_empty() || !waits(row);
+        while rows.len() < Window::ROWS && self.peek().is_some_and(|row| within(&rows, row)) {
+            rows.extend(self.ahead.pop_front());
+        }
+        let window = Window { rows, at: base, first: known };
+        let held = window.held(&self.hold);
+        let is_held = held.is_some();
+        let rows = match held {
+            Some(Held { before, behind, line }) => {
+                (self.left, self.held) = (Some(before.len()), Some(line));
+                [before, behind].concat()
+            }
+            None => window.rows.into_iter().skip(known).collect(),
+        };
+        rows.into_iter().rev().for_each(|row| self.ahead.push_front(row));
+        is_held
+    }
+
+    /// Drops what is left of the program, and ends it with this change of outputs, at rest. The
+    /// next stretch is that row alone.
+    pub fn end_with(&mut self, change: OutputChange, ticks: u32) {
+        let segment = Segment { ticks, v: 0, a: 0, j: 0, last: false };
+        let segments = vec![segment; self.segments.len()];
+        let marks = vec![change.word().into()];
+        let line = self.read.as_ref().map_or(0, |(row, _)| row.line);
+        self.held = None;
+        self.ended = true;
+        self.ahead.clear();
+        let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
+        self.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
+    }
+
+    /// The next row, which stays.
+    fn peek(&mut self) -> Option<&Row> {
+        if self.ahead.is_empty() && !self.ended {
+            self.ahead.extend(self.rows.next());
+        }
+        self.ahead.front()
+    }
+
+    /// Reads the next row of the stretch.
+    fn next_row(&mut self) {
+        self.peek();
+        let Some(row) = self.ahead.pop_front().filter(|_| !self.whole) else {
+            self.whole = true;
+            return;
+        };
+        self.whole = match &mut self.left {
+            Some(left) => {
+                *left -= 1;
+                *left == 0
+            }
+            None => self.peek().is_none_or(waits),
+        };
+        let before = self.at.clone();
+        self.outputs.push_back(outputs(&row));
+        let places = self.at.iter_mut().zip(&mut self.segments);
+        for ((at, queue), segment) in places.zip(&row.segments) {
+            *at += travel(segment, segment.ticks.into());
+            queue.push_back(Segment { last: self.whole, ..*segment });
+        }
+        self.read = Some((row, before));
+    }
+}
+
+/// Whether somebody has to let the machine go on before a row.
+fn waits(row: &Row) -> bool {
+    sync_points(row).next().is_some()
+}
+
+impl<I: Iterator<Item = Row>> SegmentSource for Stretches<I> {
+    fn segment(&mut self, axis: u8) -> Option<Segment> {
+        let axis = usize::from(axis);
+        while self.segments.get(axis)?.is_empty() && !self.whole {
+            self.next_row();
+        }
+        let segment = self.segments.get_mut(axis)?.pop_front();
+        if axis == 0 {
+            self.change = self.outputs.pop_front().unwrap_or(OutputChange::NONE);
+        }
+        segment
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        std::mem::replace(&mut self.change, OutputChange::NONE)
+    }
+
+    fn start(&mut self) -> Option<u8> {
+        self.start.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_files::{Machine, SourceText};
+    use carrystep_program::Switch;
+
+    const PAUSE: u64 = 1 << 63 | 9;
+    const MACHINE: &str = "[machine]\nclock_hz = 80_000_000\ntick_ns = 1000\n\
+        [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 80\nspeed_limit = 100\n\
+        accel_limit = 1000\ndriver = \"tmc2209\"\n\
+        [[machine.axis]]\nname = \"y\"\nsteps_per_unit = 80\nspeed_limit = 100\n\
+        accel_limit = 1000\ndriver = \"tmc2209\"\n";
+
+    fn row(ticks: u32, v: i64, marks: &[u64]) -> Row {
+        let segment = |v| Segment { ticks, v, a: 0, j: 0, last: false };
+        Row {
+            ticks,
+            segments: vec![segment(v), segment(2 * v)],
+            line: 4,
+            feed: 1.0,
+            off: 0.0,
+            corner: 0.0,
+            marks: marks.to_vec(),
+        }
+    }
+
+    fn stretches(rows: &[Row]) -> Stretches<std::vec::IntoIter<Row>> {
+        let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
+        let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
+        Stretches::new(rows.to_vec().into_iter(), &[0, 0], hold)
+    }
+
+    fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {
+        let mut next = || from.segment(axis);
+        let all =
+            std::iter::from_fn(|| next().map(|Segment { ticks, v, last, .. }| (ticks, v, last)));
+        all.collect()
+    }
+
+    #[test]
+    fn pause_ends_a_stretch() {
+        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
+        assert_eq!(all.begin(), Some(Vec::new()));
+        assert_eq!((all.start(), all.start()), (Some(3), None));
+        assert_eq!(taken(&mut all, 1), [(5, 2, false), (6, 2, true)]);
+        assert_eq!(taken(&mut all, 0), [(5, 1, false), (6, 1, true)]);
+        let pause = SyncPoint { switch: Switch::Pause, line: 9 };
+        assert_eq!(all.begin(), Some(vec![Wait::SyncPoint(pause)]));
+        assert_eq!(taken(&mut all, 0), [(7, 1, true)]);
+        assert_eq!(all.start(), Some(3));
+        assert_eq!((all.begin(), all.segment(1)), (None, None));
+    }
+
+    #[test]
+    fn outputs_go_with_their_row() {
+        let change = OutputChange::of_word(1 << 4 | 1 << 12);
+        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[change.word().into()])]);
+        all.begin();
+        // Another axis reads ahead.
+        assert_eq!(taken(&mut all, 1).len(), 2);
+        all.segment(0);
+        assert_eq!(all.outputs(), OutputChange::NONE);
+        all.segment(0);
+        assert_eq!((all.outputs(), all.outputs()), (change, OutputChange::NONE));
+    }
+
+    #[test]
+    fn rest_of_a_stretch_is_dropped() {
+        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
+        all.begin();
+        all.segment(0);
+        all.begin();
+        assert_eq!(taken(&mut all, 1), [(7, 2, true)]);
+    }
+
+    /// 20 mm/s, for two seconds, and then as long to rest as it likes: only the beginning matters.
+    const V: i64 = 29_514_790_517_935_283;
+
+    #[test]
+    fn hold_goes_on_along_the_plan() {
+        let rows: Vec<Row> = (0..500).map(|_| row(4000, V / 2, &[])).collect();
+        let distance = |taken: &[Segment]| {
+            taken.iter().map(|segment| travel(segment, segment.ticks.into())).sum::<i128>()
+        };
+        let mut all = stretches(&rows);
+        all.begin();
+        for axis in [0, 1] {
+            (0..7).for_each(|_| drop(all.segment(axis)));
+        }
+        let sent = 7 * 4000 * i128::from(V / 2);
+        assert!(all.hold());
+        assert!(!all.hold(), "there is one already");
+        let mut stop = Vec::new();
+        while let Some(segment) = all.segment(0) {
+            stop.push(segment);
+        }
+        // From 20 mm/s at 1000 mm/s^2 at most: 20 ms at least, and not twice the law's peak of that.
+        let ticks: u32 = stop.iter().map(|segment| segment.ticks).sum();
+        assert!((20_000..80_000).contains(&ticks), "{ticks}");
+        assert!(stop.last().is_some_and(|segment| segment.last));
+        assert_eq!(all.begin(), Some(vec![Wait::Hold(4)]));
+        let mut behind = Vec::new();
+        while let Some(segment) = all.segment(0) {
+            behind.push(segment);
+        }
+        let whole = 500 * 4000 * i128::from(V / 2);
+        assert_eq!(sent + distance(&stop) + distance(&behind), whole);
+        assert_eq!(behind.last().map(|segment| segment.v), Some(V / 2));
+    }
+
+    #[test]
+    fn program_ends_with_its_outputs_off() {
+        let off = OutputChange { mask: 0xff, levels: 0, duty: Some(0) };
+        let rows: Vec<Row> = (0..500).map(|_| row(4000, V / 2, &[])).collect();
+        let mut all = stretches(&rows);
+        all.begin();
+        all.segment(0);
+        assert!(all.hold());
+        while all.segment(0).is_some() {}
+        all.end_with(off, 4000);
+        assert_eq!(all.begin(), Some(Vec::new()));
+        assert_eq!(taken(&mut all, 1), [(4000, 0, true)]);
+        assert!(all.segment(0).is_some());
+        assert_eq!((all.outputs(), all.begin()), (off, None));
+    }
+}
