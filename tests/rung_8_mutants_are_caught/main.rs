@@ -3,3 +3,4 @@
 
 mod mutants;
 mod planted_bugs;
+mod planted_in_the_engine;
