@@ -70,7 +70,8 @@ fn changed(module: &str, text: &str, changes: &[(usize, &Planted)]) -> String {
     let body = text.find("\n);\n").expect("the end of its ports") + "\n);\n".len();
     let mut choice = String::from("    integer planted;\n");
     // Writing to a string cannot fail.
-    let _ = writeln!(choice, "    initial if (!$value$plusargs(\"mutant=%d\", planted)) planted = 0;");
+    let _ =
+        writeln!(choice, "    initial if (!$value$plusargs(\"mutant=%d\", planted)) planted = 0;");
     text.insert_str(body, &choice);
     text
 }

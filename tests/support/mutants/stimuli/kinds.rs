@@ -8,14 +8,38 @@ use carrystep_core::engine::{EngineOutputs, SeekSource};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 
-/// All of them.
+/// The modules on the way of a limit to the stop.
+const LIMIT: [&str; 7] =
+    ["switches", "switch_memory", "seek_control", "stops", "queue", "time_slot", "engine"];
+
+/// The modules that hold steps back, and that wait for them.
+const PINS: [&str; 11] = [
+    "pulser_0",
+    "pulser_1",
+    "pulser_2",
+    "pulser_3",
+    "pulser_4",
+    "pulser_5",
+    "event_wheel",
+    "step_counts",
+    "stops",
+    "resets",
+    "engine",
+];
+
+/// All of them. In the shipped engine they take long, because it debounces for long: each is run
+/// only for the modules that it is about.
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
-    let mut all = vec![without_power(build), dry_in_a_seek(build)];
+    let mut all = vec![
+        without_power(build).only_for(&["supervisor", "engine"]),
+        dry_in_a_seek(build).only_for(&["queue", "seek_control", "adder", "engine"]),
+    ];
     for axis in 0..AXES {
-        all.extend([0, 1].map(|row| stops_at_a_limit(build, axis, row)));
-        all.push(high_at_the_clear(build, axis));
-        all.extend(rests_with_a_step(build, axis));
-        all.extend(crowded(build, axis));
+        all.extend([0, 1].map(|row| stops_at_a_limit(build, axis, row).only_for(&LIMIT)));
+        let mut of_pins = vec![high_at_the_clear(build, axis)];
+        of_pins.extend(rests_with_a_step(build, axis));
+        of_pins.extend(crowded(build, axis));
+        all.extend(of_pins.into_iter().map(|stimulus| stimulus.only_for(&PINS)));
     }
     all
 }
@@ -79,7 +103,8 @@ fn dry_in_a_seek(build: &EngineBuild) -> Stimulus {
             (at + 60 * round(build), Event::Seek(0)),
         ];
         let v = |axis| -(1_i64 << 56) - ((axis as i64) << 50);
-        let mut program: Program = (0..AXES).map(|axis| segment(axis, ticks, v(axis), false)).collect();
+        let mut program: Program =
+            (0..AXES).map(|axis| segment(axis, ticks, v(axis), false)).collect();
         program.push(Command::Start { mask: 0x3f });
         Stimulus::new(build, name, &program, &events)
     };

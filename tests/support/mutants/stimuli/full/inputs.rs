@@ -59,8 +59,7 @@ fn by_chance(build: &EngineBuild) -> Stimulus {
 fn interlock(build: &EngineBuild) -> Stimulus {
     let moves = || cruise(300, both_ways(1 << 57));
     let clear = |ticks: u64| [wait(ticks * TICK), vec![Command::Clear]].concat();
-    let program =
-        [moves(), clear(200), moves(), clear(500), moves(), clear(200), moves()].concat();
+    let program = [moves(), clear(200), moves(), clear(500), moves(), clear(200), moves()].concat();
     let mut events = Events::new();
     let open = |at: u64, rounds: u64| {
         [(at, Event::Inputs1(0x2b)), (at + rounds * ROUND, Event::Inputs1(0x2a))]
@@ -90,9 +89,8 @@ fn not_the_interlock(build: &EngineBuild) -> Stimulus {
         (THEN + 24 * ROUND, Event::LimitMax(0)),
     ];
     let stimulus = Stimulus::new(build, "inputs that stop nothing", &program, &events);
-    let stopped = |(_, outputs): &(u64, carrystep_core::engine::EngineOutputs)| {
-        outputs.fault.is_some()
-    };
+    let stopped =
+        |(_, outputs): &(u64, carrystep_core::engine::EngineOutputs)| outputs.fault.is_some();
     assert!(!stimulus.recording.outputs.iter().any(stopped), "nothing stops");
     stimulus
 }

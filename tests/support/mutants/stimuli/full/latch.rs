@@ -10,9 +10,8 @@ use carrystep_simulators::engine::{Event, Events};
 const LOOKS: u64 = 3;
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
-    let edges = |name: &str, events: Events| {
-        Stimulus::new(build, name, &program(), &sorted(events))
-    };
+    let edges =
+        |name: &str, events: Events| Stimulus::new(build, name, &program(), &sorted(events));
     vec![
         edges("edges of the latch", of_any_length()),
         edges("edges that are not latched", further()),

@@ -15,16 +15,22 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         Stimulus::new(build, "outputs in every slot", &in_every_slot(exist), &Events::new()),
         Stimulus::new(build, "duties", &duties(), &Events::new()),
         Stimulus::new(build, "outputs of single starts", &single_starts(exist), &Events::new()),
-        off(build, "outputs in a ramp", &[(THEN, Event::Stop(true)), (THEN + 1, Event::Stop(false))]),
+        off(
+            build,
+            "outputs in a ramp",
+            &[(THEN, Event::Stop(true)), (THEN + 1, Event::Stop(false))],
+        ),
         off(build, "outputs in a freeze", &[(THEN + 7, Event::Broken)]),
-        off(build, "outputs without power", &[
-            (THEN, Event::Enable(false)),
-            (THEN + 60 * TICK, Event::Enable(true)),
-        ]),
-        off(build, "outputs in a reset", &[
-            (THEN, Event::Reset(true)),
-            (THEN + 1, Event::Reset(false)),
-        ]),
+        off(
+            build,
+            "outputs without power",
+            &[(THEN, Event::Enable(false)), (THEN + 60 * TICK, Event::Enable(true))],
+        ),
+        off(
+            build,
+            "outputs in a reset",
+            &[(THEN, Event::Reset(true)), (THEN + 1, Event::Reset(false))],
+        ),
         dropped(build),
     ];
     all.extend([0, 1, 5].map(|axis| stray_bits(build, axis)));

@@ -17,7 +17,8 @@ const END: u64 = REACHED + 100 * ROUND;
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     let mut all = Vec::new();
     for row in 0..SWITCH_ROWS {
-        let exists = |axis: u8| row < 2 || build.guard.inputs[usize::from(row) - 2].exist >> axis & 1 == 1;
+        let exists =
+            |axis: u8| row < 2 || build.guard.inputs[usize::from(row) - 2].exist >> axis & 1 == 1;
         for axis in (0..AXES as u8).filter(|axis| exists(*axis)) {
             // The interlock stops the axes before they could ramp down by themselves.
             if (row, axis) != (3, 0) {
