@@ -227,7 +227,7 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
     let mutants = |name| constant("tests/rung_8_mutants_are_caught/mutants.rs", name);
     let (few, all) = (mutants("FEW"), mutants("ALL"));
     let (few_of_full, all_of_full) = (mutants("FEW_OF_FULL"), mutants("ALL_OF_FULL"));
-    let bugs = "tests/rung_8_mutants_are_caught/planted_in_the_engine.rs";
+    let bugs = "tests/rung_8_mutants_are_caught/engine_bugs.rs";
     let work = |text| whole(behind("tests/support/mutants/stimuli/work.rs", text));
     says(
         "docs/mutants.md",

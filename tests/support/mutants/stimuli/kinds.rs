@@ -188,7 +188,7 @@ fn last_rise(stimulus: &Stimulus, axis: usize) -> Option<u64> {
     let step = |outputs: &EngineOutputs| outputs.step >> axis & 1 == 1;
     let pairs = stimulus.recording.outputs.windows(2);
     let rises = pairs.filter(|pair| !step(&pair[0].1) && step(&pair[1].1));
-    rises.map(|pair| pair[1].0).last()
+    rises.map(|pair| pair[1].0).next_back()
 }
 
 /// An axis steps in every other tick, which some drivers cannot follow: a step is held back for

@@ -35,6 +35,10 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     for (name, source) in [("own", own), ("common", common)] {
         all.extend(with_other_pages(build, name, source));
     }
+    for (name, source) in [("own", own), ("common", common)] {
+        let again = [0x01, 0x20, 0x2a, 0x15].map(|mask| hit_again(build, name, source, mask));
+        all.extend(again);
+    }
     all.push(ended_early(build));
     all
 }
@@ -150,6 +154,25 @@ fn with_other_pages(build: &EngineBuild, name: &str, source: SeekSource) -> Vec<
         all.push(Stimulus::new(build, name, &program(source), &sorted(events)));
     }
     all
+}
+
+/// In the ramp after a hit the host lets some axes wait for the same source again. It still has its
+/// level, so its next sample is another hit, while the other axes are in their ramps.
+fn hit_again(build: &EngineBuild, name: &str, source: SeekSource, mask: u8) -> Stimulus {
+    let mut events = vec![
+        (THEN - 50, Event::SeekSource(source)),
+        (THEN, Event::Seek(0x3f)),
+        (REACHED, reached(source, 0x3f)),
+        (REACHED + 40 * ROUND, Event::Seek(0)),
+        (REACHED + 50 * ROUND, reached(source, 0)),
+        (END, Event::Broken),
+    ];
+    let name = format!("axes {mask:#04x} hit their {name} source again");
+    let once = Stimulus::new(build, &name, &program(source), &events).recording;
+    let hit = once.outputs.iter().find(|(_, outputs)| outputs.hits == 0x3f);
+    let (hit, _) = hit.expect("all axes hit their source");
+    events.push((hit + TICK, Event::Seek(mask)));
+    Stimulus::new(build, name, &program(source), &sorted(events))
 }
 
 /// The host ends a seek before its hit, replaces its axes and its source, and starts axes that
