@@ -35,20 +35,20 @@ fn in_every_slot(build: &EngineBuild, axis: u8) -> Stimulus {
     Stimulus::new(build, format!("cuts of axis {axis}"), &program, &events)
 }
 
-/// Few segments wait, so that most slots are none that a cut could keep: the host names each of
-/// them, in axes with different queues, at first one by one and then two at once.
+/// One to six segments wait behind the running one. In each axis the host names the slots from the
+/// last one down: at first those that hold no segment, then the end of the queue, and so on. Now
+/// and then it names a slot of the next axis too.
 fn few(build: &EngineBuild) -> Stimulus {
     let mut program = Program::new();
     for axis in 0..AXES as u8 {
-        let count = 1 + axis % 4;
-        program.extend((0..count).map(|place| segment(axis, 1_500, place + 1 == count)));
+        let count = 2 + axis;
+        program.extend((0..count).map(|place| segment(axis, 800, place + 1 == count)));
     }
     program.push(Command::Start { mask: 0x3f });
     let mut events = Events::new();
     for number in 0..AXES as u64 * SLOTS {
         let (axis, slot) = ((number % AXES as u64) as u8, (number / AXES as u64) as u8);
-        let at = 2 * THEN + 11 * TICK * number;
-        // From the last slot on, so that what can be kept is kept.
+        let at = 3 * THEN + 11 * TICK * number;
         let name = |axis, slot| (at, Event::Name(axis, slot));
         events.push(name(axis, 7 - slot));
         if number % 7 == 6 {
