@@ -66,7 +66,7 @@ fn first(stimulus: &Stimulus, holds: impl Fn(&EngineOutputs) -> bool) -> u64 {
 }
 
 /// The number of the tick that begins behind the strobe in which the axes start.
-fn first_tick(stimulus: &Stimulus) -> u64 {
+pub(super) fn first_tick(stimulus: &Stimulus) -> u64 {
     (first(stimulus, |outputs| outputs.started) + 1) / TICK
 }
 

@@ -2,6 +2,7 @@
 
 use super::super::Stimulus;
 use super::super::cruise::{TICK, cruise};
+use super::super::kinds::first_tick;
 use super::{THEN, sorted};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
@@ -12,6 +13,7 @@ const SLOTS: u64 = 8;
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     let mut all: Vec<_> = (0..AXES as u8).map(|axis| in_every_slot(build, axis)).collect();
     all.extend([of_all_axes(build), at_any_time(build), with_stops(build), few(build)]);
+    all.extend([0, 5].into_iter().flat_map(|axis| of_an_end(build, axis)));
     all
 }
 
@@ -57,6 +59,27 @@ fn few(build: &EngineBuild) -> Stimulus {
         events.push((at + 3 * TICK, Event::Cut));
     }
     Stimulus::new(build, "cuts of short queues", &program, &sorted(events))
+}
+
+/// The host names the running segment, and the cut is decided in the last tick of this segment, in
+/// the tick before, and in the tick after.
+fn of_an_end(build: &EngineBuild, axis: u8) -> Vec<Stimulus> {
+    // No segment is being written when the second one ends.
+    let mut program: Program = (0..4).map(|place| segment(axis, 13, place == 3)).collect();
+    program.extend([Command::Start { mask: 1 << axis }, Command::Wait { clocks: 9_000 }]);
+    program.push(Command::Clear);
+    let run = |name: &str, events: &Events| {
+        let name = format!("cuts of axis {axis} that are decided {name} a segment ends");
+        Stimulus::new(build, name, &program, events)
+    };
+    let last_tick = first_tick(&run("when", &Events::new())) + 2 * 13 - 1;
+    let cut = |(name, decides): (&str, u64)| {
+        // The tick before the one that decides is that of the request.
+        let at = (decides - 1) * TICK + 40;
+        run(name, &vec![(at - 5 * TICK, Event::Name(axis, 2)), (at, Event::Cut)])
+    };
+    let ticks = [("before", last_tick - 1), ("when", last_tick), ("after", last_tick + 1)];
+    ticks.map(cut).into()
 }
 
 /// Cuts of all axes at once: all keep their segments, or one of them does not, which is another
