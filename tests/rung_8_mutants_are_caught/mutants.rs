@@ -21,8 +21,8 @@ const ALL: usize = 200;
 const FEW_OF_FULL: usize = 12;
 const ALL_OF_FULL: usize = 60;
 
-/// The modules of which the mutants of the engine with everything are drawn: the shipped engine does
-/// not have what they do, or only a part of it.
+/// The modules of which the mutants of the engine with everything are drawn. The shipped engine
+/// does not have what they do, or only a part of it.
 const NEW: [&str; 10] = [
     "output_control",
     "output_words",
