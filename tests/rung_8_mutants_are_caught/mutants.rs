@@ -3,44 +3,105 @@
 //! is harmless. A test run covers a few mutants; `cargo xtask mutants` covers all of them and
 //! repeats the proofs.
 
-use carrystep_tests::mutants::draw::{Mutant, Sample, sample};
+use carrystep_tests::mutants::draw::{self, Mutant, Sample, sample};
 use carrystep_tests::mutants::equal::{Scope, is_proved};
-use carrystep_tests::mutants::stimuli::{self, Stimulus};
+use carrystep_tests::mutants::stimuli::{self, Engine, Stimulus};
 use carrystep_tests::mutants::survivors::{self, NO_REASON, PROVED, Survivors};
 use carrystep_tests::mutants::{Judgement, catchers, differs, judge};
 use carrystep_tests::{effort, jobs};
 use carrystep_tools::kept;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of mutants in every test run: the first ones of all.
+/// Number of mutants of the shipped engine in every test run: the first ones of all.
 const FEW: usize = 24;
-/// Number of mutants if `CARRYSTEP_MUTANTS` is `all`, or `write`, which also rewrites the list of
+/// Their number if `CARRYSTEP_MUTANTS` is `all`, or `write`, which also rewrites the lists of
 /// survivors.
 const ALL: usize = 200;
+/// The same numbers of the modules that only the engine with everything has.
+const FEW_OF_FULL: usize = 12;
+const ALL_OF_FULL: usize = 60;
+
+/// The modules of which the mutants of the engine with everything are drawn. The shipped engine
+/// does not have what they do, or only a part of it.
+const NEW: [&str; 10] = [
+    "output_control",
+    "output_words",
+    "duty_words",
+    "pulse_width",
+    "cut_control",
+    "edge_latch",
+    "switches",
+    "switch_memory",
+    "seek_control",
+    "readout",
+];
+
+/// The modules of which only those lines are drawn in which the shipped engine has no gate: the
+/// cut's part of the queue, and what the engine connects.
+const PARTLY_NEW: [&str; 2] = ["queue", "engine"];
+
+/// How many mutants are wanted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    Few,
+    All,
+    /// All, and the list of survivors is rewritten.
+    Write,
+}
+
+impl Effort {
+    fn asked() -> Self {
+        match std::env::var("CARRYSTEP_MUTANTS").unwrap_or_default().as_str() {
+            "" => Self::Few,
+            "all" => Self::All,
+            "write" => Self::Write,
+            asked => panic!("CARRYSTEP_MUTANTS is all or write, not {asked}"),
+        }
+    }
+}
 
 #[test]
-fn mutants_are_caught_or_harmless() {
-    let asked = std::env::var("CARRYSTEP_MUTANTS").unwrap_or_default();
-    let (few, writes) = (asked.is_empty(), asked == "write");
-    assert!(few || writes || asked == "all", "CARRYSTEP_MUTANTS is all or write, not {asked}");
-    let sample = sample(&stimuli::verilog(), "carrystep_engine", if few { FEW } else { ALL });
-    let stimuli = stimuli::all(&stimuli::build());
+fn mutants_of_the_shipped_engine_are_caught_or_harmless() {
+    let effort = Effort::asked();
+    let engine = stimuli::shipped();
+    let count = if effort == Effort::Few { FEW } else { ALL };
+    let sample = sample(&engine.built, count, |_| true);
+    caught_or_harmless("shipped", &engine, &sample, effort);
+}
+
+#[test]
+fn mutants_of_the_new_modules_are_caught_or_harmless() {
+    let effort = Effort::asked();
+    let engine = stimuli::full();
+    let count = if effort == Effort::Few { FEW_OF_FULL } else { ALL_OF_FULL };
+    let shipped = draw::places(&stimuli::shipped_engine());
+    let sample = sample(&engine.built, count, |place| {
+        let module = place.split(':').next().unwrap_or_default();
+        NEW.contains(&module) || (PARTLY_NEW.contains(&module) && !shipped.contains(place))
+    });
+    caught_or_harmless("full", &engine, &sample, effort);
+}
+
+/// Runs the mutants of an engine, and judges those that no recording catches.
+fn caught_or_harmless(name: &str, engine: &Engine, sample: &Sample, effort: Effort) {
+    let (few, writes) = (effort == Effort::Few, effort == Effort::Write);
+    let stimuli = &engine.stimuli;
     for stimulus in stimuli.iter().filter(|_| !few) {
         assert!(
-            !differs(&sample, 0, stimulus),
+            !differs(sample, 0, stimulus),
             "without a mutant nothing may differ: {}",
             stimulus.name
         );
     }
-    let caught = catchers(&sample, &stimuli);
-    effort::say(&table(&stimuli, &caught));
+    let caught = catchers(sample, stimuli);
+    effort::say(&table(stimuli, &caught));
 
-    let listed = survivors::read();
-    let alive = survivors_of(&sample, &caught, &listed, few);
+    let listed = survivors::read(name);
+    let alive = survivors_of(sample, &caught, &listed, few);
     if writes {
-        survivors::write(&alive);
+        survivors::write(name, &alive);
     }
-    summary(&sample, &caught, &alive);
+    summary(name, sample, &caught, &alive);
     let without: Vec<&String> =
         alive.iter().filter(|(_, reason)| *reason == NO_REASON).map(|(name, _)| name).collect();
     assert!(
@@ -54,13 +115,13 @@ fn mutants_are_caught_or_harmless() {
         writes || gone.is_empty(),
         "listed in docs/mutants.md, but caught or no longer drawn:\n{gone:#?}"
     );
-    if !few && !writes {
+    if effort == Effort::All {
         assert_eq!(
             alive, listed,
             "docs/mutants.md is not what is known now: run `cargo xtask mutants --write`"
         );
     }
-    no_harm_is_proved_harmless(&sample, &caught);
+    no_harm_is_proved_harmless(sample, &caught);
     kept::say();
 }
 
@@ -114,12 +175,12 @@ fn no_harm_is_proved_harmless(sample: &Sample, caught: &[Option<&str>]) {
 }
 
 /// The figures for `docs/long-runs.md`.
-fn summary(sample: &Sample, caught: &[Option<&str>], alive: &Survivors) {
+fn summary(name: &str, sample: &Sample, caught: &[Option<&str>], alive: &Survivors) {
     let by_recordings = caught.iter().flatten().count();
     let by_promises = sample.mutants.len() - by_recordings - alive.len();
     let proved = alive.values().filter(|reason| reason.starts_with(PROVED)).count();
     effort::figures(&format!(
-        "{} mutants: {by_recordings} caught by recordings, {by_promises} by promises; harmless: {proved} by proof, {} by a written reason",
+        "{} mutants of the {name} engine: {by_recordings} caught by recordings, {by_promises} by promises; harmless: {proved} by proof, {} by a written reason",
         sample.mutants.len(),
         alive.len() - proved
     ));

@@ -3,12 +3,13 @@
 //! goes to the promises of rung 7.
 //!
 //! ```text
-//! the engine's Verilog for 2 us -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
+//! an engine's Verilog for 2 us -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
 //! the model -- recordings of moves, starts, stops --------------------------------------------------> is run against it
 //! ```
 
 pub mod draw;
 pub mod equal;
+pub mod planted;
 pub mod promises;
 pub mod stimuli;
 pub mod survivors;

@@ -226,13 +226,18 @@ fn performance_page_gives_the_constants_of_fast_model_and_bench() {
 fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
     let mutants = |name| constant("tests/rung_8_mutants_are_caught/mutants.rs", name);
     let (few, all) = (mutants("FEW"), mutants("ALL"));
+    let (few_of_full, all_of_full) = (mutants("FEW_OF_FULL"), mutants("ALL_OF_FULL"));
+    let bugs = "tests/rung_8_mutants_are_caught/engine_bugs.rs";
     let work = |text| whole(behind("tests/support/mutants/stimuli/work.rs", text));
     says(
         "docs/mutants.md",
         &[
-            format!("{all} of them are drawn"),
-            format!("# all {all}, and a table"),
+            format!("{all} of them are drawn, of all modules"),
+            format!("{all_of_full} of them are drawn, of the modules"),
+            format!("# all {all} and all {all_of_full}, and a table"),
             format!("Every test run takes the first {few} mutants"),
+            format!("the first {few_of_full} of the engine with everything"),
+            format!("{} bugs of the new modules", behind(bugs, "const NEW: [Bug; ")),
             format!("{} joint moves of all axes", word(work("drawn(&moves(), "))),
             format!("up to {} segments each", word(work("ticks.prop_flat_map(row), 1..="))),
         ],
@@ -245,8 +250,8 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
     says(
         "README.md",
         &[
-            format!("({few} [mutants](docs/mutants.md))"),
-            format!("does this for all {all}."),
+            format!("({} [mutants](docs/mutants.md))", few + few_of_full),
+            format!("does this for all {}.", all + all_of_full),
             format!("Every test run sends {usual} frames"),
             format!("{} frames over the bad line", grouped(long("FRAMES"))),
             format!("{} ends of hosts", long("DEATHS")),

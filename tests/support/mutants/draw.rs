@@ -2,10 +2,11 @@
 //! line. They are drawn evenly over the lines, and all of them are put into one Verilog text with
 //! an input that selects one.
 
+use crate::proofs::builds::BuiltEngine;
 use carrystep_tools::kept;
 use carrystep_tools::programs::YOSYS;
 use sha2::{Digest, Sha256};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -19,6 +20,9 @@ const PREPARE: &str = "proc; opt -full; memory -nomap; opt -full; wreduce; opt -
 /// Removes names that no gate needs. Mutants are drawn without them, but promises look at some of
 /// them.
 const PURGE: &str = "opt_clean -purge";
+
+/// The top module.
+pub(super) const TOP: &str = "carrystep_engine";
 
 /// Wires that are clocks and therefore not mutated.
 const CLOCKS: [&str; 4] = ["clock", "CLK", "RD_CLK", "WR_CLK"];
@@ -40,46 +44,66 @@ pub struct Sample {
     pub mutants: Vec<Mutant>,
     /// The Verilog text.
     pub verilog: String,
+    /// The engine of which they are mutants.
+    pub(super) built: BuiltEngine,
     /// The engine without a mutant in yosys' format (RTLIL). Mutants are made from it and compared
     /// with it.
     pub(super) netlist: String,
 }
 
-/// Draws `count` mutants.
+/// Draws `count` mutants of the places (a module, a colon and a line) for which `is_wanted` holds.
 ///
 /// Every source line is used once before any line is used a second time. A hash of the mutant's
 /// name determines the order, so a change of one source line leaves nearly all other mutants in the
 /// sample.
 ///
 /// # Panics If yosys is missing or fails.
-pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
+pub fn sample(built: &BuiltEngine, count: usize, is_wanted: impl Fn(&str) -> bool) -> Sample {
     let folder = tempfile::tempdir().expect("a folder");
-    let read = |name: &str| {
-        std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written")
-    };
-    std::fs::write(folder.path().join("core.v"), verilog).expect("a file");
-    // The number is greater than that of all mutants, so yosys lists all of them.
-    let list = format!("mutate -list 1000000 -seed {SEED} -o list");
-    yosys(
-        folder.path(),
-        &format!(
-            "read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il"
-        ),
-    );
-    let netlist = named_by_instance(&read("core.il"));
-    std::fs::write(folder.path().join("core.il"), &netlist).expect("a file");
-    yosys(folder.path(), &format!("read_rtlil core.il; {PURGE}; {list}"));
-    let mutants = draw(candidates(&read("list"), verilog), count);
+    let (netlist, mut candidates) = prepared(&built.1, folder.path());
+    candidates.retain(|(_, place)| is_wanted(place));
+    let mutants = draw(candidates, count);
     let width = usize::BITS - count.leading_zeros();
     let mut script = format!("read_rtlil core.il\n{PURGE}\n");
     for (number, mutant) in (1..).zip(&mutants) {
         // Writing to a string cannot fail.
         let _ = writeln!(script, "mutate -ctrl mutant {width} {number} {}", mutant.command);
     }
-    let _ = write!(script, "delete -port {top}/w:mutant\nwrite_verilog -noattr mutants.v\n");
+    let _ = write!(script, "delete -port {TOP}/w:mutant\nwrite_verilog -noattr mutants.v\n");
     std::fs::write(folder.path().join("apply.ys"), script).expect("a file");
     yosys(folder.path(), "script apply.ys");
-    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist }
+    let verilog = with_choice(&read(folder.path(), "mutants.v"), width);
+    Sample { mutants, verilog, built: built.clone(), netlist }
+}
+
+/// All places (a module, a colon and a line) where yosys can make a mutant of an engine.
+///
+/// # Panics If yosys is missing or fails.
+pub fn places(built: &BuiltEngine) -> HashSet<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    prepared(&built.1, folder.path()).1.into_iter().map(|(_, place)| place).collect()
+}
+
+/// The netlist of an engine, also as `core.il` in the folder, and all its mutants.
+fn prepared(verilog: &str, folder: &Path) -> (String, Vec<Candidate>) {
+    std::fs::write(folder.join("core.v"), verilog).expect("a file");
+    // The number is greater than that of all mutants, so yosys lists all of them.
+    let list = format!("mutate -list 1000000 -seed {SEED} -o list");
+    yosys(
+        folder,
+        &format!(
+            "read_verilog core.v; hierarchy -check -top {TOP}; {PREPARE}; write_rtlil core.il"
+        ),
+    );
+    let netlist = named_by_instance(&read(folder, "core.il"));
+    std::fs::write(folder.join("core.il"), &netlist).expect("a file");
+    yosys(folder, &format!("read_rtlil core.il; {PURGE}; {list}"));
+    let candidates = candidates(&read(folder, "list"), verilog);
+    (netlist, candidates)
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).expect("what yosys has written")
 }
 
 impl Sample {
@@ -94,7 +118,7 @@ impl Sample {
         let script = format!("read_rtlil core.il\n{change}write_verilog -noattr alone.v\n");
         std::fs::write(folder.path().join("alone.ys"), script).expect("a file");
         yosys(folder.path(), "script alone.ys");
-        std::fs::read_to_string(folder.path().join("alone.v")).expect("what yosys has written")
+        read(folder.path(), "alone.v")
     }
 }
 
@@ -131,8 +155,8 @@ fn is_number(text: &str) -> bool {
 
 /// The selecting input is replaced by a variable that is set once. As a port, Verilator would
 /// evaluate it in every clock.
-fn with_choice(verilog: &str, top: &str, width: u32) -> String {
-    let (wire, top) = (format!("wire [{}:0] mutant;", width - 1), format!("module {top}("));
+fn with_choice(verilog: &str, width: u32) -> String {
+    let (wire, top) = (format!("wire [{}:0] mutant;", width - 1), format!("module {TOP}("));
     let (before, top_module) = verilog.split_at(verilog.find(&top).expect("the top module"));
     assert!(top_module.contains(&wire), "nothing chooses a mutant");
     let choice = format!(

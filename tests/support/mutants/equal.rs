@@ -9,7 +9,7 @@
 //! addresses, data and enables are compared. Only if that is not enough, small memories are
 //! converted to flip-flops, whose outputs then begin at 0 on both sides.
 
-use super::draw::{Mutant, Sample, yosys};
+use super::draw::{Mutant, Sample, TOP, yosys};
 use carrystep_tools::kept;
 use carrystep_tools::programs::YOSYS_ABC;
 use std::collections::BTreeMap;
@@ -34,9 +34,6 @@ pub enum Scope {
 /// ever proved a mutant, almost at once, so the limit is lower.
 const LIMIT: u32 = 100;
 const LIMIT_OF_ENGINE: u32 = 15;
-
-/// The top module.
-const ENGINE: &str = "carrystep_engine";
 
 /// The greatest number of memory bits that are converted to flip-flops.
 const MOST_BITS: usize = 1024;
@@ -72,7 +69,7 @@ pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
     script.push_str(SIDE_BY_SIDE);
     std::fs::write(folder.path().join("equal.ys"), script).expect("a file");
     yosys(folder.path(), "script equal.ys");
-    holds(folder.path(), if top == ENGINE { LIMIT_OF_ENGINE } else { LIMIT })
+    holds(folder.path(), if top == TOP { LIMIT_OF_ENGINE } else { LIMIT })
 }
 
 /// Makes one system in gates whose single output signals a difference. Undriven wires become
@@ -143,7 +140,7 @@ impl<'a> Modules<'a> {
     /// mutant's own module is never cut out, because the mutant would be removed with it.
     fn around(&self, own: &'a str, scope: Scope) -> Option<(&'a str, Vec<&'a str>)> {
         let has_memory = |name: &&str| self.0.get(*name).is_some_and(|module| module.bits > 0);
-        let top = if scope == Scope::Engine { ENGINE } else { own };
+        let top = if scope == Scope::Engine { TOP } else { own };
         let inside: Vec<&str> = self.inside(top).into_iter().filter(has_memory).collect();
         let bits = |names: &[&str]| {
             names

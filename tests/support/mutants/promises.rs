@@ -4,8 +4,7 @@
 //! induction proves nothing.
 
 use super::draw::{Mutant, Sample};
-use super::stimuli;
-use crate::proofs::builds::{BuiltEngine, pin_parameters};
+use crate::proofs::builds::pin_parameters;
 use crate::proofs::{self, Case, Proof, ProofError, Question};
 
 /// The module whose promises a mutant breaks. A promise that the engine itself breaks in this form
@@ -13,7 +12,7 @@ use crate::proofs::{self, Case, Proof, ProofError, Question};
 ///
 /// # Panics If a tool is missing or fails.
 pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
-    let built: BuiltEngine = (stimuli::build(), stimuli::verilog().into());
+    let built = &sample.built;
     let dut = format!("carrystep_{}", mutant.module);
     // A pulser is named after its axis. All are one module in the exported text, but not in the
     // netlist.
@@ -45,7 +44,7 @@ pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
             }
         })
     };
-    let proof = proofs::all_with(&built).into_iter().find(|proof| breaks(proof, Some(mutant)))?;
+    let proof = proofs::all_with(built).into_iter().find(|proof| breaks(proof, Some(mutant)))?;
     assert!(!breaks(&proof, None), "{dut} breaks its promises without a mutant");
     Some(proof.module)
 }

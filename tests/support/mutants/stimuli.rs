@@ -1,19 +1,23 @@
-//! The stimuli of the mutants: the model's recordings of the shipped machine in normal work and in
-//! all kinds of stops.
+//! The engines of which mutants are drawn, and the stimuli of these mutants: the model's recordings
+//! of normal work, of all kinds of stops, and of what only one of the engines has.
 
 mod coincidences;
 mod cruise;
+mod full;
+mod kinds;
 mod resets;
 mod stops;
 mod work;
 
 use crate::moves::root;
+use crate::proofs::builds::BuiltEngine;
 use carrystep_core::{EngineBuild, Program};
 use carrystep_files::{Machine, SourceText};
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::Recording;
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngSeed, TestRunner};
+use std::sync::Arc;
 
 /// The seed of the random programs, so that every run has the same ones.
 const SEED: u64 = 2009;
@@ -33,25 +37,44 @@ pub struct Stimulus {
     modules: &'static [&'static str],
 }
 
-/// The shipped machine with ticks of 2 us at 48 MHz, that of the slower boards: the times of all
+/// An engine of which mutants are drawn.
+pub struct Engine {
+    /// Its build and its Verilog.
+    pub built: BuiltEngine,
+    /// All recordings in the order of use: those that catch many mutants in few clocks come first.
+    pub stimuli: Vec<Stimulus>,
+}
+
+/// The shipped machine with ticks of 2 us at 48 MHz, that of the slower boards: the times of its
 /// recordings are written for it.
-pub fn build() -> EngineBuild {
+pub fn shipped_engine() -> BuiltEngine {
     let path = root().join("sim/six-axis.toml");
     let text = std::fs::read_to_string(&path).expect("the shipped machine");
     let shipped = "clock_hz = 80_000_000\ntick_ns = 1000\n";
     assert!(text.contains(shipped), "the shipped machine has another clock or tick");
     let text = text.replace(shipped, "clock_hz = 48_000_000\ntick_ns = 2000\n");
-    Machine::from_source(&SourceText { path, text: text.into() }).expect("a fine machine").engine()
+    let source = SourceText { path, text: text.into() };
+    let build = Machine::from_source(&source).expect("a fine machine").engine();
+    let verilog = verilog(&build);
+    (build, verilog)
 }
 
-/// The Verilog that is exported for it.
-pub fn verilog() -> String {
-    carrystep_verilog::engine_verilog(&build(), "the mutants").expect("a fine build")
+/// The same with its recordings.
+pub fn shipped() -> Engine {
+    let built = shipped_engine();
+    let build = &built.0;
+    let stimuli = [work::all(build), stops::all(build), resets::all(build), kinds::all(build)];
+    Engine { stimuli: stimuli.concat(), built }
 }
 
-/// All recordings in the order of use: those that catch many mutants in few clocks come first.
-pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
-    [work::all(build), stops::all(build), resets::all(build)].concat()
+/// The engine that has everything built in.
+pub fn full() -> Engine {
+    let build = full::build();
+    Engine { stimuli: full::all(&build), built: (build.clone(), verilog(&build)) }
+}
+
+fn verilog(build: &EngineBuild) -> Arc<str> {
+    carrystep_verilog::engine_verilog(build, "the mutants").expect("a fine build").into()
 }
 
 impl Stimulus {

@@ -11,9 +11,17 @@ use crate::moves::root;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Mutex;
 
-const BEGIN: &str = "<!-- `cargo xtask mutants --write` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
+
+/// The begin of the list of an engine: `shipped` or `full`.
+fn begin(engine: &str) -> String {
+    format!("<!-- `cargo xtask mutants --write` writes from here, {engine} ... -->")
+}
+
+/// Two tests write lists into the same page.
+static PAGE: Mutex<()> = Mutex::new(());
 
 /// The placeholder for a reason that nobody has found yet. The test fails as long as the page
 /// contains it.
@@ -39,13 +47,16 @@ fn page() -> PathBuf {
     root().join("docs/mutants.md")
 }
 
-/// Reads the listed survivors.
+/// Reads the listed survivors of an engine.
 ///
-/// # Panics If the page has no list.
-pub fn read() -> Survivors {
-    let text = std::fs::read_to_string(page()).expect("docs/mutants.md");
+/// # Panics If the page has no list of it.
+pub fn read(engine: &str) -> Survivors {
+    let text = {
+        let _alone = PAGE.lock();
+        std::fs::read_to_string(page()).expect("docs/mutants.md")
+    };
     let list = text
-        .split_once(BEGIN)
+        .split_once(&begin(engine))
         .and_then(|(_, rest)| rest.split_once(END))
         .expect("the list in docs/mutants.md")
         .0;
@@ -57,18 +68,20 @@ pub fn read() -> Survivors {
         .collect()
 }
 
-/// Rewrites the list.
+/// Rewrites the list of an engine.
 ///
 /// # Panics If the page cannot be written.
-pub fn write(survivors: &Survivors) {
+pub fn write(engine: &str, survivors: &Survivors) {
+    let _alone = PAGE.lock();
     let text = std::fs::read_to_string(page()).expect("docs/mutants.md");
-    let (before, rest) = text.split_once(BEGIN).expect("the list in docs/mutants.md");
+    let begin = begin(engine);
+    let (before, rest) = text.split_once(&begin).expect("the list in docs/mutants.md");
     let (_, after) = rest.split_once(END).expect("the end of the list in docs/mutants.md");
     let mut list = String::new();
     for (name, reason) in survivors {
         // Writing to a string cannot fail.
         let _ = writeln!(list, "- `{name}`\n  {reason}");
     }
-    std::fs::write(page(), format!("{before}{BEGIN}\n\n{list}\n{END}{after}"))
+    std::fs::write(page(), format!("{before}{begin}\n\n{list}\n{END}{after}"))
         .expect("docs/mutants.md");
 }
