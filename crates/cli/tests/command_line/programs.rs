@@ -141,15 +141,14 @@ fn names_that_end_in_nc_and_gcode_are_programs() {
 }
 
 #[test]
-fn a_program_without_moves_is_planned_and_simulated() {
-    for text in ["", "(nothing)\n", "M3 S100\nM5\nM2\n", "G1 X0 F100\n", "G4 P0.1\n"] {
-        let folder = folder(text);
-        let done = document(&folder.run("simulate job.ngc --machine m.toml --json"));
-        assert_eq!(done["plan"]["moves"], 0, "{text}");
-        let ticks = if text.starts_with("G4") { 100_000 } else { 0 };
-        assert_eq!(done["plan"]["total_ticks"], ticks, "{text}");
-        assert!(done["check"]["deviation_line"].is_null(), "{text}");
-    }
+fn a_dwell_without_moves_is_planned_and_simulated() {
+    let folder = folder("G1 X0 F100\nG4 P0.1\n");
+    let done = document(&folder.run("simulate job.ngc --machine m.toml --json"));
+    assert_eq!(
+        (&done["plan"]["moves"], &done["plan"]["total_ticks"]),
+        (&0.into(), &100_000.into())
+    );
+    assert!(done["check"]["deviation_line"].is_null());
 }
 
 #[test]
