@@ -97,8 +97,8 @@ pub fn drive(
                     }
                 }
             }
-            let mut held = ends;
-            let streamed = board.stream(itinerary.source(), |progress| {
+            let (mut held, mut source) = (ends, itinerary.source());
+            let streamed = board.stream(&mut *source, |progress| {
                 line.show(progress.status);
                 ways.see(progress.status);
                 if !held && control.program().is_some_and(|program| program.holds()) {
