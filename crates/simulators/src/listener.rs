@@ -16,6 +16,10 @@ impl<E: Edges> Edges for EdgesOnly<E> {
     fn edge(&mut self, edge: Edge) {
         self.0.edge(edge);
     }
+
+    fn levels(&mut self, clock: u64, levels: u8) {
+        self.0.levels(clock, levels);
+    }
 }
 
 impl<E: Edges, O> Listener<O> for EdgesOnly<E> {

@@ -15,6 +15,8 @@ pub trait ReplayedOutputs: Copy + PartialEq + Default {
     fn pins(&mut self) -> (&mut u8, &mut u8);
     /// Counts a step of an axis, forward or backward.
     fn count(&mut self, axis: usize, backward: bool);
+    /// Sets the levels of the outputs that programs switch, one bit each, if there are any.
+    fn switch(&mut self, _levels: u8) {}
 }
 
 impl ReplayedOutputs for Outputs {
@@ -34,6 +36,10 @@ impl ReplayedOutputs for EngineOutputs {
     }
 
     fn count(&mut self, _: usize, _: bool) {}
+
+    fn switch(&mut self, levels: u8) {
+        self.outputs = levels;
+    }
 }
 
 /// Calls an observer for the cycles for which the clock-by-clock model would call it.
@@ -96,6 +102,11 @@ impl<'a, O: ReplayedOutputs> Replay<'a, O> {
 }
 
 impl<O: ReplayedOutputs> Edges for Replay<'_, O> {
+    fn levels(&mut self, clock: u64, levels: u8) {
+        self.reach(clock);
+        self.now.switch(levels);
+    }
+
     fn edge(&mut self, edge: Edge) {
         self.reach(edge.clock);
         let axis = usize::from(edge.axis);

@@ -31,6 +31,11 @@ pub trait SimulatedBoard {
     /// Levels of the STEP pins, a bit for each axis.
     fn step(&self) -> u8;
 
+    /// Whether the board tells the levels of the outputs that programs switch.
+    fn shows_outputs(&self) -> bool {
+        true
+    }
+
     /// Number of steps of an axis that were discarded; `None` if this board cannot report it.
     fn discarded(&self, axis: usize) -> Option<u32>;
 

@@ -117,6 +117,11 @@ impl SimulatedBoard for VerilatedBoard {
         self.pins[0]
     }
 
+    /// The process reports only STEP and DIR.
+    fn shows_outputs(&self) -> bool {
+        false
+    }
+
     /// Not visible at the pins.
     fn discarded(&self, _: usize) -> Option<u32> {
         None

@@ -32,7 +32,7 @@ steps_per_unit = 80
 speed_limit = 50
 accel_limit = 1000
 driver = "tmc2209"
-travel = [-5, 20]
+travel = [-9, 20]
 
 [[machine.axis]]
 name = "y"
@@ -50,7 +50,7 @@ driver = "tmc2209"
 "#;
 
 /// The table of x with which it can be homed, on a machine with switches.
-const HOME: &str = r#"travel = [-5, 20]
+const HOME: &str = r#"travel = [-9, 20]
 home = { toward = "min", seek_speed = 20, slow_speed = 2, max_travel = 30, pull_off = 1, position = 0 }
 "#;
 
@@ -118,7 +118,7 @@ fn program_reaches_the_pins_as_it_was_planned() {
     assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\nwrote a.vcd\n"));
     // Every pulse in its clock, as `simulate` has it.
     passed(&folder.run("check a.vcd job.ngc --machine machine.toml"));
-    folder.write("other.ngc", JOB.replace("X4 Y2", "X4 Y2.1"));
+    folder.write("other.ngc", JOB.replace("G0 Z1", "G0 Z1.1"));
     assert_eq!(folder.run("check a.vcd other.ngc --machine machine.toml").status, 1);
 }
 
@@ -156,7 +156,7 @@ fn waits_for_other(folder: &Folder, board: &Board, child: &mut Child, first: &st
 #[test]
 fn stop_while_the_program_waits_ends_it_at_rest() {
     let folder = folder(PAUSES);
-    let board = Board::new(&folder, "");
+    let board = Board::new(&folder, "--fast");
     let mut child = begins(&folder, &board);
     waits(&folder, &board, &mut child);
     passed(&folder.run(&format!("stop --port {} --machine machine.toml", board.port)));
@@ -175,7 +175,7 @@ fn stop_while_the_program_waits_ends_it_at_rest() {
 #[test]
 fn switch_that_opens_while_the_program_waits_is_reported() {
     let folder = folder(PAUSES);
-    let mut board = Board::new(&folder, "");
+    let mut board = Board::new(&folder, "--fast");
     let mut child = begins(&folder, &board);
     waits(&folder, &board, &mut child);
     board.press("estop 1");
@@ -197,7 +197,7 @@ fn machine_that_can_be_homed_has_to_be() {
     let folder = folder("G21 F1000\nG1 X21\nM2\n");
     let switches = MACHINE
         .replace("debounce_us = 100", "debounce_us = 100\nlimits = \"pair\"")
-        .replace("travel = [-5, 20]\n", HOME);
+        .replace("travel = [-9, 20]\n", HOME);
     folder.write("machine.toml", switches);
     let board = Board::new(&folder, "--fast --min x=-400");
     let ran = run(&folder, &board, "");
@@ -209,7 +209,7 @@ fn machine_that_can_be_homed_has_to_be() {
     // From now on, the soft limit holds, and the line is named.
     let ran = run(&folder, &board, "");
     assert_eq!(ran.status, 2);
-    let why = "x would go to 21 mm, beyond its travel of -5 to 20 mm";
+    let why = "x would go to 21 mm, beyond its travel of -9 to 20 mm";
     assert!(ran.stderr.contains(why) && ran.stderr.contains("job.ngc:2"), "{}", ran.stderr);
     folder.write("job.ngc", "G21 F1000\nG1 X3\nM2\n");
     let ran = run(&folder, &board, "");
@@ -240,14 +240,9 @@ fn mistakes_are_found_before_anything_moves() {
     assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
 }
 
-/// A path of some seconds, without a rest.
-fn long() -> String {
-    let mut text = "G21 G90 G64 P0.02 F1800\nM3 S1000\n".to_owned();
-    for turn in 1..6 {
-        text += &format!("G1 X{turn} Y{turn}\nG3 X{turn} Y{turn} I-3 J1\nG1 X-{turn} Z0.{turn}\n");
-    }
-    text + "G1 X0 Y0 Z0\nM2\n"
-}
+/// A path of some 20 seconds, without a rest.
+const LONG: &str = "G21 G90 G64 P0.02 F1800\nM3 S1000\no1 repeat [6]\nG1 X4 Y4\n\
+    G3 X4 Y4 I-3 J1\nG1 X-4 Z0.4\nG1 X0 Y0 Z0\no1 endrepeat\nM2\n";
 
 fn hold(folder: &Folder, board: &Board) -> Ran {
     folder.run(&format!("hold --port {}", board.port))
@@ -265,8 +260,8 @@ fn positions(found: &Value) -> Vec<i64> {
 
 #[test]
 fn held_program_rests_on_its_path_and_goes_on() {
-    let folder = folder(&long());
-    let board = Board::new(&folder, "--vcd a.vcd");
+    let folder = folder(LONG);
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
     assert_eq!(hold(&folder, &board).status, 2);
     let mut child = begins(&folder, &board);
     moving(&folder, &mut child, &board.port);
@@ -295,8 +290,8 @@ fn held_program_rests_on_its_path_and_goes_on() {
 
 #[test]
 fn second_signal_ends_the_held_program_at_rest() {
-    let folder = folder(&long());
-    let board = Board::new(&folder, "--vcd a.vcd");
+    let folder = folder(LONG);
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
     let mut child = begins(&folder, &board);
     moving(&folder, &mut child, &board.port);
     signal(&child);
@@ -319,16 +314,17 @@ fn second_signal_ends_the_held_program_at_rest() {
 
 #[test]
 fn third_signal_ramps_the_axes_down() {
-    let folder = folder("G21 G90 F3000\nG1 X400\nM2\n");
-    // It takes seconds to come to rest.
-    let machine = MACHINE.replacen("accel_limit = 1000", "accel_limit = 15", 1);
+    let folder = folder("G21 G90 F3000\nG1 X4000\nM2\n");
+    // It takes half a minute to come to rest, of which a fast board needs a part.
+    let machine = MACHINE.replacen("accel_limit = 1000", "accel_limit = 4", 1);
     folder.write("machine.toml", machine);
-    let board = Board::new(&folder, "");
+    let board = Board::new(&folder, "--fast");
     let mut child = begins(&folder, &board);
-    while positions(&moving(&folder, &mut child, &board.port))[0] < 2000 {}
+    while positions(&moving(&folder, &mut child, &board.port))[0] < 30_000 {}
     for _ in 0..3 {
         signal(&child);
-        std::thread::sleep(Duration::from_millis(200));
+        // Signals that come together are one.
+        std::thread::sleep(Duration::from_millis(20));
     }
     let told = document(child);
     // A hold would have waited.

@@ -30,6 +30,10 @@ pub struct Edge {
 pub trait Edges {
     /// Receives one edge.
     fn edge(&mut self, edge: Edge);
+
+    /// Receives the levels of the engine's outputs, one bit each, from the clock in which one of
+    /// them has changed.
+    fn levels(&mut self, _clock: u64, _levels: u8) {}
 }
 
 /// Collects every edge; for tests and short runs.

@@ -96,6 +96,11 @@ impl Motion {
 
 /// Access for the fast model, which passes many clocks at once.
 impl Motion {
+    /// Levels of the outputs, one bit each; 1 is active.
+    pub(crate) const fn output_levels(&self) -> u8 {
+        self.outputs.levels
+    }
+
     /// True if no clock changes anything but the PWM's counter and pin.
     pub(super) fn outputs_are_steady(&self) -> bool {
         let OutputState { computed, emitted, levels, duty, .. } = self.outputs;

@@ -91,4 +91,8 @@ impl<E: Edges> Edges for Following<'_, E> {
         }
         self.to.edge(edge);
     }
+
+    fn levels(&mut self, clock: u64, levels: u8) {
+        self.to.levels(clock, levels);
+    }
 }
