@@ -202,7 +202,7 @@ impl Hold {
     }
 
     /// The ends of the rows of a transition, ticks from its beginning: where the planned rows end,
-    /// and between them where a row would be too long. The last two rows have lengths without a
+    /// and between them, so that the rows are nearly as short as the planned ones. The last two rows have lengths without a
     /// common divisor ([`land`]).
     fn ends(&self, curve: &Curve<'_>, (begin, end): (u64, u64), law: Law) -> Option<Vec<u64>> {
         let first = curve.place(begin).row;
@@ -211,17 +211,18 @@ impl Hold {
         for row in &curve.rows()[first..] {
             planned += u64::from(row.ticks);
             if planned >= end {
+                corners.push((law.ticks(), row.ticks));
                 break;
             }
-            corners.push(law.tick_of(planned - begin));
+            corners.push((law.tick_of(planned - begin), row.ticks));
         }
-        corners.push(law.ticks());
         let (mut ends, mut before) = (Vec::new(), 0);
-        for corner in corners {
+        for (corner, planned) in corners {
             let length = corner.checked_sub(before).filter(|&length| length > 0)?;
-            let pieces = length.div_ceil(self.longest.into());
-            let pieces =
-                if ends.is_empty() && corner == law.ticks() { pieces.max(2) } else { pieces };
+            // As short as the line may have to carry them.
+            let pieces = (length / u64::from(planned)).max(length.div_ceil(self.longest.into()));
+            let is_all = ends.is_empty() && corner == law.ticks();
+            let pieces = if is_all { pieces.max(2) } else { pieces };
             ends.extend((1..=pieces).map(|piece| before + length * piece / pieces));
             before = corner;
         }

@@ -240,10 +240,10 @@ mod tests {
         }
     }
 
-    fn stretches(rows: &[Row]) -> Stretches<std::vec::IntoIter<Row>> {
+    fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
         let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
         let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
-        Stretches::new(rows.to_vec().into_iter(), &[0, 0], hold)
+        Stretches::new(rows.iter().cloned(), &[0, 0], hold)
     }
 
     fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {
@@ -255,7 +255,8 @@ mod tests {
 
     #[test]
     fn pause_ends_a_stretch() {
-        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
+        let rows = [row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])];
+        let mut all = stretches(&rows);
         assert_eq!(all.begin(), Some(Vec::new()));
         assert_eq!((all.start(), all.start()), (Some(3), None));
         assert_eq!(taken(&mut all, 1), [(5, 2, false), (6, 2, true)]);
@@ -263,6 +264,7 @@ mod tests {
         let pause = SyncPoint { switch: Switch::Pause, line: 9 };
         assert_eq!(all.begin(), Some(vec![Wait::SyncPoint(pause)]));
         assert_eq!(taken(&mut all, 0), [(7, 1, true)]);
+        assert_eq!(taken(&mut all, 1), [(7, 2, true)]);
         assert_eq!(all.start(), Some(3));
         assert_eq!((all.begin(), all.segment(1)), (None, None));
     }
@@ -270,7 +272,8 @@ mod tests {
     #[test]
     fn outputs_go_with_their_row() {
         let change = OutputChange::of_word(1 << 4 | 1 << 12);
-        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[change.word().into()])]);
+        let rows = [row(5, 1, &[]), row(6, 1, &[change.word().into()])];
+        let mut all = stretches(&rows);
         all.begin();
         // Another axis reads ahead.
         assert_eq!(taken(&mut all, 1).len(), 2);
@@ -282,7 +285,8 @@ mod tests {
 
     #[test]
     fn rest_of_a_stretch_is_dropped() {
-        let mut all = stretches(&[row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
+        let rows = [row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])];
+        let mut all = stretches(&rows);
         all.begin();
         all.segment(0);
         all.begin();
@@ -301,7 +305,7 @@ mod tests {
         let mut all = stretches(&rows);
         all.begin();
         for axis in [0, 1] {
-            (0..7).for_each(|_| drop(all.segment(axis)));
+            assert!((0..7).all(|_| all.segment(axis).is_some()));
         }
         let sent = 7 * 4000 * i128::from(V / 2);
         assert!(all.hold());

@@ -64,9 +64,9 @@ impl Law {
         while low < high {
             let middle = low + (high - low) / 2;
             if self.planned(middle as f64) < planned as f64 {
-                low = middle + 1
+                low = middle + 1;
             } else {
-                high = middle
+                high = middle;
             }
         }
         low
