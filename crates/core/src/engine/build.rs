@@ -3,7 +3,7 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LATCHES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
     Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
@@ -58,8 +58,8 @@ pub struct Guard {
     pub limits_low: bool,
     /// The inputs of the rows 2 and 3: probe, interlock and general inputs.
     pub inputs: [InputRow; 2],
-    /// The latch; `None` if the build has none.
-    pub latch: Option<Latch>,
+    /// The latches, at most [`MAX_LATCHES`]; latch k is entry k.
+    pub latches: Vec<Latch>,
     /// Stop acceleration of each axis, 2^-64 step per tick^2, 1 to 2^62.
     pub stop: Vec<u64>,
 }
@@ -74,13 +74,37 @@ pub struct InputRow {
     pub low: u8,
 }
 
-/// The latch, which keeps the state of all axes at an edge of its pin.
+/// A latch, which keeps the state of all axes at an edge of its pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Latch {
+    /// The pin of the machine to which a board connects the latch.
+    pub source: LatchSource,
     /// Whether its pin is active while it is low. The edge is the change to the active level.
     pub low: bool,
     /// Number of consecutive ticks that must find the pin active, 1 to [`MAX_LOOKS`].
     pub looks: u8,
+}
+
+impl Latch {
+    /// A latch with a pin of its own.
+    pub const fn of_pin(low: bool, looks: u8) -> Self {
+        Self { source: LatchSource::Pin, low, looks }
+    }
+}
+
+/// The pin of the machine to which a board connects a latch. The engine has a port for each latch
+/// in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LatchSource {
+    /// A pin of its own.
+    Pin,
+    /// The pin of a switch, which the engine also samples as this switch.
+    Switch {
+        /// The row of the switch.
+        row: u8,
+        /// The number of its axis.
+        axis: u8,
+    },
 }
 
 /// Wiring of the limit switches.
@@ -112,12 +136,12 @@ impl Guard {
             estop_low: false,
             limits_low: false,
             inputs: [InputRow::default(); 2],
-            latch: None,
+            latches: Vec::new(),
             stop,
         }
     }
 
-    /// This guard with the active level of every switch and of the latch: low, or else high.
+    /// This guard with the active level of every switch and latch: low, or else high.
     #[must_use]
     pub fn active_low(self, low: bool) -> Self {
         let row = |InputRow { exist, .. }| InputRow { exist, low: if low { exist } else { 0 } };
@@ -125,9 +149,19 @@ impl Guard {
             estop_low: low,
             limits_low: low,
             inputs: self.inputs.map(row),
-            latch: self.latch.map(|latch| Latch { low, ..latch }),
+            latches: self.latches.into_iter().map(|latch| Latch { low, ..latch }).collect(),
             ..self
         }
+    }
+
+    /// Mask of the latches whose pins are active while they are low.
+    pub const fn latches_low(&self) -> u8 {
+        let (mut low, mut number) = (0, 0);
+        while number < self.latches.len() {
+            low |= (self.latches.as_slice()[number].low as u8) << number;
+            number += 1;
+        }
+        low
     }
 
     /// True if the build has the interlock: input 0 of row 3.
@@ -165,6 +199,23 @@ impl EngineBuild {
         self.pins.len()
     }
 
+    /// True if the build has this switch, with a pin of its own.
+    fn has_switch(&self, row: u8, axis: u8) -> bool {
+        let exists = usize::from(axis) < self.axes();
+        exists
+            && match (row, self.guard.limits) {
+                (0, LimitWiring::Pair | LimitWiring::Each) | (1, LimitWiring::Pair) => true,
+                (0, LimitWiring::One) => axis == 0,
+                (2 | 3, _) => self.guard.inputs[usize::from(row) - 2].exist >> axis & 1 == 1,
+                _ => false,
+            }
+    }
+
+    /// True if the build has more latches than one, and therefore the ports of several latches.
+    pub const fn has_several_latches(&self) -> bool {
+        self.guard.latches.len() > 1
+    }
+
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
@@ -195,10 +246,18 @@ impl EngineBuild {
                 return Err(EngineError::RoundOfInputs(guard.round));
             }
         }
-        if let Some(Latch { looks, .. }) = guard.latch
-            && !(1..=MAX_LOOKS).contains(&looks)
-        {
-            return Err(EngineError::Looks(looks));
+        if guard.latches.len() > MAX_LATCHES {
+            return Err(EngineError::Latches(guard.latches.len()));
+        }
+        for (number, &Latch { source, looks, .. }) in guard.latches.iter().enumerate() {
+            if !(1..=MAX_LOOKS).contains(&looks) {
+                return Err(EngineError::Looks(looks));
+            }
+            if let LatchSource::Switch { row, axis } = source
+                && !self.has_switch(row, axis)
+            {
+                return Err(EngineError::LatchSource { number, row, axis });
+            }
         }
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
@@ -259,8 +318,16 @@ mod tests {
             build.guard.round = 2;
         });
         assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
-        let said = refusal(|build| build.guard.latch = Some(Latch { low: false, looks: 17 }));
+        let latches = |build: &mut EngineBuild, latch: Latch, count| {
+            build.guard.latches = vec![latch; count];
+        };
+        let said = refusal(|build| latches(build, Latch::of_pin(false, 17), 1));
         assert!(said.starts_with("a latch of 17 looks"), "{said}");
+        let said = refusal(|build| latches(build, Latch::of_pin(false, 1), 5));
+        assert_eq!(said, "5 latches: an engine has at most 4");
+        let source = LatchSource::Switch { row: 2, axis: 0 };
+        let said = refusal(|build| latches(build, Latch { source, low: false, looks: 1 }, 2));
+        assert_eq!(said, "latch 0 is connected to axis 0 of row 2, where the build has no switch");
         let said = refusal(|build| build.outputs.pwm_divider = 257);
         assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
         let said = refusal(|build| build.queue = 8);
