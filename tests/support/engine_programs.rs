@@ -100,8 +100,10 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         // Bit 0 is the interlock, which is open for too short a time in many episodes.
         2 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask & !1), Event::Inputs1(0))),
         5 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask | 1), Event::Inputs1(0))),
-        3 => Just((Event::Latch(true), Event::Latch(false))),
-        2 => Just((Event::LatchArm, Event::LatchArm)),
+        4 => (pins_of_latches(), pins_of_latches())
+            .prop_map(|(one, other)| (Event::Latch(one), Event::Latch(one & other))),
+        3 => (latches(), latches())
+            .prop_map(|(one, other)| (Event::LatchArm(one), Event::LatchArm(other))),
         6 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
         4 => (1..=all(axes)).prop_map(|mask| (Event::Seek(mask), Event::Seek(0))),
@@ -116,6 +118,16 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length)
         .prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+}
+
+/// Latches to arm, one bit each; now and then some that a build does not have.
+fn latches() -> impl Strategy<Value = u8> {
+    prop_oneof![4 => Just(0x3_u8), 6 => 0_u8..0x4, 1 => 0_u8..0x10]
+}
+
+/// Pins of latches, one bit each: often those of several latches at once.
+fn pins_of_latches() -> impl Strategy<Value = u8> {
+    prop_oneof![1 => Just(0xf_u8), 2 => 0_u8..0x10]
 }
 
 /// Any source, now and then one that no engine has.
@@ -136,7 +148,7 @@ fn switches(row: u8, active: u8) -> Event {
 }
 
 /// Axes seek a switch, whose row becomes active or inactive bit by bit, whichever way the axes
-/// move. The latch is connected to the same switches, and the host takes snapshots meanwhile. Then
+/// move. The latches are connected to the same switches, and the host takes snapshots meanwhile. Then
 /// it ends the seek, or seeks again.
 fn seeks(axes: usize) -> impl Strategy<Value = Events> {
     let later = prop_oneof![1 => Just(0_u64), 1 => 1_u64..300, 3 => 300_u64..4000];
@@ -153,16 +165,16 @@ fn seeks(axes: usize) -> impl Strategy<Value = Events> {
                 (at.saturating_sub(3000), levels(0)),
                 (at, Event::SeekSource(source)),
                 (at, Event::Seek(mask)),
-                (at, Event::LatchArm),
+                (at, Event::LatchArm(0x3)),
             ];
             let (mut then, mut reached) = (at, 0);
             for (mask, later) in masks {
                 then += later;
                 reached |= mask;
                 events.push((then, levels(reached)));
-                events.push((then, Event::Latch(true)));
+                events.push((then, Event::Latch(1 | reached << 1)));
                 events.push((then + later / 2, Event::Snapshot));
-                events.push((then + later / 2, Event::Latch(false)));
+                events.push((then + later / 2, Event::Latch(0)));
             }
             events.push((then + 2000, Event::Seek(again)));
             events.push((then + 4000, switches(row, 0)));
@@ -273,7 +285,7 @@ pub fn build(
     build.guard = Guard {
         round: 4,
         inputs: [all; 2],
-        latch: Some(Latch { low: false, looks: 2 }),
+        latches: vec![Latch::of_pin(false, 2)],
         debounce: 3,
         watchdog: 40,
         enable: 2,
@@ -297,7 +309,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         watchdog: 0,
         enable: 0,
         inputs: [InputRow { exist: 0x2d, low: 0x09 }, InputRow { exist: 0x33, low: 0x33 }],
-        latch: Some(Latch { low: true, looks: 16 }),
+        latches: vec![Latch::of_pin(true, 16)],
         ..third.guard
     };
     third.outputs = Outputs { exist: 0xa5, pwm_divider: 1, off_at_ramps: false };
@@ -310,7 +322,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         watchdog: 21,
         enable: 7,
         inputs: [InputRow { exist: 0x3f, low: 0x3e }, InputRow { exist: 0x01, low: 0x01 }],
-        latch: Some(Latch { low: true, looks: 1 }),
+        latches: vec![Latch::of_pin(true, 1)],
         ..fourth.guard
     };
     fourth.cuts = false;
@@ -318,6 +330,15 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
     [first, second, third, fourth]
+}
+
+/// The same build with this number of latches, at most four, with different looks.
+pub fn with_latches(mut build: EngineBuild, count: usize) -> EngineBuild {
+    let looks = [1, 2, 1, 5];
+    let low = build.guard.latches.iter().any(|latch| latch.low);
+    let latch = |(number, looks): (usize, &u8)| Latch::of_pin(low != (number == 2), *looks);
+    build.guard.latches = looks.iter().enumerate().take(count).map(latch).collect();
+    build
 }
 
 /// Runs random programs until they have taken the required number of clocks.

@@ -28,7 +28,7 @@ const fn row(exist: u8, low: u8) -> InputRow {
 #[test]
 fn without_keys_there_are_no_inputs() {
     let found = guard(1, "");
-    assert_eq!((found.inputs, found.latch), ([row(0, 0); 2], None));
+    assert_eq!((found.inputs, found.latches), ([row(0, 0); 2], Vec::new()));
     assert!(!found.has_interlock());
 }
 
@@ -50,9 +50,9 @@ fn each_key_is_an_input_of_its_row() {
 
 #[test]
 fn latch_has_its_edge_and_its_looks() {
-    assert_eq!(guard(1, "latch = \"rising\"").latch, Some(Latch { low: false, looks: 1 }));
+    assert_eq!(guard(1, "latch = \"rising\"").latches, [Latch::of_pin(false, 1)]);
     let found = guard(1, "latch = \"falling\"\nlatch_looks = 16");
-    assert_eq!(found.latch, Some(Latch { low: true, looks: 16 }));
+    assert_eq!(found.latches, [Latch::of_pin(true, 16)]);
 }
 
 #[test]

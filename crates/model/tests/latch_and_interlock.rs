@@ -16,7 +16,7 @@ fn build(random: &mut Random, looks: u8) -> EngineBuild {
     (guard.watchdog, guard.enable, guard.round, guard.debounce) = (0, 0, 4, 1);
     guard.limits = LimitWiring::None;
     guard.inputs = [InputRow { exist: 1, low: random.next() as u8 & 1 }; 2];
-    guard.latch = Some(Latch { low: random.below(2) == 0, looks });
+    guard.latches = vec![Latch::of_pin(random.below(2) == 0, looks)];
     build.pins.fill(PinTiming::SHORTEST);
     build
 }
