@@ -18,15 +18,17 @@ mod cause;
 mod commit;
 mod error;
 mod figures;
+mod latch;
 mod ports;
 mod seek;
 mod state;
 
-pub use build::{EngineBuild, Guard, InputRow, Latch, LatchSource, LimitWiring};
+pub use build::{EngineBuild, Guard, InputRow, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
+pub use latch::{Latch, LatchSource};
 pub use ports::{ENGINE_PORTS, MORE_LATCH_PORTS, engine_ports, is_recorded, ports_of};
 pub use seek::SeekSource;
 pub use state::{
@@ -204,7 +206,10 @@ impl EngineInputs {
             };
             (level & 1) << number
         };
-        Self { latch: guard.latches.iter().enumerate().map(level).fold(0, |all, bit| all | bit), ..self }
+        Self {
+            latch: guard.latches.iter().enumerate().map(level).fold(0, |all, bit| all | bit),
+            ..self
+        }
     }
 }
 

@@ -55,6 +55,10 @@ fn page_lists_the_keys_of_the_reader() {
         ("### `home`", format!("{MOVE}[machine]\n{AXIS}home = {{ colour = 1 }}\n")),
         ("## `[machine.guard]`", format!("{MOVE}[machine.guard]\ncolour = 1\n{AXIS}")),
         ("## `[machine.inputs]`", format!("{MOVE}[machine.inputs]\ncolour = 1\n{AXIS}")),
+        (
+            "### `latches`",
+            format!("{MOVE}[machine.inputs]\nlatches = [{{ colour = 1 }}]\n[machine]\n{AXIS}"),
+        ),
         ("## `[machine.link]`", format!("{MOVE}[machine.link]\ncolour = 1\n{AXIS}")),
         ("## The move file", format!("colour = 1\n{MOVE}[machine]\n{AXIS}")),
         ("### `[[move]]`", format!("{MOVE}colour = 1\n[machine]\n{AXIS}")),

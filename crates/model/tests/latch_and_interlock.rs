@@ -87,10 +87,10 @@ fn latched_words_are_those_of_the_tick_after_the_last_look() {
             assert_eq!(live.edges(axis), latched.edges(axis), "seed {seed}, axis {axis}");
         }
         assert_kept(&latched, &live, tick, StatePage::Latch);
-        let armed = |cycle: usize| latched.cycles[cycle].1.latch_armed;
+        let armed = |cycle: usize| latched.cycles[cycle].1.latch_armed == 1;
         assert!(!armed(arm) && armed(arm + 1) && armed(tick * per_tick - 1), "seed {seed}");
         assert!(!armed(tick * per_tick), "seed {seed}");
-        let edges = latched.cycles.last().unwrap().1.latch_edges;
+        let edges = latched.cycles.last().unwrap().1.latch_edges[0];
         assert_eq!(edges, 1, "seed {seed}: the second edge is counted only");
     }
     assert!(bounces > 20);

@@ -2,8 +2,8 @@
 
 use crate::LevelError;
 use carrystep_core::engine::{
-    ENGINE_PORTS, MORE_LATCH_PORTS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE, StateItem, is_recorded,
-    ports_of,
+    ENGINE_PORTS, MORE_LATCH_PORTS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE, StateItem,
+    is_recorded, ports_of,
 };
 use carrystep_core::link::BYTE_PORTS;
 use carrystep_core::ports::{Direction, Peer, Port, Width};

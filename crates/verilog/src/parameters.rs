@@ -56,7 +56,9 @@ pub(crate) fn in_parent(instance: &str, name: &str) -> String {
     match (split_index(instance).1, described(name)) {
         (Some(index), Some((known, None))) if known.per_axis => format!("{name}_{index}"),
         // Latch 0 is a part of its own, and an array contains the latches from 1 on.
-        (Some(index), Some((known, None))) if known.per_latch && instance.starts_with("edge_latch") => {
+        (Some(index), Some((known, None)))
+            if known.per_latch && instance.starts_with("edge_latch") =>
+        {
             format!("{name}_{}", index + 1)
         }
         _ => name.to_owned(),

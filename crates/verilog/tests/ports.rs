@@ -96,7 +96,11 @@ fn exported_modules_have_the_ports_of_their_tables() {
         let table = tabled(engine_ports(&build).copied(), axes);
         assert_eq!(engine.into_iter().collect::<Ports>(), table, "{axes} axes");
         let link = declared(&link_verilog(&build, uart, "a test").unwrap(), LINK_NAME);
-        assert_eq!(link.into_iter().collect::<Ports>(), tabled(link_ports(&build), axes), "{axes} axes");
+        assert_eq!(
+            link.into_iter().collect::<Ports>(),
+            tabled(link_ports(&build), axes),
+            "{axes} axes"
+        );
     }
     for line in [uart, LineKind::Spi] {
         let found = declared(&line_verilog(line, "a test").unwrap(), line_name(line));

@@ -98,6 +98,15 @@ pub fn engine_with_inputs(axes: usize, clocks: u32, phases: u32) -> (EngineBuild
     (build, text)
 }
 
+/// The same engine of two axes with this number of latches, of one or two looks.
+pub fn engine_with_latches(count: usize) -> (EngineBuild, Arc<str>) {
+    let (mut build, _) = engine_with_inputs(2, 32, 4);
+    let latch = |number: usize| Latch::of_pin(number == 1, 1 + (number as u8 & 1));
+    build.guard.latches = (0..count).map(latch).collect();
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
 /// An engine of six axes with these outputs, and a PWM with this divider.
 pub fn engine_with_outputs(exist: u8, pwm_divider: u32) -> (EngineBuild, Arc<str>) {
     let (mut build, _) = small_engine(6, 80, 4, LimitWiring::Pair);

@@ -3,7 +3,7 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LATCHES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    EngineError, Latch, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
     Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
@@ -58,7 +58,7 @@ pub struct Guard {
     pub limits_low: bool,
     /// The inputs of the rows 2 and 3: probe, interlock and general inputs.
     pub inputs: [InputRow; 2],
-    /// The latches, at most [`MAX_LATCHES`]; latch k is entry k.
+    /// The latches, at most [`super::MAX_LATCHES`]; latch k is entry k.
     pub latches: Vec<Latch>,
     /// Stop acceleration of each axis, 2^-64 step per tick^2, 1 to 2^62.
     pub stop: Vec<u64>,
@@ -72,39 +72,6 @@ pub struct InputRow {
     pub exist: u8,
     /// Those of them that are active while their pin is low.
     pub low: u8,
-}
-
-/// A latch, which keeps the state of all axes at an edge of its pin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Latch {
-    /// The pin of the machine to which a board connects the latch.
-    pub source: LatchSource,
-    /// Whether its pin is active while it is low. The edge is the change to the active level.
-    pub low: bool,
-    /// Number of consecutive ticks that must find the pin active, 1 to [`MAX_LOOKS`].
-    pub looks: u8,
-}
-
-impl Latch {
-    /// A latch with a pin of its own.
-    pub const fn of_pin(low: bool, looks: u8) -> Self {
-        Self { source: LatchSource::Pin, low, looks }
-    }
-}
-
-/// The pin of the machine to which a board connects a latch. The engine has a port for each latch
-/// in any case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum LatchSource {
-    /// A pin of its own.
-    Pin,
-    /// The pin of a switch, which the engine also samples as this switch.
-    Switch {
-        /// The row of the switch.
-        row: u8,
-        /// The number of its axis.
-        axis: u8,
-    },
 }
 
 /// Wiring of the limit switches.
@@ -154,16 +121,6 @@ impl Guard {
         }
     }
 
-    /// Mask of the latches whose pins are active while they are low.
-    pub const fn latches_low(&self) -> u8 {
-        let (mut low, mut number) = (0, 0);
-        while number < self.latches.len() {
-            low |= (self.latches.as_slice()[number].low as u8) << number;
-            number += 1;
-        }
-        low
-    }
-
     /// True if the build has the interlock: input 0 of row 3.
     pub const fn has_interlock(&self) -> bool {
         self.inputs[1].exist & 1 == 1
@@ -199,23 +156,6 @@ impl EngineBuild {
         self.pins.len()
     }
 
-    /// True if the build has this switch, with a pin of its own.
-    fn has_switch(&self, row: u8, axis: u8) -> bool {
-        let exists = usize::from(axis) < self.axes();
-        exists
-            && match (row, self.guard.limits) {
-                (0, LimitWiring::Pair | LimitWiring::Each) | (1, LimitWiring::Pair) => true,
-                (0, LimitWiring::One) => axis == 0,
-                (2 | 3, _) => self.guard.inputs[usize::from(row) - 2].exist >> axis & 1 == 1,
-                _ => false,
-            }
-    }
-
-    /// True if the build has more latches than one, and therefore the ports of several latches.
-    pub const fn has_several_latches(&self) -> bool {
-        self.guard.latches.len() > 1
-    }
-
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
@@ -246,19 +186,7 @@ impl EngineBuild {
                 return Err(EngineError::RoundOfInputs(guard.round));
             }
         }
-        if guard.latches.len() > MAX_LATCHES {
-            return Err(EngineError::Latches(guard.latches.len()));
-        }
-        for (number, &Latch { source, looks, .. }) in guard.latches.iter().enumerate() {
-            if !(1..=MAX_LOOKS).contains(&looks) {
-                return Err(EngineError::Looks(looks));
-            }
-            if let LatchSource::Switch { row, axis } = source
-                && !self.has_switch(row, axis)
-            {
-                return Err(EngineError::LatchSource { number, row, axis });
-            }
-        }
+        self.check_latches()?;
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
         }
@@ -318,16 +246,6 @@ mod tests {
             build.guard.round = 2;
         });
         assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
-        let latches = |build: &mut EngineBuild, latch: Latch, count| {
-            build.guard.latches = vec![latch; count];
-        };
-        let said = refusal(|build| latches(build, Latch::of_pin(false, 17), 1));
-        assert!(said.starts_with("a latch of 17 looks"), "{said}");
-        let said = refusal(|build| latches(build, Latch::of_pin(false, 1), 5));
-        assert_eq!(said, "5 latches: an engine has at most 4");
-        let source = LatchSource::Switch { row: 2, axis: 0 };
-        let said = refusal(|build| latches(build, Latch { source, low: false, looks: 1 }, 2));
-        assert_eq!(said, "latch 0 is connected to axis 0 of row 2, where the build has no switch");
         let said = refusal(|build| build.outputs.pwm_divider = 257);
         assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
         let said = refusal(|build| build.queue = 8);

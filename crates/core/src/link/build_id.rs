@@ -45,10 +45,11 @@ fn protocol(build: &EngineBuild) -> String {
     let exists = |register: &&MappedRegister| {
         build.has_several_latches() || register.address != LATCHES || !register.access.is_read()
     };
-    let registers =
-        REGISTERS.iter().filter(exists).map(|MappedRegister { name, address, access, per_axis, .. }| {
+    let registers = REGISTERS.iter().filter(exists).map(
+        |MappedRegister { name, address, access, per_axis, .. }| {
             format!("{name} {address} {access:?} {per_axis}\n")
-        });
+        },
+    );
     let answer = ANSWER
         .iter()
         .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));

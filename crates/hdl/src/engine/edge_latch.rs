@@ -143,7 +143,10 @@ mod tests {
     fn edge_latch_synthesizes() {
         for looks in [1, 16] {
             let latch = Latch::of_pin(true, looks);
-            assert_synthesizes(EdgeLatch::new(Some(&latch)), &format!("carrystep_edge_latch_{looks}"));
+            assert_synthesizes(
+                EdgeLatch::new(Some(&latch)),
+                &format!("carrystep_edge_latch_{looks}"),
+            );
         }
     }
 }

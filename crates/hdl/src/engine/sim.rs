@@ -7,8 +7,8 @@ use crate::primitives::word::Word;
 use crate::sim::{mask, rising_edge, settle};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    CAUSES, EngineError, EngineInputs, EngineOutputs, MAX_LATCHES, Put, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
-    SeekSource, StateItem, StatePage, StateWord,
+    CAUSES, EngineError, EngineInputs, EngineOutputs, MAX_LATCHES, Put, STATUS_BITS, SWITCH_LEVEL,
+    SWITCH_STATE, SeekSource, StateItem, StatePage, StateWord,
 };
 use rust_hdl::prelude::{Block, Out, Signal, check_all};
 

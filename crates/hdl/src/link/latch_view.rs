@@ -69,7 +69,7 @@ pub struct LatchView {
     pub state: Input<Word<32>>,
     kept: Memory<8, 32>,
     chosen: Register<Word<2>>,
-    was_state: Register<Bit>,  // the address of the clock before is that of all latches
+    was_state: Register<Bit>, // the address of the clock before is that of all latches
     was_record: Register<Bit>, // it is one of a record
     record: Signal<Local, Word<2>>,
     place: Signal<Local, Word<8>>,
@@ -107,11 +107,7 @@ impl LatchView {
             Formula::number(16 << number).where_or(&exists, Formula::number(0))
         };
         let exist = (1..MAX_LATCHES).fold(bit(0), |all, number| all | bit(number));
-        Self {
-            kept: Memory::of_halves(&[]),
-            exist: Parameter::of(&exist),
-            ..Self::default()
-        }
+        Self { kept: Memory::of_halves(&[]), exist: Parameter::of(&exist), ..Self::default() }
     }
 }
 

@@ -142,7 +142,9 @@ impl Host {
                     _ => inputs.inputs[1] ^= mask,
                 }
             }
-            72..74 => (inputs.latch, inputs.latch_arm) = (inputs.latch ^ 1, random.once_in(4).into()),
+            72..74 => {
+                (inputs.latch, inputs.latch_arm) = (inputs.latch ^ 1, random.once_in(4).into())
+            }
             74 if random.once_in(4) => inputs.inputs[1] ^= 1,
             74..76 => (inputs.kick, inputs.clear) = (true, true),
             80..82 => inputs.stop = true,

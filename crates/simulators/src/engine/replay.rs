@@ -123,9 +123,9 @@ impl Recording {
         values: &[(&str, Option<u64>)],
     ) -> impl Iterator<Item = u64> {
         let recorded = ports_of(direction).zip(values).filter(|(port, _)| self.has(port));
-        recorded.zip(self.widths(direction)).map(|((_, (_, value)), width)| {
-            value.unwrap_or(0) & ((1 << width) - 1)
-        })
+        recorded
+            .zip(self.widths(direction))
+            .map(|((_, (_, value)), width)| value.unwrap_or(0) & ((1 << width) - 1))
     }
 
     /// True if the engine has this port and benches print it.
@@ -146,7 +146,6 @@ impl Recording {
             .fold(0, |all, (width, value)| all << width | u128::from(value))
     }
 }
-
 
 /// Number of cycles of rest after which every step has been counted.
 pub(super) fn settle(build: &EngineBuild) -> u64 {

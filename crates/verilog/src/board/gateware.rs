@@ -9,12 +9,12 @@ use crate::prefix::Prefix;
 use crate::purposes::{ENGINE_NAME, LINK_NAME};
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
+use carrystep_core::ChosenTick;
 use carrystep_core::engine::{
     ENGINE_PORTS, EngineBuild, EngineInputs, Latch, LatchSource, LimitWiring, MAX_LATCHES,
 };
 use carrystep_core::link::{BuildId, LineKind, Uart, line_pins};
 use carrystep_core::ports::{Direction, Peer, Port, Width};
-use carrystep_core::ChosenTick;
 use carrystep_files::{Machine, SourceText};
 use carrystep_hdl::parameters::EVENT_MEMORY;
 use minijinja::{Value, context};

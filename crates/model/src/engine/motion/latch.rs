@@ -156,7 +156,12 @@ const fn level(inputs: &EngineInputs, number: usize) -> bool {
 impl LatchState {
     /// The latches of the build, each with its number and its registers.
     fn built<'a>(&'a self, guard: &'a Guard) -> impl Iterator<Item = (usize, Latch, &'a OneLatch)> {
-        guard.latches.iter().zip(&self.each).enumerate().map(|(number, (latch, one))| (number, *latch, one))
+        guard
+            .latches
+            .iter()
+            .zip(&self.each)
+            .enumerate()
+            .map(|(number, (latch, one))| (number, *latch, one))
     }
 
     /// True if these inputs change nothing before the next strobe.
