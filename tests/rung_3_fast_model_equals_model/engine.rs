@@ -68,7 +68,7 @@ fn an_engine_with_several_latches() {
     for count in [2, 4] {
         let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
         let build = engine_programs::with_latches(build, count);
-        let came = engines(&build, 60, engine_programs::program(6));
+        let came = engines(&build, 60, engine_programs::program_with_latches(6));
         assert!(came.leapt > came.clocks / 3 && came.edges > 1000, "{came:?}");
     }
 }

@@ -130,6 +130,24 @@ fn pins_of_latches() -> impl Strategy<Value = u8> {
     prop_oneof![1 => Just(0xf_u8), 2 => 0_u8..0x10]
 }
 
+/// The host arms latches, and their pins change some ticks later, several of them at once or one
+/// after the other; then it arms others.
+fn edges_of_latches() -> impl Strategy<Value = Events> {
+    let later = prop_oneof![1 => 0_u64..200, 3 => 200_u64..2000];
+    let turns = prop::collection::vec((0_u8..0x4, pins_of_latches(), later), 2..8);
+    (0_u64..60_000, turns).prop_map(|(at, turns)| {
+        let mut events = Events::new();
+        let mut then = at;
+        for (arm, pins, later) in turns {
+            events.push((then, Event::LatchArm(arm)));
+            events.push((then + later / 2, Event::Latch(pins)));
+            then += later;
+        }
+        events.push((then + 1000, Event::Latch(0)));
+        events
+    })
+}
+
 /// Any source, now and then one that no engine has.
 fn source(axes: usize) -> impl Strategy<Value = SeekSource> {
     let axis = prop_oneof![9 => 0..axes as u8, 1 => 0..MAX_AXES as u8];
@@ -232,7 +250,12 @@ fn cuts(axes: usize) -> impl Strategy<Value = Events> {
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 2 => cuts(axes)];
+    let episode = prop_oneof![
+        12 => episode(axes),
+        2 => seeks(axes),
+        2 => cuts(axes),
+        2 => edges_of_latches(),
+    ];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life(), outputs()).prop_map(|(episodes, life, outputs)| {
         let mut events = episodes.concat();
@@ -257,6 +280,16 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
         1 => Just(stray),
     ];
     (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
+}
+
+/// The same for an engine with several latches, whose pins have many edges.
+pub fn program_with_latches(axes: usize) -> impl Strategy<Value = (Program, Events)> {
+    let edges = prop::collection::vec(edges_of_latches(), 1..6);
+    (program(axes), edges).prop_map(|((program, mut events), edges)| {
+        events.extend(edges.concat());
+        events.sort_by_key(|(cycle, _)| *cycle);
+        (program, events)
+    })
 }
 
 /// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
@@ -362,11 +395,14 @@ pub fn run_programs(
         if let RngSeed::Fixed(seed) = &mut config.rng_seed {
             *seed = seed.wrapping_add(1);
         }
-        let held =
-            TestRunner::new(config.clone()).run(&program(build.axes()), |(program, events)| {
-                clocks.set(clocks.get() + one(&program, &events)?);
-                Ok(())
-            });
+        let programs = match build.has_several_latches() {
+            true => program_with_latches(build.axes()).boxed(),
+            false => program(build.axes()).boxed(),
+        };
+        let held = TestRunner::new(config.clone()).run(&programs, |(program, events)| {
+            clocks.set(clocks.get() + one(&program, &events)?);
+            Ok(())
+        });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
     effort::figures(&format!("{} clocks, no difference", clocks.get()));

@@ -122,6 +122,8 @@ impl Logic for LatchView {
         self.arm.next = self.no_latch.val();
         if self.writes.val() {
             self.arm.next = self.byte.val().get_bits::<3>(1);
+        }
+        if self.writes.val() {
             self.chosen.d.next = self.byte.val().get_bits::<2>(4);
         }
 

@@ -31,7 +31,7 @@ module promises (
     (* inside = "dut.edge_latch_0_comes" *) wire comes_1;
     (* inside = "dut.edge_latch_1_comes" *) wire comes_2;
     (* inside = "dut.edge_latch_2_comes" *) wire comes_3;
-    wire [3:0] accept = {comes_3, comes_2, comes_1, first_comes};
+    wire [3:0] accept = {comes_3, comes_2, comes_1, first_comes} & {EXIST, 1'b1};
     wire [3:0] hold = ~{armed, first_armed} & {EXIST, 1'b1};
 
     // ---- The clock before.
@@ -58,26 +58,31 @@ module promises (
         assume (!first_clock || !first_armed);
     end
 
+    // ---- What each latch has done in the clock before: it has kept a record that is taken now, it has
+    // taken another record than that of this tick, or its record has changed without an edge.
+
+    wire [3:0] is_overwritten, is_apart, is_lost;
+    genvar k;
+    generate for (k = 0; k < 4; k = k + 1) begin : each
+        assign is_overwritten[k] = was_accept != 0 && was_hold[k] && was_records[2 * k +: 2] == record;
+        assign is_apart[k] = was_accept[k] && records[2 * k +: 2] != record;
+        assign is_lost[k] = !was_accept[k] && records[2 * k +: 2] != was_records[2 * k +: 2];
+    end endgenerate
+
     // ---- The promises.
 
     always_comb begin
         promise_13_inactive: assert (!first_clock || {latches, armed, edges, records, record} == 0);
         promise_13_reset_forgets: assert (!was_resetting || {latches, armed, edges, records, record} == 0);
-        promise_15_latched_while_armed: assert ((accept & hold) == 0 && (!comes || strobe) && comes == (accept != 0));
+        promise_15_latched_while_armed: assert ((accept & hold) == 0 && (!comes || strobe)
+            && comes == (accept != 0));
         promise_15_the_tick_after_an_edge: assert (latches == (copies != 0));
         promise_15_absent_latches: assert (absent == ((arm & ~EXIST) != 0) && (armed & ~EXIST) == 0);
         promise_15_record_of_its_tick: assert (record == was_record || was_accept != 0 || was_resetting);
+        promise_15_takes_no_held_record: assert (is_overwritten == 0 || was_resetting);
+        promise_15_one_strobe_one_record: assert (is_apart == 0 || was_resetting);
+        promise_15_kept_until_armed: assert (is_lost == 0 || was_resetting);
     end
-    genvar k;
-    generate for (k = 0; k < 4; k = k + 1) begin : each
-        always_comb begin
-            promise_15_takes_no_held_record: assert (was_accept == 0 || was_resetting || !was_hold[k]
-                || was_records[2 * k +: 2] != record);
-            promise_15_one_strobe_one_record: assert (!was_accept[k] || was_resetting || records[2 * k +: 2] == record);
-            promise_15_kept_until_armed: assert (records[2 * k +: 2] == was_records[2 * k +: 2] || was_accept[k]
-                || was_resetting);
-        end
-    end endgenerate
 
     // ---- The invariants that make the promises inductive.
 
