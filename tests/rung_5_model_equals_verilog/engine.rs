@@ -49,7 +49,7 @@ struct Seen {
     hits: u64,
     /// Edges of latches that they did not latch.
     further: u64,
-    /// Records other than the first, and those that several latches share.
+    /// Changes of the records that latches hold, and edges that several latches accept at once.
     records: u64,
     shared: u64,
     /// Changes of outputs, and edges of the PWM.
@@ -71,10 +71,9 @@ impl Seen {
             self.hits += u64::from(now.hits & !before.hits != 0);
             let counts = now.latch_edges.iter().zip(before.latch_edges);
             self.further += u64::from(counts.into_iter().any(|(now, before)| *now > before));
-            let records = now.latch_records.iter().zip(before.latch_records);
-            let taken = records.filter(|(now, before)| **now != *before && **now != 0).count();
-            self.records += u64::from(taken > 0);
-            self.shared += u64::from(taken > 1);
+            self.records += u64::from(now.latch_records != before.latch_records);
+            let accepted = before.latch_armed & !now.latch_armed;
+            self.shared += u64::from(accepted.count_ones() > 1 && !now.resetting);
             self.switched += u64::from(now.outputs != before.outputs);
             self.modulated += u64::from(now.pwm != before.pwm);
             let decided = before.cut_busy && !now.cut_busy;

@@ -367,7 +367,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
 
 /// The same build with this number of latches, at most four, with different looks.
 pub fn with_latches(mut build: EngineBuild, count: usize) -> EngineBuild {
-    let looks = [1, 2, 1, 5];
+    let looks = [2, 2, 1, 5];
     let low = build.guard.latches.iter().any(|latch| latch.low);
     let latch = |(number, looks): (usize, &u8)| Latch::of_pin(low != (number == 2), *looks);
     build.guard.latches = looks.iter().enumerate().take(count).map(latch).collect();
