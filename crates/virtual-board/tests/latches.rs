@@ -8,7 +8,7 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Latch, LatchSource};
 use carrystep_core::link::Uart;
 use carrystep_link::{HostError, Patience};
-use carrystep_virtual_board::{ModelBoard, SimulatedBoard as _, Switches, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, SESSION, build};
 
