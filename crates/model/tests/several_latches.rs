@@ -106,9 +106,9 @@ fn each_latch_holds_the_tick_of_its_own_edge_until_it_is_armed_again() {
         for tick in 0..3000_u32 {
             let arm = if random() % 4 == 0 { random() as u8 & all } else { 0 };
             armed |= arm;
-            for latch in 0..count {
+            for (latch, expected) in expected.iter_mut().enumerate() {
                 if arm >> latch & 1 == 1 {
-                    expected[latch] = None;
+                    *expected = None;
                 }
             }
             let before = active;

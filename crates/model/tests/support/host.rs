@@ -143,7 +143,7 @@ impl Host {
                 }
             }
             72..74 => {
-                (inputs.latch, inputs.latch_arm) = (inputs.latch ^ 1, random.once_in(4).into())
+                (inputs.latch, inputs.latch_arm) = (inputs.latch ^ 1, random.once_in(4).into());
             }
             74 if random.once_in(4) => inputs.inputs[1] ^= 1,
             74..76 => (inputs.kick, inputs.clear) = (true, true),
