@@ -19,6 +19,7 @@ mod commit;
 mod error;
 mod figures;
 mod latch;
+mod latches;
 mod ports;
 mod seek;
 mod state;

@@ -58,8 +58,9 @@ module promises (
         assume (!first_clock || !first_armed);
     end
 
-    // ---- What each latch has done in the clock before: it has kept a record that is taken now, it has
-    // taken another record than that of this tick, or its record has changed without an edge.
+    // ---- What has happened to each latch in the clock before: the record that it holds was taken
+    // by another one, it has taken another record than that of this tick, or its record has changed
+    // without an edge.
 
     wire [3:0] is_overwritten, is_apart, is_lost;
     genvar k;
