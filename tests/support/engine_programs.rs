@@ -166,8 +166,8 @@ fn switches(row: u8, active: u8) -> Event {
 }
 
 /// Axes seek a switch, whose row becomes active or inactive bit by bit, whichever way the axes
-/// move. The latches are connected to the same switches, and the host takes snapshots meanwhile. Then
-/// it ends the seek, or seeks again.
+/// move. The latches are connected to the same switches, and the host takes snapshots meanwhile.
+/// Then it ends the seek, or seeks again.
 fn seeks(axes: usize) -> impl Strategy<Value = Events> {
     let later = prop_oneof![1 => Just(0_u64), 1 => 1_u64..300, 3 => 300_u64..4000];
     let masks = prop::collection::vec((0..=all(axes), later), 1..4);

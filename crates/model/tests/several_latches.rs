@@ -1,5 +1,5 @@
-//! Several latches: each keeps the state of the tick after its edge, whatever the others do, until it
-//! is armed again; and arming one that is not there is a fault.
+//! Several latches: each keeps the state of the tick after its edge, whatever the others do, until
+//! it is armed again; and arming one that is not there is a fault.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -82,8 +82,8 @@ fn latches_of_one_strobe_share_a_record_and_keep_it() {
     assert_eq!((bench.tick_of(0), bench.tick_of(1)), (both, both + 3));
 }
 
-/// A random host arms latches whose pins change at random; it knows the tick of the last edge of each
-/// latch from the pins alone.
+/// A random host arms latches whose pins change at random; it knows the tick of the last edge of
+/// each latch from the pins alone.
 #[test]
 fn each_latch_holds_the_tick_of_its_own_edge_until_it_is_armed_again() {
     for count in 2..=MAX_LATCHES {

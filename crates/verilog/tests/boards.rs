@@ -252,8 +252,8 @@ fn machine_can_use_an_spi() {
     assert!(on_spi >= 10, "{on_spi} boards have an SPI");
 }
 
-/// Latches at the pins of the probe and of a limit, and one at its own: the top level connects these
-/// pins twice, and link and engine with the ports of several latches.
+/// Latches at the pins of the probe and of a limit, and one at its own: the top level connects
+/// these pins twice, and link and engine with the ports of several latches.
 #[test]
 fn top_level_connects_each_latch_to_its_source() {
     let board = board("hx8k-evn").unwrap();

@@ -1,5 +1,5 @@
-//! The driver and several latches at the pins of limits and of their own, with a board of models and
-//! with the exported Verilog.
+//! The driver and several latches at the pins of limits and of their own, with a board of models
+//! and with the exported Verilog.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;

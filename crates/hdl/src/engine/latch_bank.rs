@@ -1,7 +1,7 @@
 //! Latches 1 to 3 of a build with several latches, and the records that all latches hold.
 //!
 //! ```text
-//! latches of 0   ______/^^^^^^^^^\____________________   latches 0 and 1 accept edges at one strobe:
+//! latches of 0   ______/^^^^^^^^^\____________________   0 and 1 accept edges at one strobe:
 //! latches of 1   ______/^^^^^^^^^\_________/^^^^^^^^^\_   both hold record 1
 //! record         0.....|1.................|2.........   the record to which a tick's words belong
 //! record of 1    0.....|1.................|2.........   latch 1 was armed again, latch 0 holds 1

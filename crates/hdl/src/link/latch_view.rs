@@ -7,8 +7,8 @@
 //!           other                        what the register mirror has there
 //! ```
 //!
-//! A memory of its own keeps four records of 64 words. The words of the engine's page 3 are stored in
-//! the record that the engine names, but for those of switches, which are in the register mirror.
+//! A memory of its own keeps four records of 64 words. The words of the engine's page 3 are stored
+//! in the record that the engine names, but for those of switches, which are in the register mirror.
 //!
 //! Interface: the byte that the host writes arms latches (bits 3..0), and chooses the latch whose
 //! record is read from now on (bits 5..4).

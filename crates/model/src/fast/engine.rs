@@ -49,8 +49,8 @@ impl FastEngine {
 
     /// Runs with these inputs up to cycle `end`, or until a cycle that the host must react to: an
     /// offered word or start is accepted, axes start, or `fault`, `halted`, `idle`, `enabled` or
-    /// any output of the seek or of the latches changes after it. Returns the outputs in that cycle,
-    /// or `None` if `end` was reached.
+    /// any output of the seek or of the latches changes after it. Returns the outputs in that
+    /// cycle, or `None` if `end` was reached.
     pub fn run(
         &mut self,
         inputs: &EngineInputs,

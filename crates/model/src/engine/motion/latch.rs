@@ -1,6 +1,6 @@
 //! The latches: each accepts an edge of its pin after some looks, one at each strobe, and marks the
-//! tick whose words of state are its record. It must stay equal to "The latch" and "Several latches"
-//! in docs/clock-by-clock.md.
+//! tick whose words of state are its record. It must stay equal to "The latch" and "Several
+//! latches" in docs/clock-by-clock.md.
 
 use carrystep_core::engine::{EngineInputs, Guard, Latch, MAX_LATCHES};
 

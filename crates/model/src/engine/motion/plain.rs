@@ -88,11 +88,12 @@ impl Motion {
         let busy = self.pins_busy();
         let idle = self.rest == 2 && self.armed.is_none() && !busy;
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
+        let breaks = inputs.broken || nobody || arms_a_missing_one(guard, inputs);
         self.time_slots
             && !(inputs.reset || self.reset.ending || self.misplaced || self.stray)
             && !(inputs.cut || self.cut.is_busy())
             && self.outputs_are_steady()
-            && (fault || !(inputs.stop || inputs.broken || nobody || arms_a_missing_one(guard, inputs)))
+            && (fault || !(inputs.stop || breaks))
             && inputs.seek.is_none()
             && inputs.seek_source.is_none()
             && !self.seek.sweeps
