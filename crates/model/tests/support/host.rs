@@ -186,13 +186,24 @@ fn segment(random: &mut Random) -> Segment {
     Segment { ticks, v, a, j, last: false }
 }
 
+/// What the host does with its latch, done with all latches of a build with several. All pins have
+/// one level, and the cycle decides which latches are armed.
+fn of_all_latches(build: &EngineBuild, inputs: EngineInputs, cycle: usize) -> EngineInputs {
+    if !build.has_several_latches() {
+        return inputs;
+    }
+    let all = (1 << build.guard.latches.len()) - 1;
+    let armed = if cycle.is_multiple_of(2) { all } else { 1 + cycle as u8 / 2 % all };
+    EngineInputs { latch: (inputs.latch & 1) * all, latch_arm: inputs.latch_arm * armed, ..inputs }
+}
+
 /// Runs an engine under a random host.
 pub fn run(build: &EngineBuild, seed: u64, cycles: usize) -> Vec<Cycle> {
     let mut engine = Engine::new(build);
     let mut host = Host::new(build, seed);
     let mut all = Vec::with_capacity(cycles);
     for _ in 0..cycles {
-        let inputs = host.inputs(&engine);
+        let inputs = of_all_latches(build, host.inputs(&engine), all.len());
         let outputs = engine.outputs(&inputs);
         engine.clock(&inputs);
         host.clock(&inputs, &outputs);
