@@ -33,6 +33,12 @@ const BUGS: &[Bug] = &[
         text: "if (accepts) begin",
         becomes: "if (strobe) begin",
     },
+    Bug {
+        breaks: "promise_13_reset_forgets",
+        text: "held_3 <= ZERO;",
+        becomes: "held_3 <= THREE;",
+    },
+    Bug { breaks: "promise_13_inactive", text: "now = 2'd0;", becomes: "now = 2'd1;" },
 ];
 
 pub(super) fn proof() -> Proof {
