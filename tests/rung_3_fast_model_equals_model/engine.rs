@@ -63,6 +63,16 @@ fn an_engine_of_eight_axes() {
     stops_at_any_clock(8, 112_000_000, 4, LimitWiring::One, 2);
 }
 
+#[test]
+fn an_engine_with_several_latches() {
+    for count in [2, 4] {
+        let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
+        let build = engine_programs::with_latches(build, count);
+        let came = engines(&build, 60, engine_programs::program_with_latches(6));
+        assert!(came.leapt > came.clocks / 3 && came.edges > 1000, "{came:?}");
+    }
+}
+
 /// Each program contains a situation that the search for edges could get wrong.
 #[test]
 fn an_engine_of_many_edges() {

@@ -6,7 +6,7 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs, with_latches};
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
@@ -101,6 +101,14 @@ fn random_programs_of_one_axis_in_the_shortest_phases() {
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_tick() {
     in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 100_000);
+}
+
+#[test]
+fn random_programs_with_two_and_with_four_latches() {
+    let two = build(3, 64_000_000, 4, StartPhase::Half, LimitWiring::Pair);
+    in_rust_hdl(&with_latches(two, 2), 150_000);
+    let four = build(1, 32_000_000, 4, StartPhase::Zero, LimitWiring::One);
+    in_rust_hdl(&with_latches(four, 4), 150_000);
 }
 
 /// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same

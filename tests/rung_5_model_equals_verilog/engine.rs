@@ -9,7 +9,7 @@ use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs, with_latches};
 use carrystep_tests::golden::{self, Case, Edge};
 use proptest::prelude::*;
 use std::cell::Cell;
@@ -47,8 +47,11 @@ struct Seen {
     cleared: u64,
     /// Hits of seeks.
     hits: u64,
-    /// Edges of the latch that it did not latch.
+    /// Edges of latches that they did not latch.
     further: u64,
+    /// Changes of the records that latches hold, and edges that several latches accept at once.
+    records: u64,
+    shared: u64,
     /// Changes of outputs, and edges of the PWM.
     switched: u64,
     modulated: u64,
@@ -66,7 +69,11 @@ impl Seen {
             self.edges += u64::from(rising);
             self.together += u64::from(rising > 1);
             self.hits += u64::from(now.hits & !before.hits != 0);
-            self.further += u64::from(now.latch_edges > before.latch_edges);
+            let counts = now.latch_edges.iter().zip(before.latch_edges);
+            self.further += u64::from(counts.into_iter().any(|(now, before)| *now > before));
+            self.records += u64::from(now.latch_records != before.latch_records);
+            let accepted = before.latch_armed & !now.latch_armed;
+            self.shared += u64::from(accepted.count_ones() > 1 && !now.resetting);
             self.switched += u64::from(now.outputs != before.outputs);
             self.modulated += u64::from(now.pwm != before.pwm);
             let decided = before.cut_busy && !now.cut_busy;
@@ -105,6 +112,18 @@ fn random_programs_of_eight_axes_in_verilator() {
     let build = build(8, 112_000_000, 16, StartPhase::Half, LimitWiring::Each);
     let seen = in_verilog(Level::Verilator, &build, 2_000_000);
     assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
+}
+
+#[test]
+fn random_programs_with_two_and_with_four_latches() {
+    for (level, usual) in [(Level::Verilator, 1_500_000), (Level::Icarus, 30_000)] {
+        for count in [2, 4] {
+            let build = build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
+            let seen = in_verilog(level, &with_latches(build, count), usual);
+            let is_much = level == Level::Icarus || (seen.records > 0 && seen.shared > 0);
+            assert!(is_much, "too little happens: {seen:?}");
+        }
+    }
 }
 
 #[test]

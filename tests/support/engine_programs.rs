@@ -100,8 +100,10 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         // Bit 0 is the interlock, which is open for too short a time in many episodes.
         2 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask & !1), Event::Inputs1(0))),
         5 => (0..=all(axes)).prop_map(|mask| (Event::Inputs1(mask | 1), Event::Inputs1(0))),
-        3 => Just((Event::Latch(true), Event::Latch(false))),
-        2 => Just((Event::LatchArm, Event::LatchArm)),
+        4 => (pins_of_latches(), pins_of_latches())
+            .prop_map(|(one, other)| (Event::Latch(one), Event::Latch(one & other))),
+        3 => (latches(), latches())
+            .prop_map(|(one, other)| (Event::LatchArm(one), Event::LatchArm(other))),
         6 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
         4 => (1..=all(axes)).prop_map(|mask| (Event::Seek(mask), Event::Seek(0))),
@@ -116,6 +118,34 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length)
         .prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+}
+
+/// Latches to arm, one bit each; now and then some that a build does not have.
+fn latches() -> impl Strategy<Value = u8> {
+    prop_oneof![4 => Just(0x3_u8), 6 => 0_u8..0x4, 1 => 0_u8..0x10]
+}
+
+/// Pins of latches, one bit each: often those of several latches at once.
+fn pins_of_latches() -> impl Strategy<Value = u8> {
+    prop_oneof![1 => Just(0xf_u8), 2 => 0_u8..0x10]
+}
+
+/// The host arms latches, and their pins change some ticks later, several of them at once or one
+/// after the other; then it arms others.
+fn edges_of_latches() -> impl Strategy<Value = Events> {
+    let later = prop_oneof![1 => 0_u64..200, 3 => 200_u64..2000];
+    let turns = prop::collection::vec((0_u8..0x4, pins_of_latches(), later), 2..8);
+    (0_u64..60_000, turns).prop_map(|(at, turns)| {
+        let mut events = Events::new();
+        let mut then = at;
+        for (arm, pins, later) in turns {
+            events.push((then, Event::LatchArm(arm)));
+            events.push((then + later / 2, Event::Latch(pins)));
+            then += later;
+        }
+        events.push((then + 1000, Event::Latch(0)));
+        events
+    })
 }
 
 /// Any source, now and then one that no engine has.
@@ -136,8 +166,8 @@ fn switches(row: u8, active: u8) -> Event {
 }
 
 /// Axes seek a switch, whose row becomes active or inactive bit by bit, whichever way the axes
-/// move. The latch is connected to the same switches, and the host takes snapshots meanwhile. Then
-/// it ends the seek, or seeks again.
+/// move. The latches are connected to the same switches, and the host takes snapshots meanwhile.
+/// Then it ends the seek, or seeks again.
 fn seeks(axes: usize) -> impl Strategy<Value = Events> {
     let later = prop_oneof![1 => Just(0_u64), 1 => 1_u64..300, 3 => 300_u64..4000];
     let masks = prop::collection::vec((0..=all(axes), later), 1..4);
@@ -153,16 +183,16 @@ fn seeks(axes: usize) -> impl Strategy<Value = Events> {
                 (at.saturating_sub(3000), levels(0)),
                 (at, Event::SeekSource(source)),
                 (at, Event::Seek(mask)),
-                (at, Event::LatchArm),
+                (at, Event::LatchArm(0x3)),
             ];
             let (mut then, mut reached) = (at, 0);
             for (mask, later) in masks {
                 then += later;
                 reached |= mask;
                 events.push((then, levels(reached)));
-                events.push((then, Event::Latch(true)));
+                events.push((then, Event::Latch(1 | reached << 1)));
                 events.push((then + later / 2, Event::Snapshot));
-                events.push((then + later / 2, Event::Latch(false)));
+                events.push((then + later / 2, Event::Latch(0)));
             }
             events.push((then + 2000, Event::Seek(again)));
             events.push((then + 4000, switches(row, 0)));
@@ -220,7 +250,12 @@ fn cuts(axes: usize) -> impl Strategy<Value = Events> {
 
 /// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
-    let episode = prop_oneof![12 => episode(axes), 2 => seeks(axes), 2 => cuts(axes)];
+    let episode = prop_oneof![
+        12 => episode(axes),
+        2 => seeks(axes),
+        2 => cuts(axes),
+        2 => edges_of_latches(),
+    ];
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode, 1..8)];
     (episodes, signs_of_life(), outputs()).prop_map(|(episodes, life, outputs)| {
         let mut events = episodes.concat();
@@ -245,6 +280,16 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
         1 => Just(stray),
     ];
     (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
+}
+
+/// The same for an engine with several latches, whose pins have many edges.
+pub fn program_with_latches(axes: usize) -> impl Strategy<Value = (Program, Events)> {
+    let edges = prop::collection::vec(edges_of_latches(), 1..6);
+    (program(axes), edges).prop_map(|((program, mut events), edges)| {
+        events.extend(edges.concat());
+        events.sort_by_key(|(cycle, _)| *cycle);
+        (program, events)
+    })
 }
 
 /// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
@@ -273,7 +318,7 @@ pub fn build(
     build.guard = Guard {
         round: 4,
         inputs: [all; 2],
-        latch: Some(Latch { low: false, looks: 2 }),
+        latches: vec![Latch::of_pin(false, 2)],
         debounce: 3,
         watchdog: 40,
         enable: 2,
@@ -297,7 +342,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         watchdog: 0,
         enable: 0,
         inputs: [InputRow { exist: 0x2d, low: 0x09 }, InputRow { exist: 0x33, low: 0x33 }],
-        latch: Some(Latch { low: true, looks: 16 }),
+        latches: vec![Latch::of_pin(true, 16)],
         ..third.guard
     };
     third.outputs = Outputs { exist: 0xa5, pwm_divider: 1, off_at_ramps: false };
@@ -310,7 +355,7 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
         watchdog: 21,
         enable: 7,
         inputs: [InputRow { exist: 0x3f, low: 0x3e }, InputRow { exist: 0x01, low: 0x01 }],
-        latch: Some(Latch { low: true, looks: 1 }),
+        latches: vec![Latch::of_pin(true, 1)],
         ..fourth.guard
     };
     fourth.cuts = false;
@@ -318,6 +363,15 @@ pub fn parameter_sets() -> [EngineBuild; 4] {
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
     [first, second, third, fourth]
+}
+
+/// The same build with this number of latches, at most four, with different looks.
+pub fn with_latches(mut build: EngineBuild, count: usize) -> EngineBuild {
+    let looks = [2, 2, 1, 5];
+    let low = build.guard.latches.iter().any(|latch| latch.low);
+    let latch = |(number, looks): (usize, &u8)| Latch::of_pin(low != (number == 2), *looks);
+    build.guard.latches = looks.iter().enumerate().take(count).map(latch).collect();
+    build
 }
 
 /// Runs random programs until they have taken the required number of clocks.
@@ -341,11 +395,14 @@ pub fn run_programs(
         if let RngSeed::Fixed(seed) = &mut config.rng_seed {
             *seed = seed.wrapping_add(1);
         }
-        let held =
-            TestRunner::new(config.clone()).run(&program(build.axes()), |(program, events)| {
-                clocks.set(clocks.get() + one(&program, &events)?);
-                Ok(())
-            });
+        let programs = match build.has_several_latches() {
+            true => program_with_latches(build.axes()).boxed(),
+            false => program(build.axes()).boxed(),
+        };
+        let held = TestRunner::new(config.clone()).run(&programs, |(program, events)| {
+            clocks.set(clocks.get() + one(&program, &events)?);
+            Ok(())
+        });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
     effort::figures(&format!("{} clocks, no difference", clocks.get()));

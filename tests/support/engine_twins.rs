@@ -160,8 +160,9 @@ fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -
         (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
     let state = |outputs: &EngineOutputs| {
         let EngineOutputs { fault, halted, idle, enabled, seeking, hits, .. } = *outputs;
-        let EngineOutputs { latch_armed, latch_edges, .. } = *outputs;
-        (fault, halted, idle, enabled, seeking, hits, latch_armed, latch_edges)
+        let EngineOutputs { latch_armed, latch_edges, latch_records, .. } = *outputs;
+        let latches = (latch_armed, latch_edges, latch_records);
+        (fault, halted, idle, enabled, seeking, hits, latches)
     };
     !taken && !now.started && state(now) == state(next)
 }

@@ -24,6 +24,7 @@ mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
+mod latch_bank;
 mod output_control;
 mod parallel_core;
 mod promises;
@@ -146,6 +147,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         switches::proof(engine),
         seek_control::proof(engine),
         edge_latch::proof(engine),
+        latch_bank::proof(),
         resets::proof(engine),
         cut_control::proof(engine),
         output_control::proof(engine),

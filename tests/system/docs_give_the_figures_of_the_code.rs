@@ -225,7 +225,7 @@ fn pages_give_the_size_of_the_link() {
     let rams = number(&uart[2]);
     assert_eq!(rams, number(&spi[2]), "one sentence gives the block RAMs of both lines");
     let [uart, spi] = [uart, spi].map(|row| number(&row[1]));
-    let instructions = (image().program.len() + 5) / 10 * 10;
+    let instructions = (image(false).program.len() + 5) / 10 * 10;
     let budget = LINK_BUDGET.logic_cells;
     says(
         "docs/link.md",

@@ -268,7 +268,7 @@ fn segments_over_spi_are_all_accepted() {
 /// Runs a session that uses every function, then replays its inputs on the exported Verilog of each
 /// module and compares the outputs with Rust-HDL.
 fn replayed(mut bench: LinkBench, line: LineKind) {
-    bench.vectors = Some(Both::new(line));
+    bench.vectors = Some(Both::new(&build(), line));
     let mut host = Host::powered(&mut bench);
     let damaged = &host.frame(0, of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..];
     bench.send(&on_the_line(damaged));

@@ -8,7 +8,7 @@
 
 use crate::clock::ClockManager;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{Latch, LatchSource, LimitWiring};
 use carrystep_core::link::{BaudError, Uart};
 use carrystep_files::error::{InputError, SourceText};
 use schemars::JsonSchema;
@@ -317,11 +317,13 @@ impl Board {
         let [first, second] = build.guard.inputs.map(|row| row.exist);
         let general = ((first & !1).count_ones() + (second & !1).count_ones()) as usize;
         let outputs = build.outputs.exist.count_ones() as usize;
+        let own = |latch: &&Latch| latch.source == LatchSource::Pin;
+        let latches = build.guard.latches.iter().filter(own).count();
         let needs = [
             ("probe", (first & 1).into(), "the probe"),
             ("interlock", (second & 1).into(), "the interlock"),
             ("general", general, "general inputs"),
-            ("latch", build.guard.latch.is_some().into(), "the latch"),
+            ("latch", latches, if latches > 1 { "latches" } else { "the latch" }),
             ("outputs", outputs, "outputs"),
             ("pwm", (build.outputs.pwm_divider != 0).into(), "the PWM"),
         ];

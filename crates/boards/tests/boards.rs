@@ -158,7 +158,7 @@ fn boards_connect_inputs_and_outputs_that_they_have_pins_for() {
     let build = |probe: bool, general: u8, latch: bool, exist: u8, pwm_divider: u32| {
         let mut build = EngineBuild::minimal(&build, 1);
         build.guard.inputs[0].exist = u8::from(probe) | general << 1;
-        build.guard.latch = latch.then_some(Latch { low: false, looks: 1 });
+        build.guard.latches = latch.then(|| Latch::of_pin(false, 1)).into_iter().collect();
         build.outputs = Outputs { exist, pwm_divider, off_at_ramps: true };
         build
     };

@@ -18,16 +18,19 @@ mod cause;
 mod commit;
 mod error;
 mod figures;
+mod latch;
+mod latches;
 mod ports;
 mod seek;
 mod state;
 
-pub use build::{EngineBuild, Guard, InputRow, Latch, LimitWiring};
+pub use build::{EngineBuild, Guard, InputRow, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
-pub use ports::{ENGINE_PORTS, is_recorded, ports_of};
+pub use latch::{Latch, LatchSource};
+pub use ports::{ENGINE_PORTS, MORE_LATCH_PORTS, engine_ports, is_recorded, ports_of};
 pub use seek::SeekSource;
 pub use state::{
     AxisStatus, STATE_AXIS_BITS, STATE_ITEM_BITS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
@@ -67,7 +70,10 @@ pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
 /// Greatest number of consecutive samples that the debounce of a limit can require.
 pub const MAX_DEBOUNCE_SAMPLES: u32 = 127;
 
-/// Greatest number of consecutive ticks for which the latch can require its pin to be active.
+/// Greatest number of latches of an engine.
+pub const MAX_LATCHES: usize = 4;
+
+/// Greatest number of consecutive ticks for which a latch can require its pin to be active.
 pub const MAX_LOOKS: u8 = 16;
 
 /// Rows of switches: limits at the low and at the high ends, and two rows of other inputs.
@@ -148,8 +154,8 @@ pub struct EngineInputs {
     pub seek_source: Option<SeekSource>,
     /// New mask of the axes that wait for the source of their seek, if the host writes one.
     pub seek: Option<u8>,
-    /// The host arms the latch.
-    pub latch_arm: bool,
+    /// Mask of the latches that the host arms; bit k is latch k.
+    pub latch_arm: u8,
     /// The host requests a snapshot of the state of all axes.
     pub snapshot: bool,
     /// The host has sent a valid request; this restarts the watchdog.
@@ -164,8 +170,8 @@ pub struct EngineInputs {
     pub limit_max: u8,
     /// Levels of the pins of the rows 2 and 3 of switches; bit i is input i.
     pub inputs: [u8; 2],
-    /// Level of the latch's pin.
-    pub latch: bool,
+    /// Levels of the latches' pins; bit k is latch k.
+    pub latch: u8,
 }
 
 impl EngineInputs {
@@ -185,7 +191,24 @@ impl EngineInputs {
             limit_min: self.limit_min ^ low,
             limit_max: self.limit_max ^ low,
             inputs: [self.inputs[0] ^ guard.inputs[0].low, self.inputs[1] ^ guard.inputs[1].low],
-            latch: self.latch != matches!(guard.latch, Some(Latch { low: true, .. })),
+            latch: self.latch ^ guard.latches_low(),
+            ..self
+        }
+    }
+
+    /// These levels of pins, with those of the latches that a board connects to other pins.
+    #[must_use]
+    pub fn with_sources(self, guard: &Guard) -> Self {
+        let rows = [self.limit_min, self.limit_max, self.inputs[0], self.inputs[1]];
+        let level = |(number, latch): (usize, &Latch)| {
+            let level = match latch.source {
+                LatchSource::Pin => self.latch >> number,
+                LatchSource::Switch { row, axis } => rows[usize::from(row & 3)] >> axis,
+            };
+            (level & 1) << number
+        };
+        Self {
+            latch: guard.latches.iter().enumerate().map(level).fold(0, |all, bit| all | bit),
             ..self
         }
     }
@@ -229,10 +252,12 @@ pub struct EngineOutputs {
     pub seeking: u8,
     /// Mask of the axes that have hit the source of their seek, until the host ends the seek.
     pub hits: u8,
-    /// The latch waits for its edge.
-    pub latch_armed: bool,
-    /// Edges since the latch was armed that it did not latch, at most 15.
-    pub latch_edges: u8,
+    /// Mask of the latches that wait for their edge; bit k is latch k.
+    pub latch_armed: u8,
+    /// Edges since each latch was armed that it did not latch, at most 15.
+    pub latch_edges: [u8; MAX_LATCHES],
+    /// Number of the record that each latch holds; 0 in a build with at most one latch.
+    pub latch_records: [u8; MAX_LATCHES],
     /// The word of state that is output in this cycle, if any.
     pub state: Option<StateWord>,
     /// The live words of all axes have been output in this tick; 1 in one cycle of it.

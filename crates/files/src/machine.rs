@@ -244,7 +244,8 @@ impl RawMachine {
             }
             axes.push(axis);
         }
-        let inputs = self.inputs.check(source, axes.len())?;
+        let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+        let inputs = self.inputs.check(source, &names, self.guard.limits())?;
         let stop = axes.iter().map(|axis| axis.stop).collect();
         let guard = self.guard.check(source, &timebase, inputs, stop)?;
         let home_order =

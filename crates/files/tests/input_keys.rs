@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::engine::{Guard, InputRow, Latch};
+use carrystep_core::engine::{Guard, InputRow, Latch, LatchSource};
 use carrystep_files::{InputError, Machine, SourceText};
 use std::fmt::Write as _;
 
@@ -28,7 +28,8 @@ const fn row(exist: u8, low: u8) -> InputRow {
 #[test]
 fn without_keys_there_are_no_inputs() {
     let found = guard(1, "");
-    assert_eq!((found.inputs, found.latch), ([row(0, 0); 2], None));
+    assert_eq!(found.inputs, [row(0, 0); 2]);
+    assert_eq!(found.latches, []);
     assert!(!found.has_interlock());
 }
 
@@ -50,9 +51,31 @@ fn each_key_is_an_input_of_its_row() {
 
 #[test]
 fn latch_has_its_edge_and_its_looks() {
-    assert_eq!(guard(1, "latch = \"rising\"").latch, Some(Latch { low: false, looks: 1 }));
+    assert_eq!(guard(1, "latch = \"rising\"").latches, [Latch::of_pin(false, 1)]);
     let found = guard(1, "latch = \"falling\"\nlatch_looks = 16");
-    assert_eq!(found.latch, Some(Latch { low: true, looks: 16 }));
+    assert_eq!(found.latches, [Latch::of_pin(true, 16)]);
+}
+
+#[test]
+fn each_of_several_latches_has_its_pin_its_edge_and_its_looks() {
+    let switch = |row, axis| LatchSource::Switch { row, axis };
+    let found = guard(
+        2,
+        "probe = \"low\"\nlatches = [{ edge = \"rising\" }, { source = \"probe\", edge = \"falling\", \
+         looks = 3 }, { source = \"limit_min\", axis = \"x1\", edge = \"rising\" }, \
+         { source = \"limit_max\", axis = \"x0\", edge = \"falling\" }]",
+    );
+    assert_eq!(
+        found.latches,
+        [
+            Latch::of_pin(false, 1),
+            Latch { source: switch(2, 0), low: true, looks: 3 },
+            Latch { source: switch(0, 1), low: false, looks: 1 },
+            Latch { source: switch(1, 0), low: true, looks: 1 },
+        ]
+    );
+    let one = "latches = [{ source = \"limit_min\", edge = \"rising\" }]\n[machine.guard]\nlimits = \"one\"";
+    assert_eq!(guard(3, one).latches, [Latch { source: switch(0, 0), low: false, looks: 1 }]);
 }
 
 #[test]
@@ -76,6 +99,45 @@ fn mistake_is_refused_at_its_place() {
             (3, 11),
         ),
         (1, "latch_looks = 2", "latch_looks without latch", (3, 15)),
+        (1, "latches = []", "0 latches: a machine has 1 to 4", (3, 11)),
+        (
+            1,
+            "latch = \"rising\"\nlatches = [{ edge = \"rising\" }]",
+            "latches besides latch or latch_looks",
+            (4, 11),
+        ),
+        (1, "latches = [{ edge = \"rising\", looks = 0 }]", "looks = 0: it is from 1", (3, 39)),
+        (
+            1,
+            "latches = [{ source = \"probe\", edge = \"rising\" }]",
+            "a latch at the probe of a machine without one",
+            (3, 12),
+        ),
+        (
+            1,
+            "latches = [{ source = \"limit_min\", edge = \"rising\" }]",
+            "a latch at a limit of no axis",
+            (3, 12),
+        ),
+        (
+            1,
+            "latches = [{ source = \"limit_max\", axis = \"y\", edge = \"rising\" }]",
+            "no axis is called 'y'",
+            (3, 43),
+        ),
+        (
+            1,
+            "latches = [{ source = \"limit_max\", axis = \"x0\", edge = \"rising\" }]\n\
+             [machine.guard]\nlimits = \"each\"",
+            "a latch at a limit that the machine does not have",
+            (3, 12),
+        ),
+        (
+            1,
+            "latches = [{ axis = \"x0\", edge = \"rising\" }]",
+            "a latch with an axis, which is no limit",
+            (3, 12),
+        ),
         (1, "latch = \"rising\"\nlatch_looks = 0", "latch_looks = 0: it is from 1 to 16", (4, 15)),
         (1, "latch = \"rising\"\nlatch_looks = 17", "latch_looks = 17: it is from", (4, 15)),
     ] {
@@ -83,6 +145,9 @@ fn mistake_is_refused_at_its_place() {
         assert!(error.message.contains(says), "{keys}: {error}");
         assert_eq!(error.line_column(), Some(at), "{keys}");
     }
+    let five = format!("latches = [{}]", ["{ edge = \"rising\" }"; 5].join(", "));
+    let error = read(8, &five).unwrap_err();
+    assert!(error.message.contains("5 latches: a machine has 1 to 4"), "{error}");
     let nine = format!("general = [{}]", ["\"low\""; 9].join(", "));
     let error = read(8, &nine).unwrap_err();
     assert!(error.message.contains("9 general inputs: a machine of 8 axes has at most 8"));

@@ -55,6 +55,10 @@ fn page_lists_the_keys_of_the_reader() {
         ("### `home`", format!("{MOVE}[machine]\n{AXIS}home = {{ colour = 1 }}\n")),
         ("## `[machine.guard]`", format!("{MOVE}[machine.guard]\ncolour = 1\n{AXIS}")),
         ("## `[machine.inputs]`", format!("{MOVE}[machine.inputs]\ncolour = 1\n{AXIS}")),
+        (
+            "### `latches`",
+            format!("{MOVE}[machine.inputs]\nlatches = [{{ colour = 1 }}]\n[machine]\n{AXIS}"),
+        ),
         ("## `[machine.link]`", format!("{MOVE}[machine.link]\ncolour = 1\n{AXIS}")),
         ("## The move file", format!("colour = 1\n{MOVE}[machine]\n{AXIS}")),
         ("### `[[move]]`", format!("{MOVE}colour = 1\n[machine]\n{AXIS}")),
@@ -162,7 +166,8 @@ fn examples_are_valid_and_the_first_has_every_key() {
         "## `[machine.inputs]`",
         "## `[machine.link]`",
     ] {
-        for row in rows(heading) {
+        // `latches` stands in place of other keys of the example, and has an example of its own.
+        for row in rows(heading).iter().filter(|row| quoted(row[0]) != "latches") {
             let key = quoted(row[0]);
             let table = ["guard", "inputs", "outputs", "link", "axis"].contains(&key);
             let there = blocks[0].contains(&if table {
@@ -177,6 +182,10 @@ fn examples_are_valid_and_the_first_has_every_key() {
     for row in rows("### `home`") {
         assert!(home.contains(&format!(" {} = ", quoted(row[0]))), "{row:?}");
     }
+    let (_, latches) = PAGE.split_once("\n    latches = [").unwrap();
+    let (latches, _) = latches.split_once("\n    ]").unwrap();
+    let inputs = format!("[machine.inputs]\nprobe = \"low\"\nlatches = [{latches}]\n");
+    assert_eq!(machine(&format!("[machine]\n{inputs}{AXIS}")).guard.latches.len(), 3);
     let two = format!("{AXIS}{}", AXIS.replace("\"x\"", "\"y\""));
     let (first, moves) = blocks[1].split_once("\n\n").unwrap();
     assert!(first.starts_with("machine_file = "));

@@ -23,7 +23,7 @@
 //! Interface: the host writes segments word by word (`put`) into a queue of 7, 15 or 31 segments
 //! per axis and starts axes by a mask. The engine outputs the state of all axes in every tick
 //! (`state`), on request as a snapshot. The inputs `estop`, `limit_min`, `limit_max`, `inputs_0`,
-//! `inputs_1` and `latch` come directly from pins.
+//! `inputs_1`, `latch` and `more_latches` come directly from pins.
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
@@ -49,6 +49,7 @@ pub mod adder;
 pub mod cut_control;
 pub mod edge_latch;
 pub mod event_wheel;
+pub mod latch_bank;
 pub mod layout;
 pub mod output_control;
 pub mod pulse_width;
@@ -72,6 +73,7 @@ use adder::Adder;
 use cut_control::CutControl;
 use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
+use latch_bank::{LatchBank, MORE};
 use output_control::OutputControl;
 use pulse_width::PulseWidth;
 use pulser::Pulser;
@@ -86,9 +88,10 @@ use supervisor::Supervisor;
 use switches::Switches;
 use time_slot::TimeSlot;
 
-/// The engine of N axes, 1 to 8.
+/// The engine of N axes, 1 to 8. S is 1 in a build with several latches, otherwise 0: then neither
+/// the ports nor the part of further latches exist.
 #[derive(LogicBlock, Default)]
-pub struct Engine<const N: usize> {
+pub struct Engine<const N: usize, const S: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
@@ -228,6 +231,21 @@ pub struct Engine<const N: usize> {
     pub latch_edges: Signal<Out, Word<4>>,
     /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
+    /// The pins of latches 1 to 3; asynchronous. `LATCH_LOOKS_1` and the following tell which of
+    /// them are used.
+    pub more_latches: PerAxis<Input<Word<MORE>>, S>,
+    /// The host arms each of these latches for one edge, and sets the count of its further edges to
+    /// 0; bit 0 is latch 1. A latch that the build does not have must not be armed.
+    pub more_latch_arm: PerAxis<Input<Word<MORE>>, S>,
+    /// These latches wait for their edges; bit 0 is latch 1.
+    pub more_latch_armed: PerAxis<Signal<Out, Word<MORE>>, S>,
+    /// The edges since each of them was armed that it did not latch, at most 15, in four bits each,
+    /// those of latch 1 lowest.
+    pub more_latch_edges: PerAxis<Signal<Out, Word<12>>, S>,
+    /// The number of the record that each latch holds, in two bits each, that of latch 0 lowest.
+    pub latch_records: PerAxis<Signal<Out, Word<8>>, S>,
+    /// The number of the record to which the words of page 3 belong in this tick.
+    pub state_record: PerAxis<Signal<Out, Word<2>>, S>,
     time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
@@ -240,6 +258,7 @@ pub struct Engine<const N: usize> {
     switches: Switches<N>,
     seek_control: SeekControl<N>,
     edge_latch: EdgeLatch,
+    latch_bank: PerAxis<LatchBank, S>,
     readout: Readout,
     stops: Stops<N>,
     resets: Resets,
@@ -290,9 +309,9 @@ pub struct Engine<const N: usize> {
     clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
-impl<const N: usize> Engine<N> {
+impl<const N: usize, const S: usize> Engine<N, S> {
     /// Makes the engine of a build. The caller has checked the build and ensures that it has N
-    /// axes.
+    /// axes, and several latches if S is 1.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         let mut pulser = PerAxis::<Pulser, N>::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
@@ -313,7 +332,8 @@ impl<const N: usize> Engine<N> {
             pulse_width: PulseWidth::new(build.outputs.pwm_divider),
             switches: Switches::new(&build.guard),
             seek_control: SeekControl::new(),
-            edge_latch: EdgeLatch::new(&build.guard),
+            edge_latch: EdgeLatch::new(build.guard.latches.first()),
+            latch_bank: PerAxis::from_fn(|_| LatchBank::new(&build.guard)),
             stops: Stops::new(&build.guard),
             supervisor: Supervisor::new(&build.guard),
             pulser,

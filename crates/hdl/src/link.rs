@@ -24,6 +24,7 @@
 
 use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
 use crate::primitives::formula::Formula;
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
@@ -33,18 +34,22 @@ use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
 pub mod crc;
+pub mod latch_view;
 pub mod processor;
 pub mod register_mirror;
 mod sim;
 
 pub use sim::{AnyLink, LinkSim, link};
 
+use latch_view::LatchView;
 use processor::LinkProcessor;
 use register_mirror::RegisterMirror;
 
-/// The link for an engine of N axes. Its ports are those of the line and of the engine.
+/// The link for an engine of N axes. Its ports are those of the line and of the engine. S is 1 in a
+/// build with several latches, otherwise 0: then the ports and the part of several latches do not
+/// exist.
 #[derive(LogicBlock, Default)]
-pub struct Link<const N: usize> {
+pub struct Link<const N: usize, const S: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The line has received a byte; asserted for one clock per byte.
@@ -141,16 +146,28 @@ pub struct Link<const N: usize> {
     pub latch_armed: Input<Bit>,
     /// The edges since the latch was armed that it did not latch, at most 15.
     pub latch_edges: Input<Word<4>>,
+    /// The host arms these latches; bit 0 is latch 1.
+    pub more_latch_arm: PerAxis<Signal<Out, Word<3>>, S>,
+    /// These latches wait for their edges; bit 0 is latch 1.
+    pub more_latch_armed: PerAxis<Input<Word<3>>, S>,
+    /// The edges since each of them was armed that it did not latch, in four bits each.
+    pub more_latch_edges: PerAxis<Input<Word<12>>, S>,
+    /// The number of the record that each latch from 0 on holds, in two bits each.
+    pub latch_records: PerAxis<Input<Word<8>>, S>,
+    /// The number of the record to which the words of page 3 belong.
+    pub state_record: PerAxis<Input<Word<2>>, S>,
     processor: LinkProcessor<N>,
     register_mirror: RegisterMirror,
+    latch_view: PerAxis<LatchView, S>,
 }
 
-impl<const N: usize> Link<N> {
+impl<const N: usize, const S: usize> Link<N, S> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
         Self {
-            processor: LinkProcessor::new(&image()),
+            processor: LinkProcessor::new(&image(build.has_several_latches())),
             register_mirror: RegisterMirror::new(&formulas(build, id)),
+            latch_view: PerAxis::from_fn(|_| LatchView::new(&build.guard)),
             ..Self::default()
         }
     }
@@ -177,7 +194,7 @@ fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
     facts(build, id).into_iter().map(formula).collect()
 }
 
-impl<const N: usize> Logic for Link<N> {
+impl<const N: usize, const S: usize> Logic for Link<N, S> {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, processor, register_mirror);
@@ -231,6 +248,29 @@ impl<const N: usize> Logic for Link<N> {
         self.register_mirror.state_axis.next = self.state_axis.val();
         self.register_mirror.state_item.next = self.state_item.val();
         self.register_mirror.state.next = self.state.val();
+
+        // Several latches: their view is between the register mirror and the processor.
+        for i in 0..S {
+            self.latch_view[i].clock.next = self.clock.val();
+            self.latch_view[i].address.next = self.processor.x.val();
+            self.latch_view[i].facts.next = self.register_mirror.data.val();
+            self.latch_view[i].writes.next = self.processor.latch_arm.val();
+            self.latch_view[i].byte.next = self.processor.a.val();
+            self.latch_view[i].first_armed.next = self.latch_armed.val();
+            self.latch_view[i].first_edges.next = self.latch_edges.val();
+            self.latch_view[i].armed.next = self.more_latch_armed[i].val();
+            self.latch_view[i].edges.next = self.more_latch_edges[i].val();
+            self.latch_view[i].records.next = self.latch_records[i].val();
+            self.latch_view[i].state_valid.next = self.state_valid.val();
+            self.latch_view[i].state_page.next = self.state_page.val();
+            self.latch_view[i].state_record.next = self.state_record[i].val();
+            self.latch_view[i].state_axis.next = self.state_axis.val();
+            self.latch_view[i].state_item.next = self.state_item.val();
+            self.latch_view[i].state.next = self.state.val();
+            self.processor.facts.next = self.latch_view[i].data.val();
+            self.latch_arm.next = self.latch_view[i].first_arm.val();
+            self.more_latch_arm[i].next = self.latch_view[i].arm.val();
+        }
     }
 }
 
@@ -261,6 +301,6 @@ mod tests {
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let build = EngineBuild::minimal(&build, 1);
         let id = LineKind::Spi.build_id(&build);
-        assert_synthesizes(Link::<6>::new(&build, id), "carrystep_link");
+        assert_synthesizes(Link::<6, 0>::new(&build, id), "carrystep_link");
     }
 }

@@ -14,6 +14,8 @@ pub struct Described {
     pub name: &'static str,
     /// Whether each axis has its own value.
     pub per_axis: bool,
+    /// Whether each latch has its own value. That of latch 0 has no number behind its name.
+    pub per_latch: bool,
     /// The values that it may have. The Verilog prints them after `what`.
     pub range: &'static str,
     /// Its meaning and its unit. The Verilog prints this text, with a capital, above the parameter.
@@ -22,17 +24,30 @@ pub struct Described {
 
 impl Described {
     const fn new(name: &'static str, range: &'static str, what: &'static str) -> Self {
-        Self { name, per_axis: false, range, what }
+        Self { name, per_axis: false, per_latch: false, range, what }
     }
 
     const fn per_axis(name: &'static str, range: &'static str, what: &'static str) -> Self {
-        Self { name, per_axis: true, range, what }
+        Self { name, per_axis: true, per_latch: false, range, what }
+    }
+
+    const fn per_latch(name: &'static str, range: &'static str, what: &'static str) -> Self {
+        Self { name, per_axis: false, per_latch: true, range, what }
     }
 
     /// This parameter with its value in a build. In a module that serves one axis, it is the
     /// parameter of that axis.
     pub fn of<const N: usize>(&self, value: impl Into<u64>) -> Given<N> {
         Given::new(self.name, value.into())
+    }
+
+    /// The parameter of one latch, with its value in a build, in a module that serves several
+    /// latches.
+    pub fn of_latch<const N: usize>(&self, latch: usize, value: impl Into<u64>) -> Given<N> {
+        match latch {
+            0 => self.of(value),
+            _ => Given::new(format!("{}_{latch}", self.name), value.into()),
+        }
     }
 
     /// The parameter of one axis, with its value in a build, in a module that serves several axes.
@@ -133,14 +148,14 @@ pub const INPUTS_1: Described = Described::new(
 pub const INPUTS_1_LOW: Described =
     Described::new("INPUTS_1_LOW", "a part of INPUTS_1", "those of them that are active low");
 /// The number of strobes that must find the latch's pin active.
-pub const LATCH_LOOKS: Described = Described::new(
+pub const LATCH_LOOKS: Described = Described::per_latch(
     "LATCH_LOOKS",
     "0 to 16",
     "consecutive ticks that must find the latch active for an edge; 0: no latch",
 );
 /// The active level of the latch.
 pub const LATCH_LOW: Described =
-    Described::new("LATCH_LOW", "0 or 1", "active level of the latch: 0 high, 1 low");
+    Described::per_latch("LATCH_LOW", "0 or 1", "active level of the latch: 0 high, 1 low");
 /// The kind of stop that a limit triggers.
 pub const LIMIT_FREEZES: Described = Described::new(
     "LIMIT_FREEZES",
@@ -228,12 +243,12 @@ pub const PARAMETERS: [Described; 30] = [
     EVENT_MEMORY,
 ];
 
-/// The parameter with this name, and the number of its axis if the name ends with one.
+/// The parameter with this name, and the number of its axis or latch if the name ends with one.
 pub fn described(name: &str) -> Option<(&'static Described, Option<usize>)> {
     let find = |name: &str| PARAMETERS.iter().find(|known| known.name == name);
     if let Some(known) = find(name) {
         return Some((known, None));
     }
     let (base, axis) = name.rsplit_once('_')?;
-    Some((find(base).filter(|known| known.per_axis)?, Some(axis.parse().ok()?)))
+    Some((find(base).filter(|known| known.per_axis || known.per_latch)?, Some(axis.parse().ok()?)))
 }

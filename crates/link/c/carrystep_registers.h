@@ -86,7 +86,7 @@
 #define CARRYSTEP_PHASES 0x07u
 /* Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read) */
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
-/* Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed (read) */
+/* Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since latch 0 was armed, bit 4 it is armed (read) */
 #define CARRYSTEP_CAPTURES 0x09u
 /* Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock) (read) */
 #define CARRYSTEP_INPUTS 0x0au
@@ -94,6 +94,8 @@
 #define CARRYSTEP_INPUT_LEVELS 0x0bu
 /* Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31 (read) */
 #define CARRYSTEP_QUEUE_DEPTH 0x0cu
+/* Only in a build with several latches, else 0; a bit for each latch: 3..0 it is armed, 7..4 the build has it; 15..8 the record of each, 2 bits each; 31..16 further edges since it was armed, 4 bits each; latch 0 lowest (read) */
+#define CARRYSTEP_LATCHES 0x0du
 /* Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0) */
 #define CARRYSTEP_LIMIT_MIN_SWITCH 0x10u
 /* Limit at the high end, likewise (read, axis 0) */
@@ -140,11 +142,11 @@
 #define CARRYSTEP_SNAPSHOT_POSITION 0xb0u
 /* STATUS in that tick (read, axis 0) */
 #define CARRYSTEP_SNAPSHOT_STATUS 0xb8u
-/* DISCARDED in the tick of the latch; no meaning if the axis ran (read, axis 0) */
+/* DISCARDED in the tick of the chosen latch; no meaning if the axis ran (read, axis 0) */
 #define CARRYSTEP_LATCH_DISCARDED 0xc0u
-/* LEFT in the tick of the latch; no meaning if the axis did not run (read, axis 0) */
+/* LEFT in the tick of the chosen latch; no meaning if the axis did not run (read, axis 0) */
 #define CARRYSTEP_LATCH_LEFT 0xc8u
-/* TICKS of the latch; the same for all axes (read, axis 0) */
+/* TICKS of the chosen latch; the same for all axes (read, axis 0) */
 #define CARRYSTEP_LATCH_TICKS 0xd8u
 /* P in that tick, low half (read, axis 0) */
 #define CARRYSTEP_LATCH_P_LOW 0xe0u
@@ -168,7 +170,7 @@
 #define CARRYSTEP_OPEN 0x25u
 /* Any value stops all axes, each with its ramp; executed for every host (write) */
 #define CARRYSTEP_STOP 0x26u
-/* Any value arms the latch: its next edge latches the state of all axes (write) */
+/* One latch: any value arms it, so that its next edge latches the state of all axes; several: bits 3..0 arm these latches, 5..4 choose the one whose record LATCH_ registers show (write) */
 #define CARRYSTEP_LATCH 0x27u
 /* Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u

@@ -146,6 +146,12 @@ bool carrystep_cut(carrystep_session *session, uint8_t mask, const uint8_t slots
  * runs any more. The cut and all writes behind it were removed; none was executed. */
 bool carrystep_cut_refused(const carrystep_session *session);
 
+/* The word of LATCH in a build with several latches: it arms the latches of `mask`, one bit each,
+ * and chooses the latch whose record the LATCH_ registers show from now on. In a build with one
+ * latch, any word arms it. */
+#define CARRYSTEP_LATCH_WORD(mask, chosen) \
+    (((uint32_t)(mask) & 15u) | ((uint32_t)(chosen) & 3u) << 4)
+
 /* Removes the writes that were never sent, so that the next one is sent at once. */
 void carrystep_withdraw(carrystep_session *session);
 

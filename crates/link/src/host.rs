@@ -5,6 +5,7 @@
 mod cancelled;
 mod error;
 mod homing;
+mod latches;
 mod motion;
 mod session;
 mod snapshot;
@@ -13,6 +14,7 @@ mod time;
 
 pub use error::{HomingFault, HostError};
 pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
+pub use latches::{Latches, MOST_LATCHES};
 pub use motion::{Ended, Progress, Wish};
 #[cfg(feature = "std")]
 pub use session::random_session;

@@ -79,7 +79,7 @@ pub const TICK_NS: u8 = 0x06;
 pub const PHASES: u8 = 0x07;
 /// Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog (read).
 pub const WATCHDOG_TICKS: u8 = 0x08;
-/// Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed (read).
+/// Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is ended; byte 1: bits 3..0 further edges since latch 0 was armed, bit 4 it is armed (read).
 pub const CAPTURES: u8 = 0x09;
 /// Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock) (read).
 pub const INPUTS: u8 = 0x0a;
@@ -87,6 +87,8 @@ pub const INPUTS: u8 = 0x0a;
 pub const INPUT_LEVELS: u8 = 0x0b;
 /// Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31 (read).
 pub const QUEUE_DEPTH: u8 = 0x0c;
+/// Only in a build with several latches, else 0; a bit for each latch: 3..0 it is armed, 7..4 the build has it; 15..8 the record of each, 2 bits each; 31..16 further edges since it was armed, 4 bits each; latch 0 lowest (read).
+pub const LATCHES: u8 = 0x0d;
 /// Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; the other bits have no meaning (read, axis 0).
 pub const LIMIT_MIN_SWITCH: u8 = 0x10;
 /// Limit at the high end, likewise (read, axis 0).
@@ -133,11 +135,11 @@ pub const SNAPSHOT_P_HIGH: u8 = 0xa8;
 pub const SNAPSHOT_POSITION: u8 = 0xb0;
 /// STATUS in that tick (read, axis 0).
 pub const SNAPSHOT_STATUS: u8 = 0xb8;
-/// DISCARDED in the tick of the latch; no meaning if the axis ran (read, axis 0).
+/// DISCARDED in the tick of the chosen latch; no meaning if the axis ran (read, axis 0).
 pub const LATCH_DISCARDED: u8 = 0xc0;
-/// LEFT in the tick of the latch; no meaning if the axis did not run (read, axis 0).
+/// LEFT in the tick of the chosen latch; no meaning if the axis did not run (read, axis 0).
 pub const LATCH_LEFT: u8 = 0xc8;
-/// TICKS of the latch; the same for all axes (read, axis 0).
+/// TICKS of the chosen latch; the same for all axes (read, axis 0).
 pub const LATCH_TICKS: u8 = 0xd8;
 /// P in that tick, low half (read, axis 0).
 pub const LATCH_P_LOW: u8 = 0xe0;
@@ -161,7 +163,7 @@ pub const SNAPSHOT: u8 = 0x24;
 pub const OPEN: u8 = 0x25;
 /// Any value stops all axes, each with its ramp; executed for every host (write).
 pub const STOP: u8 = 0x26;
-/// Any value arms the latch: its next edge latches the state of all axes (write).
+/// One latch: any value arms it, so that its next edge latches the state of all axes; several: bits 3..0 arm these latches, 5..4 choose the one whose record LATCH_ registers show (write).
 pub const LATCH: u8 = 0x27;
 /// Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of its move, else 0 (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;

@@ -16,6 +16,7 @@
 //! `image()`.
 
 mod crc;
+mod latch_records;
 mod line;
 mod processor;
 mod register_mirror;
@@ -23,11 +24,17 @@ mod spi;
 mod uart;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, Put, SeekSource, StateWord};
+use carrystep_core::engine::{
+    EngineInputs, EngineOutputs, MAX_LATCHES, Put, SeekSource, StateWord,
+};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, image};
+use latch_records::LatchRecords;
 use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
 use register_mirror::RegisterMirror;
+
+/// The bits of all latches.
+const LATCHES: u8 = (1 << MAX_LATCHES) - 1;
 
 /// The state of the link. [`Link::outputs`] and [`Link::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,6 +44,8 @@ pub struct Link {
     line: End,
     processor: LinkProcessor,
     register_mirror: RegisterMirror,
+    /// The records of a build with several latches.
+    latch_records: Option<LatchRecords>,
 }
 
 impl Link {
@@ -46,8 +55,9 @@ impl Link {
         Self {
             axes: ((1_u16 << build.axes()) - 1) as u8,
             line: End::new(line),
-            processor: LinkProcessor::new(&image()),
+            processor: LinkProcessor::new(&image(build.has_several_latches())),
             register_mirror: RegisterMirror::new(build, line.build_id(build)),
+            latch_records: build.has_several_latches().then(|| LatchRecords::new(build)),
         }
     }
 
@@ -65,7 +75,7 @@ impl Link {
             broken: processor.broken,
             seek_source: processor.sources.then_some(SeekSource::of_byte(processor.a)),
             seek: processor.seeks.then_some(mask),
-            latch_arm: processor.arms,
+            latch_arm: self.arms(processor.arms, processor.a),
             snapshot: processor.snapshot,
             cut: processor.cuts,
             kick: processor.kicks,
@@ -73,6 +83,21 @@ impl Link {
             ..EngineInputs::default()
         };
         LinkOutputs { tx: self.line.level(), engine }
+    }
+
+    /// The latches that the processor arms in this clock, with this A.
+    fn arms(&self, arms: bool, a: u8) -> u8 {
+        match self.latch_records {
+            _ if !arms => 0,
+            Some(_) => a & LATCHES,
+            None => 1,
+        }
+    }
+
+    /// The word that the processor has read.
+    fn fact(&self, engine: &EngineOutputs) -> u32 {
+        let records = self.latch_records.as_ref();
+        records.and_then(|records| records.data(engine)).unwrap_or(self.register_mirror.data())
     }
 
     /// The level of the line to the host (TX or MISO) in this clock.
@@ -87,10 +112,13 @@ impl Link {
         self.processor.clock(&Inputs {
             received: self.line.byte(),
             taken,
-            fact: self.register_mirror.data(),
+            fact: self.fact(&inputs.engine),
             engine: &inputs.engine,
         });
         self.register_mirror.clock(processor.x, inputs.engine.state);
+        if let Some(records) = &mut self.latch_records {
+            records.clock(processor.x, processor.arms.then_some(processor.a), &inputs.engine);
+        }
         self.line.clock(inputs, taken.then_some(processor.a));
     }
 
@@ -127,6 +155,7 @@ impl Link {
     /// has executed alone. Of several words of one address, the last one is enough.
     pub fn store(&mut self, word: StateWord) {
         self.register_mirror.store(word);
+        self.latch_records.iter_mut().for_each(|records| records.store(word));
     }
 
     /// The axis whose room the link requests in this clock, unless it offers a word.
@@ -134,7 +163,7 @@ impl Link {
         self.processor.room_of()
     }
 
-    /// The word that a host reads at this address.
+    /// The word that a host reads at this address, unless it belongs to one of several latches.
     pub fn register(&self, address: u8) -> u32 {
         self.register_mirror.word(address)
     }

@@ -5,7 +5,7 @@
 mod support;
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{StateItem, StateWord};
+use carrystep_core::engine::{Latch, StateItem, StatePage, StateWord};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_model::{Engine, HostedEngine};
 use support::host::{Cycle, run};
@@ -24,6 +24,8 @@ struct Met {
     switches: u64,
     hits: u64,
     edges_of_the_latch: u64,
+    /// Changes of the records that latches hold.
+    records: u64,
     /// Leaps that ended in each beat of a time slot.
     ends: [u64; 13],
     faults: u64,
@@ -31,12 +33,13 @@ struct Met {
     resets: u64,
 }
 
-/// The last word of each address.
-struct Memory([u32; 256]);
+/// The last word of each address; the words of page 3 in each record.
+struct Memory([u32; 1024]);
 
 impl Memory {
     fn store(&mut self, word: StateWord) {
-        self.0[usize::from(word.address())] = word.word;
+        let record = if word.page == StatePage::Latch { word.record } else { 0 };
+        self.0[usize::from(record) << 8 | usize::from(word.address())] = word.word;
     }
 }
 
@@ -45,7 +48,7 @@ impl Memory {
 fn compare(build: &EngineBuild, history: &[Cycle], random: &mut Random, met: &mut Met) {
     let (mut fast, mut slow) = (HostedEngine::new(build), Engine::new(build));
     let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
-    let (mut fast_memory, mut slow_memory) = (Memory([0; 256]), Memory([0; 256]));
+    let (mut fast_memory, mut slow_memory) = (Memory([0; 1024]), Memory([0; 1024]));
     let per_tick = u64::from(build.timebase.clocks_per_tick());
     let longest = random.one_of(&[30, 300, 3000, u64::MAX]);
     while let Some((inputs, outputs)) = history.get(fast.cycle() as usize) {
@@ -94,7 +97,12 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
     let mut met = Met::default();
     for seed in 0..200 {
         let mut random = Random::new(seed);
-        let build = support::build(&mut random);
+        let mut build = support::build(&mut random);
+        // Every second build that has a latch has more of them, two of which look alike.
+        if let (Some(&latch), 0) = (build.guard.latches.first(), seed % 2) {
+            let looks = latch.looks % 16 + 1;
+            build.guard.latches.extend([latch, Latch { looks, ..latch }]);
+        }
         let history = run(&build, random.next(), 60_000);
         for pair in history.windows(2) {
             let [now, next] = [&pair[0].1, &pair[1].1];
@@ -103,6 +111,7 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
             met.resets += u64::from(now.resetting && !next.resetting);
             met.hits += u64::from(next.hits & !now.hits != 0);
             met.edges_of_the_latch += u64::from(next.latch_edges > now.latch_edges);
+            met.records += u64::from(next.latch_records != now.latch_records);
             match now.state {
                 Some(word) if word.item == StateItem::Switch => met.switches += 1,
                 Some(word) => met.pages[word.page as usize] += 1,
@@ -116,6 +125,7 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
     assert!(met.pages.iter().all(|&words| words > 1000), "{met:?}");
     assert!(met.ends.iter().all(|&ends| ends > 10), "{met:?}");
     assert!(met.switches > 100_000 && met.edges_of_the_latch > 20, "{met:?}");
+    assert!(met.records > 20, "{met:?}");
     assert!(
         [met.faults, met.clears, met.resets, met.hits].iter().all(|&count| count > 20),
         "{met:?}"

@@ -16,7 +16,7 @@ fn build(random: &mut Random, looks: u8) -> EngineBuild {
     (guard.watchdog, guard.enable, guard.round, guard.debounce) = (0, 0, 4, 1);
     guard.limits = LimitWiring::None;
     guard.inputs = [InputRow { exist: 1, low: random.next() as u8 & 1 }; 2];
-    guard.latch = Some(Latch { low: random.below(2) == 0, looks });
+    guard.latches = vec![Latch::of_pin(random.below(2) == 0, looks)];
     build.pins.fill(PinTiming::SHORTEST);
     build
 }
@@ -87,10 +87,10 @@ fn latched_words_are_those_of_the_tick_after_the_last_look() {
             assert_eq!(live.edges(axis), latched.edges(axis), "seed {seed}, axis {axis}");
         }
         assert_kept(&latched, &live, tick, StatePage::Latch);
-        let armed = |cycle: usize| latched.cycles[cycle].1.latch_armed;
+        let armed = |cycle: usize| latched.cycles[cycle].1.latch_armed == 1;
         assert!(!armed(arm) && armed(arm + 1) && armed(tick * per_tick - 1), "seed {seed}");
         assert!(!armed(tick * per_tick), "seed {seed}");
-        let edges = latched.cycles.last().unwrap().1.latch_edges;
+        let edges = latched.cycles.last().unwrap().1.latch_edges[0];
         assert_eq!(edges, 1, "seed {seed}: the second edge is counted only");
     }
     assert!(bounces > 20);

@@ -23,7 +23,7 @@ fn build(random: &mut Random) -> EngineBuild {
     (guard.watchdog, guard.enable) = (0, 0);
     guard.round = random.one_of(&[4, 8]);
     guard.inputs = [(); 2].map(|()| InputRow { exist: all, low: random.next() as u8 & all });
-    guard.latch = Some(Latch { low: false, looks: 1 });
+    guard.latches = vec![Latch::of_pin(false, 1)];
     build.pins.fill(PinTiming::SHORTEST);
     build
 }

@@ -30,6 +30,9 @@ uint64_t checksum(const Vcarrystep_engine& core, uint64_t sum) {
         const uint64_t meant = core.state_item == {{ status }} ? {{ status_meant }}u
                              : core.state_item == {{ switch }} ? {{ switch_meant }}u : ~0u;
         word = uint64_t{address} << 32 | (core.state & meant);
+{% if several %}
+        word |= uint64_t{core.state_record} << 41;
+{% endif %}
     }
     return (sum << 7 | sum >> 57) ^ (uint64_t{core.refreshed} << 40 | word);
 }

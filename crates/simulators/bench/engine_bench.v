@@ -30,7 +30,8 @@ module engine_bench;
     wire [31:0] mask = state_item == {{ status }} ? 32'd{{ status_meant }}
                      : state_item == {{ switch }} ? 32'd{{ switch_meant }} : 32'hffffffff;
     wire [31:0] meant = state & mask;
-    wire [39:0] said = state_valid ? {state_page, state_item, state_axis, meant} : 40'b0;
+    wire [1:0] record = {{ "state_record" if several else "2'd0" }};
+    wire [42:0] said = state_valid ? {record, 1'b0, state_page, state_item, state_axis, meant} : 43'b0;
     reg [8*256-1:0] name;
 
     task tick;
@@ -57,7 +58,7 @@ module engine_bench;
                 #1;
                 if (recorded !== before) $display("%0d %h %h", cycle, recorded, sum);
                 before = recorded;
-                if (state_valid | refreshed) sum = {sum[56:0], sum[63:57]} ^ {23'b0, refreshed, said};
+                if (state_valid | refreshed) sum = {sum[56:0], sum[63:57]} ^ {21'b0, said} ^ {23'b0, refreshed, 40'b0};
                 tick;
                 cycle = cycle + 1;
                 count = count - 1;

@@ -2,7 +2,8 @@
 
 use crate::LevelError;
 use carrystep_core::engine::{
-    ENGINE_PORTS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE, StateItem, is_recorded, ports_of,
+    ENGINE_PORTS, MORE_LATCH_PORTS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE, StateItem,
+    is_recorded, ports_of,
 };
 use carrystep_core::link::BYTE_PORTS;
 use carrystep_core::ports::{Direction, Peer, Port, Width};
@@ -14,27 +15,33 @@ const VERILATOR: &str = include_str!("../bench/engine_bench.cpp");
 const BOARD: &str = include_str!("../bench/board_bench.v");
 const BOARD_PROCESS: &str = include_str!("../bench/board_bench.cpp");
 
-/// The bench that replays a recording in Icarus.
-pub(crate) fn icarus() -> Result<String, LevelError> {
-    rendered(ICARUS)
+/// The bench that replays a recording in Icarus. `several` is true for the engine of a build with
+/// several latches, which has further ports.
+pub(crate) fn icarus(several: bool) -> Result<String, LevelError> {
+    rendered(ICARUS, several)
 }
 
 /// The bench that replays a recording in Verilator.
-pub(crate) fn verilator() -> Result<String, LevelError> {
-    rendered(VERILATOR)
+pub(crate) fn verilator(several: bool) -> Result<String, LevelError> {
+    rendered(VERILATOR, several)
 }
 
 /// Line, link and engine of a board as one module.
-pub(crate) fn board() -> Result<String, LevelError> {
-    rendered(BOARD)
+pub(crate) fn board(several: bool) -> Result<String, LevelError> {
+    rendered(BOARD, several)
 }
 
 /// The bench that runs a board in Verilator as a process.
-pub(crate) fn board_process() -> Result<String, LevelError> {
-    rendered(BOARD_PROCESS)
+pub(crate) fn board_process(several: bool) -> Result<String, LevelError> {
+    rendered(BOARD_PROCESS, several)
 }
 
-fn rendered(template: &str) -> Result<String, LevelError> {
+/// True if an engine has this port.
+pub(crate) fn has(several: bool, port: &Port) -> bool {
+    several || !MORE_LATCH_PORTS.contains(port)
+}
+
+fn rendered(template: &str, several: bool) -> Result<String, LevelError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(
@@ -44,13 +51,16 @@ fn rendered(template: &str) -> Result<String, LevelError> {
             .build()
             .unwrap_or_default(),
     );
-    let recorded = |direction| ports_of(direction).filter(|port| is_recorded(port));
+    let of = |direction| ports_of(direction).filter(move |port| has(several, port));
+    let recorded = |direction| of(direction).filter(|port| is_recorded(port));
+    let all = ENGINE_PORTS.iter().chain(MORE_LATCH_PORTS).filter(|port| has(several, port));
     let rows = |direction| recorded(direction).map(row).collect::<Vec<_>>();
     let values = context! {
-        ports => ENGINE_PORTS.iter().map(row).collect::<Vec<_>>(),
+        ports => all.map(row).collect::<Vec<_>>(),
+        several,
         bytes => BYTE_PORTS.iter().map(row).collect::<Vec<_>>(),
         inputs => rows(Direction::Input),
-        pins => ports_of(Direction::Input)
+        pins => of(Direction::Input)
             .filter(|port| port.peer == Peer::Pins)
             .map(row)
             .collect::<Vec<_>>(),

@@ -7,7 +7,7 @@ use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, ports_of};
 use carrystep_core::link::LineKind;
-use carrystep_core::ports::{Direction, Peer};
+use carrystep_core::ports::{Direction, Peer, Port};
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -52,6 +52,8 @@ pub struct Standing {
 /// The process; it is ended when this is dropped.
 #[derive(Debug)]
 pub struct BoardProcess {
+    /// Whether the engine has several latches, and their ports.
+    several: bool,
     child: Child,
     to: BufWriter<ChildStdin>,
     from: BufReader<ChildStdout>,
@@ -70,7 +72,8 @@ impl BoardProcess {
             engine_verilog(build, what),
         ];
         // The exported files are Verilog-2005; the top level of the bench uses more.
-        let top = bench::board()?;
+        let several = build.has_several_latches();
+        let top = bench::board(several)?;
         let mut verilog = format!("{top}`begin_keywords \"1364-2005\"\n");
         for part in parts {
             verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
@@ -79,7 +82,7 @@ impl BoardProcess {
         let axes = format!("-GAXES={}", build.axes());
         let define = if line == LineKind::Spi { "-DSPI" } else { "-DUART" };
         let options: &[&str] = &[&axes, define];
-        let bench = bench::board_process()?;
+        let bench = bench::board_process(several)?;
         let board = Simulation { name: "board", top: "board_bench", bench: &bench, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -87,7 +90,7 @@ impl BoardProcess {
         let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(gone("no pipes"));
         };
-        Ok(Self { child, to: BufWriter::new(to), from: BufReader::new(from) })
+        Ok(Self { several, child, to: BufWriter::new(to), from: BufReader::new(from) })
     }
 
     /// Runs for the given number of clocks with each of these levels, and returns the state at the
@@ -110,7 +113,8 @@ impl BoardProcess {
                 [select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
             let mut line = format!("{count} {bits:x}");
             let levels = ports_of(Direction::Input).zip(pins.at_ports());
-            for (_, (_, level)) in levels.filter(|(port, _)| port.peer == Peer::Pins) {
+            let is_pin = |port: &Port| port.peer == Peer::Pins && bench::has(self.several, port);
+            for (_, (_, level)) in levels.filter(|(port, _)| is_pin(port)) {
                 line += &format!(" {:x}", level.unwrap_or(0));
             }
             writeln!(self.to, "{line}").map_err(tool::io("the simulation is gone"))?;

@@ -93,8 +93,8 @@ pub enum Event {
     Inputs0(u8),
     /// New state of the inputs of row 3, bit 0 the interlock.
     Inputs1(u8),
-    /// The pin of the latch becomes active or inactive.
-    Latch(bool),
+    /// New state of the latches' pins, bit k that of latch k.
+    Latch(u8),
     /// The host requests a controlled stop, or withdraws the request.
     Stop(bool),
     /// The host requests power for the drivers, or removes it.
@@ -105,8 +105,8 @@ pub enum Event {
     SeekSource(SeekSource),
     /// Mask of the axes that wait for the source from the next cycle on.
     Seek(u8),
-    /// The host arms the latch in this cycle.
-    LatchArm,
+    /// The host arms these latches in this cycle, bit k latch k.
+    LatchArm(u8),
     /// The host requests a snapshot in this cycle.
     Snapshot,
     /// The host violates the segment protocol in this cycle.

@@ -4,6 +4,7 @@
 //! ```text
 //! engine #(STEP_HIGH_0, STEP_HIGH_1, ...)       one parameter per axis, with the axis' number
 //!   pulser pulser_0 #(.STEP_HIGH(STEP_HIGH_0))  each instance receives that of its own axis
+//!   edge_latch edge_latch_0 #(.LATCH_LOW(LATCH_LOW_1))  latches from 1 on
 //!   supervisor supervisor #(.ROUND_TICKS(ROUND_TICKS))  not per axis: the same name
 //! ```
 //!
@@ -54,6 +55,12 @@ pub(crate) fn of(module: &Module) -> Result<Vec<ParameterValue>, ExportError> {
 pub(crate) fn in_parent(instance: &str, name: &str) -> String {
     match (split_index(instance).1, described(name)) {
         (Some(index), Some((known, None))) if known.per_axis => format!("{name}_{index}"),
+        // Latch 0 is a part of its own, and an array contains the latches from 1 on.
+        (Some(index), Some((known, None)))
+            if known.per_latch && instance.starts_with("edge_latch") =>
+        {
+            format!("{name}_{}", index + 1)
+        }
         _ => name.to_owned(),
     }
 }

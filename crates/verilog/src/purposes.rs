@@ -18,7 +18,7 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 pub const LINK_NAME: &str = "carrystep_link";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 43] = [
+const PURPOSES: [(&str, &str); 46] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -113,6 +113,10 @@ const PURPOSES: [(&str, &str); 43] = [
         "The latch: at an edge of its pin the state of all axes is output on a page of its own.",
     ),
     (
+        "carrystep_latch_bank",
+        "Latches 1 to 3, and the records that all latches hold, of which latches of one strobe share one.",
+    ),
+    (
         "carrystep_readout",
         "Outputs the state of every axis in its time slot, and takes snapshots of all axes.",
     ),
@@ -145,6 +149,11 @@ const PURPOSES: [(&str, &str); 43] = [
         "carrystep_known",
         "Memory of carrystep_register_mirror: constants of the build, and the words of state of each axis.",
     ),
+    (
+        "carrystep_latch_view",
+        "What the host reads of several latches: a record of one of them, and the state of all.",
+    ),
+    ("carrystep_kept", "Memory of carrystep_latch_view: the words of state of four records."),
     (
         "carrystep_data",
         "Data memory of carrystep_processor: the request, its answer, constants and variables.",

@@ -252,6 +252,42 @@ fn machine_can_use_an_spi() {
     assert!(on_spi >= 10, "{on_spi} boards have an SPI");
 }
 
+/// Latches at the pins of the probe and of a limit, and one at its own: the top level connects
+/// these pins twice, and link and engine with the ports of several latches.
+#[test]
+fn top_level_connects_each_latch_to_its_source() {
+    let board = board("hx8k-evn").unwrap();
+    let with = |latches: &str| {
+        let text = shipped_machine(board, &board.clocks[0]).unwrap().replace(
+            "[machine.link]",
+            &format!("[machine.inputs]\nprobe = \"low\"\nlatches = [{latches}]\n\n[machine.link]"),
+        );
+        let machine = SourceText { path: "machine.toml".into(), text: text.into() };
+        Gateware::new(board, &board.parts[0], machine)
+    };
+    let top = |latches: &str| with(latches).unwrap().files().unwrap().swap_remove(0).text;
+    let probe = "{ source = \"probe\", edge = \"falling\" }";
+    let limit = "{ source = \"limit_min\", axis = \"y\", edge = \"rising\", looks = 2 }";
+    let text = top(&format!("{probe}, {{ edge = \"rising\" }}, {limit}"));
+    for line in [
+        "    input wire latch,\n",
+        ".latch(probe),",
+        ".more_latches({1'b0, limit_min[1], latch}),",
+        "wire [2:0] more_latch_arm;",
+        ".latch_records(latch_records),",
+        ".LATCH_LOOKS_2(32'd2)",
+        ".LATCH_LOOKS_3(32'd0)",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    // The only latch may share a pin, too.
+    let text = top(probe);
+    assert!(text.contains(".latch(probe),") && !text.contains("input wire latch"), "{text}");
+    assert!(!text.contains("more_latch"), "{text}");
+    let refused = with("{ edge = \"rising\" }, { edge = \"falling\" }").unwrap_err().to_string();
+    assert!(refused.contains("1 of the 2 pins that this machine needs for latches"), "{refused}");
+}
+
 /// Probe, interlock, general inputs, latch, outputs and PWM: the top level connects each to its pin,
 /// and the general inputs take turns in the two rows of the engine.
 #[test]

@@ -28,7 +28,7 @@ fn engine_of(axes: usize) -> EngineBuild {
     engine.pins = vec![PinTiming::SHORTEST; axes];
     engine.guard.stop = vec![1 << 40; axes];
     engine.guard.limits = LimitWiring::Pair;
-    engine.guard.latch = Some(Latch { looks: 1, low: false });
+    engine.guard.latches = vec![Latch::of_pin(false, 1)];
     engine
 }
 

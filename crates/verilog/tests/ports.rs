@@ -2,7 +2,7 @@
 //! texts that are written by hand: benches, harnesses, the boards' top level and the documentation.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_core::engine::ENGINE_PORTS;
+use carrystep_core::engine::{ENGINE_PORTS, Latch, MORE_LATCH_PORTS, engine_ports};
 use carrystep_core::link::{LineKind, Uart, line_ports, link_ports};
 use carrystep_core::ports::{Direction, PARALLEL_PORTS, Peer, Port, Width};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
@@ -27,6 +27,12 @@ fn engine_of(axes: usize) -> EngineBuild {
     let mut engine = EngineBuild::minimal(&build(), 1 << 40);
     engine.pins = vec![PinTiming::SHORTEST; axes];
     engine.guard.stop = vec![1 << 40; axes];
+    engine
+}
+
+/// The same with this number of latches.
+fn with_latches(mut engine: EngineBuild, count: usize) -> EngineBuild {
+    engine.guard.latches = vec![Latch::of_pin(false, 1); count];
     engine
 }
 
@@ -81,15 +87,20 @@ fn exported_modules_have_the_ports_of_their_tables() {
         assert_eq!(core.into_iter().collect::<Ports>(), table, "{axes} axes");
     }
     let uart = LineKind::Uart(Uart::new(80_000_000, 921_600).unwrap());
-    for axes in 1..=8 {
-        let build = engine_of(axes);
+    let builds = (1..=8).map(|axes| (axes, 1)).chain([(6, 0), (6, 2), (6, 4), (1, 3)]);
+    for (axes, latches) in builds {
+        let build = with_latches(engine_of(axes), latches);
         let engine = declared(&engine_verilog(&build, "a test").unwrap(), ENGINE_NAME);
-        let order = ENGINE_PORTS.iter().map(|port| port.name);
+        let order = engine_ports(&build).map(|port| port.name);
         assert!(engine.iter().map(|(name, _)| name.as_str()).eq(order), "{axes} axes");
-        let table = tabled(ENGINE_PORTS.iter().copied(), axes);
+        let table = tabled(engine_ports(&build).copied(), axes);
         assert_eq!(engine.into_iter().collect::<Ports>(), table, "{axes} axes");
         let link = declared(&link_verilog(&build, uart, "a test").unwrap(), LINK_NAME);
-        assert_eq!(link.into_iter().collect::<Ports>(), tabled(link_ports(), axes), "{axes} axes");
+        assert_eq!(
+            link.into_iter().collect::<Ports>(),
+            tabled(link_ports(&build), axes),
+            "{axes} axes"
+        );
     }
     for line in [uart, LineKind::Spi] {
         let found = declared(&line_verilog(line, "a test").unwrap(), line_name(line));
@@ -99,8 +110,10 @@ fn exported_modules_have_the_ports_of_their_tables() {
 
 #[test]
 fn outputs_are_valid_with_outputs_of_their_own_table() {
-    let link: Vec<Port> = link_ports().collect();
-    for table in [&PARALLEL_PORTS[..], ENGINE_PORTS, &link] {
+    let build = with_latches(engine_of(6), 2);
+    let engine: Vec<Port> = engine_ports(&build).copied().collect();
+    let link: Vec<Port> = link_ports(&build).collect();
+    for table in [&PARALLEL_PORTS[..], ENGINE_PORTS, &engine, &link] {
         for name in table.iter().filter_map(|port| port.valid_with) {
             let with = table.iter().find(|port| port.name == name).unwrap();
             assert_eq!(with.width, Width::Bits(1), "{name}");
@@ -121,7 +134,7 @@ fn hand_written_verilog_connects_every_port() {
             continue;
         }
         assert_eq!(connected(&read(&top), ") engine ("), names(ENGINE_PORTS), "{top}");
-        let link: Vec<Port> = link_ports().collect();
+        let link: Vec<Port> = link_ports(&engine_of(6)).collect();
         assert_eq!(connected(&read(&top), ") link ("), names(&link), "{top}");
     }
 }
@@ -185,7 +198,12 @@ fn documented(page: &str, port: &str) -> BTreeMap<String, (bool, String)> {
 #[test]
 fn page_has_the_ports_of_the_tables() {
     let page = read("docs/clock-by-clock.md");
-    for (table, one) in [(&PARALLEL_PORTS[..], "seg_valid"), (ENGINE_PORTS, "put_valid")] {
+    let tables = [
+        (&PARALLEL_PORTS[..], "seg_valid"),
+        (ENGINE_PORTS, "put_valid"),
+        (MORE_LATCH_PORTS, "more_latches"),
+    ];
+    for (table, one) in tables {
         let row = |port: &Port| {
             let width = match port.width {
                 Width::Bits(bits) => bits.to_string(),

@@ -23,10 +23,11 @@ pub struct Switches {
 }
 
 impl Switches {
-    /// Levels of the input pins, with the polarity of the build.
+    /// Levels of the input pins, with the polarity of the build and the sources of its latches.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
         let Self { estop, limit_min, limit_max } = self;
-        EngineInputs { estop, limit_min, limit_max, ..EngineInputs::default() }.levels(guard)
+        let pins = EngineInputs { estop, limit_min, limit_max, ..EngineInputs::default() };
+        pins.levels(guard).with_sources(guard)
     }
 }
 

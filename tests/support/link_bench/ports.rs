@@ -1,8 +1,8 @@
 //! The recordings of link and line, with the ports of the tables in `core`.
 
-use carrystep_core::AXES;
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, line_ports, link_ports};
 use carrystep_core::ports::{Direction, Peer, Port};
+use carrystep_core::{AXES, EngineBuild};
 use carrystep_hdl::line::LineOutputs;
 use carrystep_simulators::vectors::{Bits, Vectors};
 
@@ -13,24 +13,25 @@ pub struct Both {
     pub link: Vectors,
     /// Cycles of its line.
     pub line: Vectors,
-    kind: LineKind,
+    /// The ports of each.
+    ports: [Vec<Port>; 2],
 }
 
 /// The value of a port, by its name; `None` where it is not valid.
 type Value = (&'static str, Option<u64>);
 
 impl Both {
-    /// Empty recordings of a link and of this line.
-    pub fn new(kind: LineKind) -> Self {
-        let empty = |ports: Vec<Port>| {
+    /// Empty recordings of the link of a build and of this line.
+    pub fn new(build: &EngineBuild, kind: LineKind) -> Self {
+        let empty = |ports: &[Port]| {
             let of = |way| {
                 let named = |port: &Port| (port.name, port.width.of(AXES));
-                side(&ports, way).map(named).collect::<Vec<_>>()
+                side(ports, way).map(named).collect::<Vec<_>>()
             };
             Vectors::new(of(Direction::Input), of(Direction::Output))
         };
-        let link = empty(link_ports().collect());
-        Self { link, line: empty(line_ports(kind).collect()), kind }
+        let ports = [link_ports(build).collect::<Vec<_>>(), line_ports(kind).collect()];
+        Self { link: empty(&ports[0]), line: empty(&ports[1]), ports }
     }
 
     /// Records the present cycle: what the link sees and shows, the bytes between link and line,
@@ -53,12 +54,14 @@ impl Both {
         let link: Vec<Value> = bytes.into_iter().chain(told).chain(said).collect();
         let level = |&(name, level): &(&'static str, bool)| (name, Some(u64::from(level)));
         let line: Vec<Value> = bytes.into_iter().chain(pins.iter().map(level)).collect();
-        let ports: Vec<Port> = link_ports().collect();
-        self.link
-            .add(packed(&ports, Direction::Input, &link), packed(&ports, Direction::Output, &link));
-        let ports: Vec<Port> = line_ports(self.kind).collect();
-        self.line
-            .add(packed(&ports, Direction::Input, &line), packed(&ports, Direction::Output, &line));
+        let [of_link, of_line] = &self.ports;
+        let sides = |ports: &[Port], values: &[Value]| {
+            [Direction::Input, Direction::Output].map(|way| packed(ports, way, values))
+        };
+        let [inputs, outputs] = sides(of_link, &link);
+        self.link.add(inputs, outputs);
+        let [inputs, outputs] = sides(of_line, &line);
+        self.line.add(inputs, outputs);
     }
 }
 

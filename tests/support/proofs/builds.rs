@@ -93,7 +93,16 @@ pub fn engine_with_inputs(axes: usize, clocks: u32, phases: u32) -> (EngineBuild
     let (mut build, _) = small_engine(axes, clocks, phases, LimitWiring::Pair);
     build.guard.round = 4;
     build.guard.inputs = [InputRow { exist: 3, low: 1 }, InputRow { exist: 1, low: 1 }];
-    build.guard.latch = Some(Latch { low: false, looks: 2 });
+    build.guard.latches = vec![Latch::of_pin(false, 2)];
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
+/// The same engine of two axes with this number of latches, of one or two looks.
+pub fn engine_with_latches(count: usize) -> (EngineBuild, Arc<str>) {
+    let (mut build, _) = engine_with_inputs(2, 32, 4);
+    let latch = |number: usize| Latch::of_pin(number == 1, 1 + (number as u8 & 1));
+    build.guard.latches = (0..count).map(latch).collect();
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     (build, text)
 }

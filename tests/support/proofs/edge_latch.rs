@@ -37,7 +37,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let builds =
         [engine_with_inputs(6, 80, 4), small_engine(6, 80, 4, LimitWiring::Pair), built.clone()];
     let case = |(build, verilog): (EngineBuild, _)| {
-        let latch = build.guard.latch;
+        let latch = build.guard.latches.first();
         let looks = latch.map_or(0, |latch| latch.looks);
         let low = latch.is_some_and(|latch| latch.low);
         Case {

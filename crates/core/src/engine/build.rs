@@ -3,7 +3,7 @@
 //! axes.
 
 use super::{
-    EngineError, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    EngineError, Latch, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
     Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
 };
 use crate::build::{Build, PinTiming, Timebase};
@@ -58,8 +58,8 @@ pub struct Guard {
     pub limits_low: bool,
     /// The inputs of the rows 2 and 3: probe, interlock and general inputs.
     pub inputs: [InputRow; 2],
-    /// The latch; `None` if the build has none.
-    pub latch: Option<Latch>,
+    /// The latches, at most [`super::MAX_LATCHES`]; latch k is entry k.
+    pub latches: Vec<Latch>,
     /// Stop acceleration of each axis, 2^-64 step per tick^2, 1 to 2^62.
     pub stop: Vec<u64>,
 }
@@ -72,15 +72,6 @@ pub struct InputRow {
     pub exist: u8,
     /// Those of them that are active while their pin is low.
     pub low: u8,
-}
-
-/// The latch, which keeps the state of all axes at an edge of its pin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Latch {
-    /// Whether its pin is active while it is low. The edge is the change to the active level.
-    pub low: bool,
-    /// Number of consecutive ticks that must find the pin active, 1 to [`MAX_LOOKS`].
-    pub looks: u8,
 }
 
 /// Wiring of the limit switches.
@@ -112,12 +103,12 @@ impl Guard {
             estop_low: false,
             limits_low: false,
             inputs: [InputRow::default(); 2],
-            latch: None,
+            latches: Vec::new(),
             stop,
         }
     }
 
-    /// This guard with the active level of every switch and of the latch: low, or else high.
+    /// This guard with the active level of every switch and latch: low, or else high.
     #[must_use]
     pub fn active_low(self, low: bool) -> Self {
         let row = |InputRow { exist, .. }| InputRow { exist, low: if low { exist } else { 0 } };
@@ -125,7 +116,7 @@ impl Guard {
             estop_low: low,
             limits_low: low,
             inputs: self.inputs.map(row),
-            latch: self.latch.map(|latch| Latch { low, ..latch }),
+            latches: self.latches.into_iter().map(|latch| Latch { low, ..latch }).collect(),
             ..self
         }
     }
@@ -195,11 +186,7 @@ impl EngineBuild {
                 return Err(EngineError::RoundOfInputs(guard.round));
             }
         }
-        if let Some(Latch { looks, .. }) = guard.latch
-            && !(1..=MAX_LOOKS).contains(&looks)
-        {
-            return Err(EngineError::Looks(looks));
-        }
+        self.check_latches()?;
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
         }
@@ -259,8 +246,6 @@ mod tests {
             build.guard.round = 2;
         });
         assert!(said.starts_with("a round of 2 ticks: inputs need a round of 4"), "{said}");
-        let said = refusal(|build| build.guard.latch = Some(Latch { low: false, looks: 17 }));
-        assert!(said.starts_with("a latch of 17 looks"), "{said}");
         let said = refusal(|build| build.outputs.pwm_divider = 257);
         assert!(said.starts_with("a PWM of 257 clocks"), "{said}");
         let said = refusal(|build| build.queue = 8);

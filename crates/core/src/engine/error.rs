@@ -2,7 +2,7 @@
 //! are possible.
 
 use super::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
+    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LATCHES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
     MIN_CLOCKS_PER_PHASE, PWM_STEPS, TIME_SLOT_CLOCKS,
 };
 use crate::build::MAX_CLOCKS;
@@ -99,7 +99,22 @@ pub enum EngineError {
     /// A round has too few ticks for the inputs of the rows 2 and 3.
     #[error("a round of {0} ticks: inputs need a round of 4 ticks or more")]
     RoundOfInputs(u32),
-    /// The number of looks of the latch is out of range.
+    /// There are more latches than [`MAX_LATCHES`].
+    #[error("{0} latches: an engine has at most {MAX_LATCHES}")]
+    Latches(usize),
+    /// A latch is connected to the pin of a switch that the build does not have.
+    #[error(
+        "latch {number} is connected to axis {axis} of row {row}, where the build has no switch"
+    )]
+    LatchSource {
+        /// Number of the latch.
+        number: usize,
+        /// The row.
+        row: u8,
+        /// Number of the axis.
+        axis: u8,
+    },
+    /// The number of looks of a latch is out of range.
     #[error("a latch of {0} looks: 1 to {MAX_LOOKS} can be counted")]
     Looks(u8),
     /// The divider of the PWM is out of range.

@@ -1,6 +1,6 @@
 //! The ports of the engine, and which field of [`EngineInputs`] or [`EngineOutputs`] is at each.
 
-use super::{CAUSE_BITS, EngineInputs, EngineOutputs, STATE_ITEM_BITS};
+use super::{CAUSE_BITS, EngineBuild, EngineInputs, EngineOutputs, STATE_ITEM_BITS};
 use crate::ports::{CLOCK, Direction, Peer, Port, Width, input, output};
 
 const BIT: Width = Width::Bits(1);
@@ -87,10 +87,28 @@ pub const ENGINE_PORTS: &[Port] = &[
     output("started", BIT, Peer::Nobody, "axes start at the end of this clock"),
 ];
 
+/// The further ports of `carrystep_engine` in a build with several latches, in order.
+pub const MORE_LATCH_PORTS: &[Port] = &[
+    input("more_latches", Width::Bits(3), Peer::Pins, "the pins of latches 1 to 3, asynchronous"),
+    input("more_latch_arm", Width::Bits(3), Peer::Host, "the host arms these latches"),
+    output("more_latch_armed", Width::Bits(3), Peer::Host, "these latches wait for their edges"),
+    output("more_latch_edges", Width::Bits(12), Peer::Host, "further edges of each of them"),
+    output("latch_records", Width::Bits(8), Peer::Host, "the record of each latch from 0 on"),
+    output("state_record", Width::Bits(2), Peer::Host, "the record of the words of page 3")
+        .valid_with("state_valid"),
+];
+
+/// The ports of `carrystep_engine` in this build, in order.
+pub fn engine_ports(build: &EngineBuild) -> impl Iterator<Item = &'static Port> + Clone + use<> {
+    let more = if build.has_several_latches() { MORE_LATCH_PORTS } else { &[] };
+    ENGINE_PORTS.iter().chain(more)
+}
+
 /// The ports of this direction that [`EngineInputs::at_ports`] and [`EngineOutputs::at_ports`]
-/// list, in their order: all but the clock.
+/// list, in their order: all but the clock. The last ones are those of [`MORE_LATCH_PORTS`].
 pub fn ports_of(direction: Direction) -> impl Iterator<Item = &'static Port> {
-    ENGINE_PORTS.iter().filter(move |port| port.direction == direction && port.peer != Peer::Clock)
+    let all = ENGINE_PORTS.iter().chain(MORE_LATCH_PORTS);
+    all.filter(move |port| port.direction == direction && port.peer != Peer::Clock)
 }
 
 /// True if benches print the value of this port when it changes. Words of state change in most
@@ -102,7 +120,7 @@ pub fn is_recorded(port: &Port) -> bool {
 impl EngineInputs {
     /// Name and value of each input in the order of [`ports_of`]. `None` is a value that is
     /// not offered and has no effect; it is driven as 0.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 25] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 27] {
         let Self {
             put,
             room_of,
@@ -140,7 +158,7 @@ impl EngineInputs {
             ("seek_source", seek_source.map(|source| source.byte().into())),
             ("seek_valid", Some(seek.is_some().into())),
             ("seek_mask", seek.map(u64::from)),
-            ("latch_arm", Some(latch_arm.into())),
+            ("latch_arm", Some(u64::from(latch_arm & 1))),
             ("snapshot", Some(snapshot.into())),
             ("kick", Some(kick.into())),
             ("enable", Some(enable.into())),
@@ -149,7 +167,9 @@ impl EngineInputs {
             ("limit_max", Some(limit_max.into())),
             ("inputs_0", Some(inputs_0.into())),
             ("inputs_1", Some(inputs_1.into())),
-            ("latch", Some(latch.into())),
+            ("latch", Some(u64::from(latch & 1))),
+            ("more_latches", Some(u64::from(latch >> 1 & 7))),
+            ("more_latch_arm", Some(u64::from(latch_arm >> 1 & 7))),
         ]
     }
 }
@@ -157,7 +177,7 @@ impl EngineInputs {
 impl EngineOutputs {
     /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
     /// not valid in this cycle.
-    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 30] {
+    pub fn at_ports(&self) -> [(&'static str, Option<u64>); 34] {
         let Self {
             put_ready,
             start_ready,
@@ -178,6 +198,7 @@ impl EngineOutputs {
             hits,
             latch_armed,
             latch_edges,
+            latch_records,
             state,
             refreshed,
             room,
@@ -211,11 +232,20 @@ impl EngineOutputs {
             ("ready", Some(ready.into())),
             ("seeking", Some(seeking.into())),
             ("hits", Some(hits.into())),
-            ("latch_armed", Some(latch_armed.into())),
-            ("latch_edges", Some(latch_edges.into())),
+            ("latch_armed", Some(u64::from(latch_armed & 1))),
+            ("latch_edges", Some(u64::from(latch_edges[0]))),
             ("started", Some(started.into())),
+            ("more_latch_armed", Some(u64::from(latch_armed >> 1))),
+            ("more_latch_edges", Some(packed(&latch_edges[1..], 4))),
+            ("latch_records", Some(packed(&latch_records, 2))),
+            ("state_record", state.map(|state| state.record.into())),
         ]
     }
+}
+
+/// Numbers of this many bits each, the first one lowest.
+fn packed(numbers: &[u8], bits: u32) -> u64 {
+    numbers.iter().rev().fold(0, |all, number| all << bits | u64::from(*number))
 }
 
 impl EngineOutputs {
@@ -229,14 +259,16 @@ impl EngineOutputs {
     /// A cycle without a word and without `refreshed` does not change it.
     ///
     /// ```text
-    /// sum <= rotate_left(sum, 7) ^ (refreshed 1 | page 2 | item 3 | axis 3 | word 32)
+    /// sum <= rotate_left(sum, 7) ^ (record 2 | refreshed 1 | page 2 | item 3 | axis 3 | word 32)
     /// ```
     pub fn state_sum(&self, sum: u64) -> u64 {
         if self.state.is_none() && !self.refreshed {
             return sum;
         }
-        let word =
-            self.state.map_or(0, |state| u64::from(state.address()) << 32 | u64::from(state.word));
+        let word = self.state.map_or(0, |state| {
+            let (record, address) = (u64::from(state.record), u64::from(state.address()));
+            record << 41 | address << 32 | u64::from(state.word)
+        });
         sum.rotate_left(7) ^ (u64::from(self.refreshed) << 40 | word)
     }
 }

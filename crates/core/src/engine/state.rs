@@ -32,7 +32,7 @@ pub enum StatePage {
     Live = 1,
     /// The state in the tick of the latest snapshot.
     Snapshot = 2,
-    /// The state in the tick after the edge that the latch accepted.
+    /// The state in the tick after the edge that a latch accepted.
     Latch = 3,
 }
 
@@ -75,6 +75,9 @@ pub enum StateItem {
 pub struct StateWord {
     /// The page that it belongs to.
     pub page: StatePage,
+    /// Number of the record to which the words of [`StatePage::Latch`] belong in this tick; the
+    /// same for all words of a tick, and 0 in a build with at most one latch.
+    pub record: u8,
     /// The axis.
     pub axis: u8,
     /// Its meaning.

@@ -1,8 +1,9 @@
 //! The build id: a hash by which a driver recognises the gateware that it was made for.
 
-use super::registers::{MappedRegister, PROTOCOL_VERSION, REGISTERS};
+use super::registers::{LATCHES, MappedRegister, PROTOCOL_VERSION, REGISTERS};
 use super::{ANSWER, Field};
 use crate::EngineBuild;
+use crate::engine::{Latch, LatchSource};
 use alloc::borrow::ToOwned;
 use alloc::format;
 use alloc::string::String;
@@ -17,7 +18,7 @@ impl BuildId {
     /// The id of a build. `line` describes the build parameters of the link, such as its baud rate.
     pub fn new(build: &EngineBuild, line: &str) -> Self {
         let mut hash = Sha256::new();
-        for part in [protocol(), parameters(build), line.to_owned()] {
+        for part in [protocol(build), parameters(build), line.to_owned()] {
             hash.update(part);
             hash.update("\n--\n");
         }
@@ -38,12 +39,17 @@ impl fmt::Display for BuildId {
     }
 }
 
-/// The register map and the fields of an answer as text: names and places, without descriptions.
-fn protocol() -> String {
-    let registers =
-        REGISTERS.iter().map(|MappedRegister { name, address, access, per_axis, .. }| {
+/// The register map and the fields of an answer as text: names and places, without descriptions. A
+/// register that the build does not have is left out.
+fn protocol(build: &EngineBuild) -> String {
+    let exists = |register: &&MappedRegister| {
+        build.has_several_latches() || register.address != LATCHES || !register.access.is_read()
+    };
+    let registers = REGISTERS.iter().filter(exists).map(
+        |MappedRegister { name, address, access, per_axis, .. }| {
             format!("{name} {address} {access:?} {per_axis}\n")
-        });
+        },
+    );
     let answer = ANSWER
         .iter()
         .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));
@@ -53,14 +59,38 @@ fn protocol() -> String {
 
 /// All build parameters as text. It uses the `Debug` output, so that a field added to a build
 /// enters the hash without a change here.
+///
+/// A build that has no latch, or one with a pin of its own, keeps the text that it had when no
+/// build had several latches, so that its id stays the same.
 fn parameters(build: &EngineBuild) -> String {
-    format!("{build:?}")
+    let text = format!("{build:?}");
+    match build.guard.latches.as_slice() {
+        [] => text.replace("latches: []", "latch: None"),
+        [latch @ Latch { source: LatchSource::Pin, low, looks }] => {
+            let before = format!("latch: Some(Latch {{ low: {low}, looks: {looks} }})");
+            text.replace(&format!("latches: [{latch:?}]"), &before)
+        }
+        _ => text,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{AXES, Build, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn builds_with_at_most_one_latch_keep_their_text() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let mut build = EngineBuild::minimal(&build, 1);
+        assert!(parameters(&build).contains(" latch: None, stop:"));
+        build.guard.latches.push(Latch::of_pin(true, 3));
+        let text = parameters(&build);
+        assert!(text.contains(" latch: Some(Latch { low: true, looks: 3 }), stop:"), "{text}");
+        build.guard.latches.push(Latch::of_pin(true, 3));
+        assert!(parameters(&build).contains(" latches: [Latch { source: Pin, low: true"));
+    }
 
     #[test]
     fn every_parameter_changes_the_build_id() {

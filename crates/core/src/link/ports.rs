@@ -2,7 +2,7 @@
 //! simulators see them.
 
 use super::LineKind;
-use crate::engine::{ENGINE_PORTS, EngineInputs, EngineOutputs};
+use crate::engine::{EngineBuild, EngineInputs, EngineOutputs, engine_ports};
 use crate::ports::{CLOCK, Peer, Port, Width, input, output};
 
 const BIT: Width = Width::Bits(1);
@@ -43,10 +43,10 @@ pub fn line_ports(line: LineKind) -> impl Iterator<Item = Port> {
     core::iter::once(CLOCK).chain(pins).chain(BYTE_PORTS.map(Port::turned))
 }
 
-/// The ports of `carrystep_link`, in no particular order: those of the line, and the engine's ports
-/// that are the host's.
-pub fn link_ports() -> impl Iterator<Item = Port> {
-    let engine = ENGINE_PORTS.iter().filter(|port| port.peer == Peer::Host);
+/// The ports of `carrystep_link` in this build, in no particular order: those of the line, and the
+/// engine's ports that are the host's.
+pub fn link_ports(build: &EngineBuild) -> impl Iterator<Item = Port> + use<> {
+    let engine = engine_ports(build).filter(|port| port.peer == Peer::Host);
     core::iter::once(CLOCK).chain(BYTE_PORTS).chain(engine.map(|port| port.turned()))
 }
 

@@ -25,15 +25,16 @@ mod session;
 
 use super::assembler::{Assembler, Image};
 
-/// The contents of the machine's memories after configuration.
-pub fn image() -> Image {
+/// The contents of the machine's memories after configuration, for a build with several latches or
+/// for one with at most one.
+pub fn image(several_latches: bool) -> Image {
     let mut a = Assembler::default();
     layout::tables(&mut a);
     receive::receive(&mut a);
     check::check(&mut a);
     session::session(&mut a);
     order::order(&mut a);
-    execute::execute(&mut a);
+    execute::execute(&mut a, several_latches);
     cut::cut(&mut a);
     segments::segments(&mut a);
     order::done(&mut a);
@@ -46,7 +47,9 @@ pub fn image() -> Image {
 mod tests {
     #[test]
     fn program_fits_the_memory() {
-        let words = super::image().program.len();
-        assert!(words > 100 && words <= 512, "{words}");
+        for several_latches in [false, true] {
+            let words = super::image(several_latches).program.len();
+            assert!(words > 100 && words <= 512, "{words}");
+        }
     }
 }

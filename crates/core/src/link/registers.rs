@@ -38,6 +38,13 @@ pub enum RegisterAccess {
     WriteSegments,
 }
 
+impl RegisterAccess {
+    /// True if the register is read.
+    pub const fn is_read(self) -> bool {
+        matches!(self, Self::Read)
+    }
+}
+
 /// One row of the register map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MappedRegister {
@@ -84,7 +91,7 @@ registers! {
         "Ticks without a frame of the owner after which all axes are stopped; 0: no watchdog";
     CAPTURES     = 0x09, Read false
         "Byte 0: the axes that have hit the source of their seek, one bit each, until the seek is \
-         ended; byte 1: bits 3..0 further edges since the latch was armed, bit 4 it is armed";
+         ended; byte 1: bits 3..0 further edges since latch 0 was armed, bit 4 it is armed";
     INPUTS       = 0x0a, Read false
         "Debounced states of the switches, 1 active, a byte for each row: limits at low ends, at \
          high ends, inputs of row 2 (bit 0: probe) and of row 3 (bit 0: interlock)";
@@ -92,6 +99,10 @@ registers! {
         "Levels of the same pins, 1 active, when they were sampled last";
     QUEUE_DEPTH  = 0x0c, Read false
         "Number of segments that can wait for an axis, besides the one that runs: 7, 15 or 31";
+    LATCHES      = 0x0d, Read false
+        "Only in a build with several latches, else 0; a bit for each latch: 3..0 it is armed, 7..4 \
+         the build has it; 15..8 the record of each, 2 bits each; 31..16 further edges since it was \
+         armed, 4 bits each; latch 0 lowest";
     LIMIT_MIN_SWITCH = switch_address(0), Read true
         "Limit at the low end: bit 7 its debounced state, bit 6 the level of its pin, 1 active; \
          the other bits have no meaning";
@@ -131,11 +142,11 @@ registers! {
     SNAPSHOT_POSITION = state_address(Snapshot, Position), Read true "POSITION in that tick";
     SNAPSHOT_STATUS = state_address(Snapshot, Status), Read true "STATUS in that tick";
     LATCH_DISCARDED = state_address(Page::Latch, Discarded), Read true
-        "DISCARDED in the tick of the latch; no meaning if the axis ran";
+        "DISCARDED in the tick of the chosen latch; no meaning if the axis ran";
     LATCH_LEFT   = state_address(Page::Latch, Left), Read true
-        "LEFT in the tick of the latch; no meaning if the axis did not run";
+        "LEFT in the tick of the chosen latch; no meaning if the axis did not run";
     LATCH_TICKS  = state_address(Page::Latch, Ticks), Read true
-        "TICKS of the latch; the same for all axes";
+        "TICKS of the chosen latch; the same for all axes";
     LATCH_P_LOW  = state_address(Page::Latch, PLow), Read true "P in that tick, low half";
     LATCH_P_HIGH = state_address(Page::Latch, PHigh), Read true "P in that tick, high half";
     LATCH_POSITION = state_address(Page::Latch, Position), Read true "POSITION in that tick";
@@ -157,7 +168,8 @@ registers! {
     STOP         = 0x26, Write false
         "Any value stops all axes, each with its ramp; executed for every host";
     LATCH        = 0x27, Write false
-        "Any value arms the latch: its next edge latches the state of all axes";
+        "One latch: any value arms it, so that its next edge latches the state of all axes; several: \
+         bits 3..0 arm these latches, 5..4 choose the one whose record LATCH_ registers show";
     SEGMENT      = 0x40, WriteSegment true
         "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \
          its move, else 0";

@@ -78,13 +78,18 @@ const DEBOUNCE: Key = Key {
 };
 
 impl RawGuard {
-    /// Checks the table. `inputs` and the latch are those of `[machine.inputs]`; `stop` holds the
+    /// The wiring of the limits.
+    pub(super) const fn limits(&self) -> LimitWiring {
+        self.limits
+    }
+
+    /// Checks the table. `inputs` and the latches are those of `[machine.inputs]`; `stop` holds the
     /// stop acceleration of each axis.
     pub(super) fn check(
         self,
         source: &SourceText,
         timebase: &Timebase,
-        (inputs, latch): ([InputRow; 2], Option<Latch>),
+        (inputs, latches): ([InputRow; 2], Vec<Latch>),
         stop: Vec<u64>,
     ) -> Result<Guard, InputError> {
         let time = |key: Key, given: &Option<Spanned<f64>>| {
@@ -115,7 +120,7 @@ impl RawGuard {
             estop_low: self.estop == Active::Low,
             limits_low: self.limit_level == Active::Low,
             inputs,
-            latch,
+            latches,
             stop,
         })
     }

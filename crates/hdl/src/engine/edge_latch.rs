@@ -21,7 +21,7 @@ use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use carrystep_core::engine::{Guard, MAX_LOOKS};
+use carrystep_core::engine::{Latch, MAX_LOOKS};
 use rust_hdl::prelude::*;
 
 /// The edges of the latch's pin.
@@ -67,10 +67,10 @@ pub struct EdgeLatch {
 }
 
 impl EdgeLatch {
-    /// Makes the latch of this guard. The caller has checked the guard.
-    pub fn new(guard: &Guard) -> Self {
-        let looks = LATCH_LOOKS.of::<32>(guard.latch.map_or(0, |latch| latch.looks));
-        let low = LATCH_LOW.of::<32>(guard.latch.is_some_and(|latch| latch.low));
+    /// Makes this latch of a guard. The caller has checked the guard.
+    pub fn new(latch: Option<&Latch>) -> Self {
+        let looks = LATCH_LOOKS.of::<32>(latch.map_or(0, |latch| latch.looks));
+        let low = LATCH_LOW.of::<32>(latch.is_some_and(|latch| latch.low));
         let last_look = || looks.bits::<4>(0) - Formula::number(1);
         Self {
             exists: Parameter::of(&looks.whole().is_not(&Formula::number(0))),
@@ -138,14 +138,15 @@ impl Logic for EdgeLatch {
 mod tests {
     use super::*;
     use crate::sim::assert_synthesizes;
-    use carrystep_core::engine::Latch;
 
     #[test]
     fn edge_latch_synthesizes() {
         for looks in [1, 16] {
-            let latch = Some(Latch { low: true, looks });
-            let guard = Guard { latch, ..Guard::minimal(Vec::new()) };
-            assert_synthesizes(EdgeLatch::new(&guard), &format!("carrystep_edge_latch_{looks}"));
+            let latch = Latch::of_pin(true, looks);
+            assert_synthesizes(
+                EdgeLatch::new(Some(&latch)),
+                &format!("carrystep_edge_latch_{looks}"),
+            );
         }
     }
 }

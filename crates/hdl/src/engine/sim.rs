@@ -1,17 +1,18 @@
 //! Makes the engine of a build, whose number of axes is known only at run time, and simulates it.
 
 use super::Engine;
+use super::latch_bank::MORE;
 use crate::HdlError;
 use crate::primitives::word::Word;
 use crate::sim::{mask, rising_edge, settle};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    CAUSES, EngineError, EngineInputs, EngineOutputs, Put, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
-    SeekSource, StateItem, StatePage, StateWord,
+    CAUSES, EngineError, EngineInputs, EngineOutputs, MAX_LATCHES, Put, STATUS_BITS, SWITCH_LEVEL,
+    SWITCH_STATE, SeekSource, StateItem, StatePage, StateWord,
 };
-use rust_hdl::prelude::{Block, check_all};
+use rust_hdl::prelude::{Block, Out, Signal, check_all};
 
-/// An engine whose number of axes is not part of its type.
+/// An engine whose numbers of axes and latches are not part of its type.
 pub trait AnyEngine: Block {
     /// Applies the inputs and returns the outputs of the present cycle.
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs;
@@ -28,20 +29,28 @@ pub trait AnyEngine: Block {
 /// [`HdlError::PinTiming`] if the pin timing of an axis is out of range.
 pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
     build.check()?;
-    Ok(match build.axes() {
-        1 => Box::new(Engine::<1>::new(build)?),
-        2 => Box::new(Engine::<2>::new(build)?),
-        3 => Box::new(Engine::<3>::new(build)?),
-        4 => Box::new(Engine::<4>::new(build)?),
-        5 => Box::new(Engine::<5>::new(build)?),
-        6 => Box::new(Engine::<6>::new(build)?),
-        7 => Box::new(Engine::<7>::new(build)?),
-        8 => Box::new(Engine::<8>::new(build)?),
-        axes => return Err(EngineError::Axes(axes).into()),
+    Ok(match (build.axes(), build.has_several_latches()) {
+        (1, false) => Box::new(Engine::<1, 0>::new(build)?),
+        (1, true) => Box::new(Engine::<1, 1>::new(build)?),
+        (2, false) => Box::new(Engine::<2, 0>::new(build)?),
+        (2, true) => Box::new(Engine::<2, 1>::new(build)?),
+        (3, false) => Box::new(Engine::<3, 0>::new(build)?),
+        (3, true) => Box::new(Engine::<3, 1>::new(build)?),
+        (4, false) => Box::new(Engine::<4, 0>::new(build)?),
+        (4, true) => Box::new(Engine::<4, 1>::new(build)?),
+        (5, false) => Box::new(Engine::<5, 0>::new(build)?),
+        (5, true) => Box::new(Engine::<5, 1>::new(build)?),
+        (6, false) => Box::new(Engine::<6, 0>::new(build)?),
+        (6, true) => Box::new(Engine::<6, 1>::new(build)?),
+        (7, false) => Box::new(Engine::<7, 0>::new(build)?),
+        (7, true) => Box::new(Engine::<7, 1>::new(build)?),
+        (8, false) => Box::new(Engine::<8, 0>::new(build)?),
+        (8, true) => Box::new(Engine::<8, 1>::new(build)?),
+        (axes, _) => return Err(EngineError::Axes(axes).into()),
     })
 }
 
-impl<const N: usize> AnyEngine for Engine<N> {
+impl<const N: usize, const S: usize> AnyEngine for Engine<N, S> {
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
         self.clock.next = false.into();
         let put = inputs.put.unwrap_or(Put { axis: inputs.room_of, word: 0, data: 0 });
@@ -61,7 +70,7 @@ impl<const N: usize> AnyEngine for Engine<N> {
             Word::from(u64::from(inputs.seek_source.map_or(0, SeekSource::byte)));
         self.seek_valid.next = inputs.seek.is_some();
         self.seek_mask.next = Word::from(u64::from(inputs.seek.unwrap_or(0)));
-        self.latch_arm.next = inputs.latch_arm;
+        self.latch_arm.next = inputs.latch_arm & 1 == 1;
         self.snapshot.next = inputs.snapshot;
         self.kick.next = inputs.kick;
         self.enable.next = inputs.enable;
@@ -70,7 +79,10 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.limit_max.next = Word::from(u64::from(inputs.limit_max));
         self.inputs_0.next = Word::from(u64::from(inputs.inputs[0]));
         self.inputs_1.next = Word::from(u64::from(inputs.inputs[1]));
-        self.latch.next = inputs.latch;
+        self.latch.next = inputs.latch & 1 == 1;
+        let (pins, arm) = (inputs.latch >> 1 & 7, inputs.latch_arm >> 1 & 7);
+        self.more_latches.iter_mut().for_each(|port| port.next = Word::from(u64::from(pins)));
+        self.more_latch_arm.iter_mut().for_each(|port| port.next = Word::from(u64::from(arm)));
         settle(self);
         let cause = CAUSES[self.cause.val().value() as usize];
         EngineOutputs {
@@ -91,8 +103,9 @@ impl<const N: usize> AnyEngine for Engine<N> {
             ready: self.ready.val(),
             seeking: self.seeking.val().value() as u8,
             hits: self.hits.val().value() as u8,
-            latch_armed: self.latch_armed.val(),
-            latch_edges: self.latch_edges.val().value() as u8,
+            latch_armed: self.latches_armed(),
+            latch_edges: self.latches_edges(),
+            latch_records: std::array::from_fn(|latch| self.records() >> (2 * latch) as u8 & 3),
             state: self.state_valid.val().then(|| self.word_of_state()),
             refreshed: self.refreshed.val(),
             room: self.room_valid.val().then(|| self.room.val().value() as u8),
@@ -110,7 +123,26 @@ impl<const N: usize> AnyEngine for Engine<N> {
     }
 }
 
-impl<const N: usize> Engine<N> {
+impl<const N: usize, const S: usize> Engine<N, S> {
+    /// The latches that wait for their edges.
+    fn latches_armed(&self) -> u8 {
+        let more = |port: &Signal<Out, Word<MORE>>| (port.val().value() as u8) << 1;
+        u8::from(self.latch_armed.val()) | self.more_latch_armed.iter().map(more).sum::<u8>()
+    }
+
+    /// The edges that each latch has counted.
+    fn latches_edges(&self) -> [u8; MAX_LATCHES] {
+        let more = |port: &Signal<Out, Word<12>>| port.val().value() as u16;
+        let all = self.more_latch_edges.iter().map(more).sum::<u16>() << 4
+            | self.latch_edges.val().value() as u16;
+        std::array::from_fn(|latch| (all >> (4 * latch) & 15) as u8)
+    }
+
+    /// The records of all latches, two bits each.
+    fn records(&self) -> u8 {
+        self.latch_records.iter().map(|port| port.val().value() as u8).sum()
+    }
+
     /// The word of state that is output in this clock. Bits without a meaning are 0.
     fn word_of_state(&self) -> StateWord {
         let page = StatePage::of_number(self.state_page.val().value() as u8);
@@ -130,7 +162,9 @@ impl<const N: usize> Engine<N> {
             StateItem::Switch => SWITCH_STATE | SWITCH_LEVEL,
             _ => u32::MAX,
         };
-        StateWord { page, axis: self.state_axis.val().value() as u8, item, word: word & bits }
+        let record = self.state_record.iter().map(|port| port.val().value() as u8).sum();
+        let axis = self.state_axis.val().value() as u8;
+        StateWord { page, record, axis, item, word: word & bits }
     }
 }
 

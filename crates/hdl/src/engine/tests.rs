@@ -21,9 +21,9 @@ fn of_axes(axes: usize) -> EngineBuild {
 
 #[test]
 fn engine_synthesizes() {
-    crate::sim::assert_synthesizes(Engine::<1>::new(&of_axes(1)).unwrap(), "carrystep_engine_1");
-    crate::sim::assert_synthesizes(Engine::<6>::new(&build()).unwrap(), "carrystep_engine_6");
-    crate::sim::assert_synthesizes(Engine::<8>::new(&of_axes(8)).unwrap(), "carrystep_engine_8");
+    crate::sim::assert_synthesizes(Engine::<1, 0>::new(&of_axes(1)).unwrap(), "carrystep_engine_1");
+    crate::sim::assert_synthesizes(Engine::<6, 0>::new(&build()).unwrap(), "carrystep_engine_6");
+    crate::sim::assert_synthesizes(Engine::<8, 0>::new(&of_axes(8)).unwrap(), "carrystep_engine_8");
 }
 
 #[test]

@@ -20,7 +20,7 @@ use super::layout::{
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
-impl<const N: usize> Logic for Engine<N> {
+impl<const N: usize, const S: usize> Logic for Engine<N, S> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
@@ -364,5 +364,31 @@ impl<const N: usize> Logic for Engine<N> {
         self.latch_armed.next = self.edge_latch.armed.val();
         self.latch_edges.next = self.edge_latch.edges.val();
         self.started.next = self.go.val();
+
+        // Further latches, in a build that has several. Their bank replaces what the only latch of
+        // another build outputs.
+        for i in 0..S {
+            self.latch_bank[i].clock.next = self.clock.val();
+            self.latch_bank[i].strobe.next = self.strobe.val();
+            self.latch_bank[i].pins.next = self.more_latches[i].val();
+            self.latch_bank[i].arm.next = self.more_latch_arm[i].val();
+            self.latch_bank[i].resetting.next = self.resets.resetting.val();
+            self.latch_bank[i].first_armed.next = self.edge_latch.armed.val();
+            self.latch_bank[i].first_comes.next = self.edge_latch.comes.val();
+            self.latch_bank[i].first_latches.next = self.edge_latch.latches.val();
+            self.readout.comes.next = self.latch_bank[i].comes.val();
+            self.readout.latches.next = self.latch_bank[i].latches.val();
+            self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
+                | self.broken.val()
+                | self.queue.misplaced.val()
+                | self.output_control.stray.val()
+                | self.latch_bank[i].absent.val())
+                & !self.stops.fault.val())
+                | (self.decides.val() & self.unfed.q.val() & !self.drops.q.val());
+            self.more_latch_armed[i].next = self.latch_bank[i].armed.val();
+            self.more_latch_edges[i].next = self.latch_bank[i].edges.val();
+            self.latch_records[i].next = self.latch_bank[i].records.val();
+            self.state_record[i].next = self.latch_bank[i].record.val();
+        }
     }
 }

@@ -474,7 +474,7 @@ mod tests {
     #[test]
     fn machine_synthesizes() {
         assert_synthesizes(
-            LinkProcessor::<6>::new(&carrystep_core::link::image()),
+            LinkProcessor::<6>::new(&carrystep_core::link::image(false)),
             "carrystep_processor",
         );
     }

@@ -7,12 +7,12 @@ use crate::primitives::word::Word;
 use crate::sim::{rising_edge, settle};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    EngineError, EngineInputs, Put, STATUS_BITS, SeekSource, StateItem, StateWord,
+    EngineError, EngineInputs, EngineOutputs, Put, STATUS_BITS, SeekSource, StateItem, StateWord,
 };
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
-use rust_hdl::prelude::{Block, check_all};
+use rust_hdl::prelude::{Block, Out, Signal, check_all};
 
-/// A link whose number of axes is not part of its type.
+/// A link whose numbers of axes and latches are not part of its type.
 pub trait AnyLink: Block {
     /// Applies the inputs and returns the outputs of the present cycle, except those of the line.
     fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs;
@@ -28,20 +28,28 @@ pub trait AnyLink: Block {
 /// Returns [`HdlError::Engine`] if a parameter of the build is out of range.
 pub fn link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlError> {
     build.check()?;
-    Ok(match build.axes() {
-        1 => Box::new(Link::<1>::new(build, id)),
-        2 => Box::new(Link::<2>::new(build, id)),
-        3 => Box::new(Link::<3>::new(build, id)),
-        4 => Box::new(Link::<4>::new(build, id)),
-        5 => Box::new(Link::<5>::new(build, id)),
-        6 => Box::new(Link::<6>::new(build, id)),
-        7 => Box::new(Link::<7>::new(build, id)),
-        8 => Box::new(Link::<8>::new(build, id)),
-        axes => return Err(EngineError::Axes(axes).into()),
+    Ok(match (build.axes(), build.has_several_latches()) {
+        (1, false) => Box::new(Link::<1, 0>::new(build, id)),
+        (1, true) => Box::new(Link::<1, 1>::new(build, id)),
+        (2, false) => Box::new(Link::<2, 0>::new(build, id)),
+        (2, true) => Box::new(Link::<2, 1>::new(build, id)),
+        (3, false) => Box::new(Link::<3, 0>::new(build, id)),
+        (3, true) => Box::new(Link::<3, 1>::new(build, id)),
+        (4, false) => Box::new(Link::<4, 0>::new(build, id)),
+        (4, true) => Box::new(Link::<4, 1>::new(build, id)),
+        (5, false) => Box::new(Link::<5, 0>::new(build, id)),
+        (5, true) => Box::new(Link::<5, 1>::new(build, id)),
+        (6, false) => Box::new(Link::<6, 0>::new(build, id)),
+        (6, true) => Box::new(Link::<6, 1>::new(build, id)),
+        (7, false) => Box::new(Link::<7, 0>::new(build, id)),
+        (7, true) => Box::new(Link::<7, 1>::new(build, id)),
+        (8, false) => Box::new(Link::<8, 0>::new(build, id)),
+        (8, true) => Box::new(Link::<8, 1>::new(build, id)),
+        (axes, _) => return Err(EngineError::Axes(axes).into()),
     })
 }
 
-impl<const N: usize> AnyLink for Link<N> {
+impl<const N: usize, const S: usize> AnyLink for Link<N, S> {
     fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs {
         self.clock.next = false.into();
         self.received.next = Word::from(u64::from(line.received.unwrap_or(0)));
@@ -79,8 +87,9 @@ impl<const N: usize> AnyLink for Link<N> {
         self.culprits.next = Word::from(u64::from(culprits));
         self.seeking.next = Word::from(u64::from(engine.seeking));
         self.hits.next = Word::from(u64::from(engine.hits));
-        self.latch_armed.next = engine.latch_armed;
-        self.latch_edges.next = Word::from(u64::from(engine.latch_edges));
+        self.latch_armed.next = engine.latch_armed & 1 == 1;
+        self.latch_edges.next = Word::from(u64::from(engine.latch_edges[0]));
+        self.settle_latches(engine);
         settle(self);
         let [axis, word] =
             [self.put_axis.val().value(), self.put_word.val().value()].map(|place| place as u8);
@@ -100,7 +109,7 @@ impl<const N: usize> AnyLink for Link<N> {
                     .val()
                     .then(|| SeekSource::of_byte(self.seek_source.val().value() as u8)),
                 seek: self.seek_valid.val().then(|| self.seek_mask.val().value() as u8),
-                latch_arm: self.latch_arm.val(),
+                latch_arm: self.latches_arm(),
                 snapshot: self.snapshot.val(),
                 kick: self.kick.val(),
                 enable: self.enable.val(),
@@ -116,6 +125,29 @@ impl<const N: usize> AnyLink for Link<N> {
     fn clock(&mut self) {
         self.clock.next = true.into();
         rising_edge(self);
+    }
+}
+
+impl<const N: usize, const S: usize> Link<N, S> {
+    /// Applies what the engine outputs of several latches.
+    fn settle_latches(&mut self, engine: &EngineOutputs) {
+        let packed = |numbers: &[u8], bits: usize| {
+            numbers.iter().rev().fold(0, |all, number| all << bits | u64::from(*number))
+        };
+        let (armed, records) =
+            (u64::from(engine.latch_armed >> 1), packed(&engine.latch_records, 2));
+        let edges = packed(&engine.latch_edges[1..], 4);
+        let record = engine.state.map_or(0, |state| u64::from(state.record));
+        self.more_latch_armed.iter_mut().for_each(|port| port.next = Word::from(armed));
+        self.more_latch_edges.iter_mut().for_each(|port| port.next = Word::from(edges));
+        self.latch_records.iter_mut().for_each(|port| port.next = Word::from(records));
+        self.state_record.iter_mut().for_each(|port| port.next = Word::from(record));
+    }
+
+    /// The latches that the host arms.
+    fn latches_arm(&self) -> u8 {
+        let more = |port: &Signal<Out, Word<3>>| (port.val().value() as u8) << 1;
+        u8::from(self.latch_arm.val()) | self.more_latch_arm.iter().map(more).sum::<u8>()
     }
 }
 

@@ -55,6 +55,12 @@ pub enum HostError<E> {
     /// A write before a session was opened.
     #[error("this host has not opened a session with the gateware: open one before you write")]
     NoSession,
+    /// The build does not have a latch with this number.
+    #[error("the gateware has no latch {latch}")]
+    NoLatch {
+        /// Number of the latch, from 0.
+        latch: u8,
+    },
     /// The gateware opens no session, because it is busy.
     #[error(
         "axes move or segments wait, of another host, for longer than {ms} ms: wait for its end, or stop them (`carrystep stop`)"

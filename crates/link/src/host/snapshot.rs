@@ -1,4 +1,5 @@
-//! Snapshots: the state of all axes in one and the same tick, also while they move.
+//! Snapshots: the state of all axes in one and the same tick, also while they move. The record of a
+//! latch is read in the same way.
 
 use super::{Clock, Host, HostError};
 use crate::frame::{Answer, of_axis};
@@ -74,6 +75,8 @@ pub struct Snapshot {
 /// A snapshot that the gateware has taken and that is being read.
 #[derive(Debug, Clone)]
 pub(super) struct SnapshotReader {
+    /// Number that is added to the address of each word.
+    above: u8,
     snapshot: Snapshot,
     ticks: u32,
     /// The words that are missing, one bit each: TICKS, then those of each axis.
@@ -83,14 +86,22 @@ pub(super) struct SnapshotReader {
 impl SnapshotReader {
     pub(super) fn new(axes: u8) -> Self {
         let count = 1 + WORDS.len() * usize::from(axes);
-        Self { snapshot: Snapshot::default(), ticks: 0, missing: (1 << count) - 1 }
+        Self { above: 0, snapshot: Snapshot::default(), ticks: 0, missing: (1 << count) - 1 }
+    }
+
+    /// Reads the registers of the latch in place of those of the snapshot.
+    pub(super) fn of_latch(axes: u8) -> Self {
+        Self { above: map::LATCH_TICKS - map::SNAPSHOT_TICKS, ..Self::new(axes) }
     }
 
     /// Address, axis and kind of a word; the kind is an index of [`WORDS`].
-    fn word(at: usize) -> (u8, usize, Option<usize>) {
-        let Some(at) = at.checked_sub(1) else { return (map::SNAPSHOT_TICKS, 0, None) };
+    fn word(&self, at: usize) -> (u8, usize, Option<usize>) {
+        let Some(at) = at.checked_sub(1) else {
+            return (map::SNAPSHOT_TICKS + self.above, 0, None);
+        };
         let (axis, kind) = (at / WORDS.len(), at % WORDS.len());
-        (of_axis(WORDS.get(kind).copied().unwrap_or(0), axis as u8), axis, Some(kind))
+        let address = WORDS.get(kind).copied().unwrap_or(0) + self.above;
+        (of_axis(address, axis as u8), axis, Some(kind))
     }
 
     fn missing(&self) -> impl Iterator<Item = usize> + use<> {
@@ -102,17 +113,17 @@ impl SnapshotReader {
     pub(super) fn ask<const N: usize>(&self, session: &mut Session<N>) {
         for at in self.missing().take(AT_A_TIME) {
             // An error only means that enough reads are in progress.
-            let _ = session.read(Self::word(at).0);
+            let _ = session.read(self.word(at).0);
         }
     }
 
     /// Takes an answer.
     pub(super) fn hear(&mut self, answer: &Answer) {
-        let Some(at) = self.missing().find(|&at| answer.is_read_of(Self::word(at).0)) else {
+        let Some(at) = self.missing().find(|&at| answer.is_read_of(self.word(at).0)) else {
             return;
         };
         self.missing &= !(1 << at);
-        let (_, axis, kind) = Self::word(at);
+        let (_, axis, kind) = self.word(at);
         let Some(kind) = kind else {
             self.ticks = answer.data;
             return;
@@ -148,7 +159,14 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// [`HostError::NoSession`] if [`Self::open`] was not called. Other errors concern the line.
     pub fn snapshot(&mut self) -> Result<Snapshot, HostError<L::Error>> {
         self.write(map::SNAPSHOT, 0)?;
-        let mut reader = SnapshotReader::new(self.axes());
+        self.read_whole(SnapshotReader::new(self.axes()))
+    }
+
+    /// Reads all words of a snapshot, or of the record of a latch.
+    pub(super) fn read_whole(
+        &mut self,
+        mut reader: SnapshotReader,
+    ) -> Result<Snapshot, HostError<L::Error>> {
         loop {
             if let Some(snapshot) = reader.whole(&mut self.ticks) {
                 return Ok(snapshot);

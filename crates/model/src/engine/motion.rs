@@ -1,6 +1,6 @@
 //! The engine without the words of state that it outputs for a host: up to eight accumulators with
 //! queues. The results of a tick take effect for all axes together at the strobe that ends it. The
-//! contract is the section "engine" of docs/clock-by-clock.md up to "The latch"; change both
+//! contract is the section "engine" of docs/clock-by-clock.md up to "Several latches"; change both
 //! together.
 //!
 //! ```text
@@ -152,8 +152,9 @@ impl Motion {
             ready: inputs.enable && self.supervisor.is_warm(guard),
             seeking: bits(&self.axis_models, |axis_model| axis_model.seek.waits),
             hits: bits(&self.axis_models, |axis_model| axis_model.seek.slows),
-            latch_armed: self.latch.armed,
-            latch_edges: self.latch.edges,
+            latch_armed: self.latch.armed(),
+            latch_edges: self.latch.edges(),
+            latch_records: self.latch.records(),
             state: None,
             refreshed: false,
             room: self
@@ -186,7 +187,9 @@ impl Motion {
             stop.call(Cause::EStop, 0, guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        if (nobody || inputs.broken || self.misplaced || self.stray) && before.fault.is_none() {
+        let missing = latch::arms_a_missing_one(guard, inputs);
+        let breaks = nobody || inputs.broken || missing || self.misplaced || self.stray;
+        if breaks && before.fault.is_none() {
             stop.call(Cause::Protocol, 0, guard);
         }
         self.sample(inputs);

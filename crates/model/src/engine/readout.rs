@@ -71,7 +71,7 @@ impl Readout {
     }
 
     /// True if this tick and the next one output live words, unless a snapshot is requested, or a
-    /// seek hits or the latch accepts an edge in this tick.
+    /// seek hits or a latch accepts an edge in this tick.
     pub(crate) const fn is_live(&self, motion: &Motion) -> bool {
         !self.asked && !self.takes && self.captures == 0 && !motion.latches()
     }
@@ -102,7 +102,7 @@ impl Readout {
             }
             _ => return None,
         };
-        Some(StateWord { page, axis: axis as u8, item, word })
+        Some(StateWord { page, record: motion.record(), axis: axis as u8, item, word })
     }
 
     const fn page(&self, motion: &Motion, axis: usize) -> StatePage {
@@ -178,6 +178,7 @@ fn switch_word(motion: &Motion, axis: usize, row: u8, level: bool) -> Option<Sta
     let bit = |bit, is_set| if is_set { bit } else { 0 };
     (!motion.is_resetting()).then(|| StateWord {
         page: StatePage::of_number(row),
+        record: motion.record(),
         axis: axis as u8,
         item: StateItem::Switch,
         word: bit(SWITCH_STATE, motion.switch_state(axis, row)) | bit(SWITCH_LEVEL, level),

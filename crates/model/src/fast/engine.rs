@@ -2,7 +2,7 @@
 //! of [`Motion`].
 //!
 //! It leaps over clocks in which the axes only repeat their additions, ramps included. Loads,
-//! starts, calls of stops, changes of debounced switches, hits of seeks, edges of the latch and
+//! starts, calls of stops, changes of debounced switches, hits of seeks, edges of the latches and
 //! clears are executed by the clock-by-clock model. So are accepted words, unless the host tells
 //! which words it offers next.
 
@@ -49,8 +49,8 @@ impl FastEngine {
 
     /// Runs with these inputs up to cycle `end`, or until a cycle that the host must react to: an
     /// offered word or start is accepted, axes start, or `fault`, `halted`, `idle`, `enabled` or
-    /// any output of the seek or of the latch changes after it. Returns the outputs in that cycle,
-    /// or `None` if `end` was reached.
+    /// any output of the seek or of the latches changes after it. Returns the outputs in that
+    /// cycle, or `None` if `end` was reached.
     pub fn run(
         &mut self,
         inputs: &EngineInputs,
@@ -68,7 +68,9 @@ impl FastEngine {
             let state = |outputs: EngineOutputs| {
                 let EngineOutputs { fault, halted, idle, enabled, .. } = outputs;
                 let EngineOutputs { seeking, hits, latch_armed, latch_edges, .. } = outputs;
-                (fault, halted, idle, enabled, seeking, hits, latch_armed, latch_edges)
+                let EngineOutputs { latch_records, .. } = outputs;
+                let latches = (latch_armed, latch_edges, latch_records);
+                (fault, halted, idle, enabled, seeking, hits, latches)
             };
             if taken || outputs.started || state(self.outputs(inputs)) != state(outputs) {
                 return Some(outputs);

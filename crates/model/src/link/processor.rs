@@ -87,7 +87,7 @@ pub(super) struct Outputs {
     pub seeks: bool,
     /// A is a new source of seeks.
     pub sources: bool,
-    /// The latch is armed.
+    /// The latch is armed, or those of several latches that A names.
     pub arms: bool,
     pub kicks: bool,
     pub broken: bool,
@@ -310,7 +310,7 @@ impl LinkProcessor {
             CULPRITS => culprits,
             SEEKING => engine.seeking,
             HITS => engine.hits,
-            LATCH => u8::from(engine.latch_armed) << 4 | engine.latch_edges,
+            LATCH => (engine.latch_armed & 1) << 4 | engine.latch_edges[0],
             _ => {
                 let bits = [
                     (engine.fault.is_some(), 0),

@@ -123,7 +123,7 @@ impl<'a> Around<'a> {
             ending: false,
             resetting: 0,
             source: SeekSource::default(),
-            latch: Debounced::new(guard.latch.map_or(1, |latch| latch.looks.into())),
+            latch: Debounced::new(guard.latches.first().map_or(1, |latch| latch.looks.into())),
             armed: false,
             edges: 0,
             captures: vec![false; axes],
@@ -205,24 +205,25 @@ impl<'a> Around<'a> {
     /// was armed.
     fn look(&mut self, all: &[Cycle], to: usize, cycles: &[Cycle]) -> bool {
         let guard = &self.build.guard;
-        let Some(latch) = guard.latch else {
-            assert!(cycles.iter().all(|(_, o)| !o.latch_armed && o.latch_edges == 0));
+        let Some(&latch) = guard.latches.first() else {
+            assert!(cycles.iter().all(|(_, o)| o.latch_armed == 0 && o.latch_edges[0] == 0));
             return false;
         };
         let mut latched = false;
         for (k, (inputs, outputs)) in cycles.iter().enumerate() {
-            assert_eq!((outputs.latch_armed, outputs.latch_edges), (self.armed, self.edges));
+            let found = (outputs.latch_armed == 1, outputs.latch_edges[0]);
+            assert_eq!(found, (self.armed, self.edges));
             if k + 1 == cycles.len() {
                 // Two flip-flops are before the look.
                 let (seen, _) = all[to - 3];
-                let edge = self.latch.sample(seen.latch != latch.low) && self.latch.state;
+                let edge = self.latch.sample((seen.latch == 1) != latch.low) && self.latch.state;
                 latched = edge && self.armed;
                 let further = edge && !self.armed;
                 self.edges = (self.edges + u8::from(further)).min(15);
                 self.armed &= !edge;
                 self.counts.edges += u64::from(further);
             }
-            if inputs.latch_arm {
+            if inputs.latch_arm == 1 {
                 (self.armed, self.edges) = (true, 0);
             }
             if outputs.resetting {

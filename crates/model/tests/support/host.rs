@@ -90,7 +90,7 @@ impl Host {
             let Self { inputs, .. } = self;
             (inputs.stop, inputs.broken, inputs.reset, inputs.snapshot) =
                 (false, false, false, false);
-            (inputs.seek, inputs.seek_source, inputs.latch_arm) = (None, None, false);
+            (inputs.seek, inputs.seek_source, inputs.latch_arm) = (None, None, 0);
             inputs.kick = self.kicks;
         }
     }
@@ -128,13 +128,13 @@ impl Host {
             59..62 => {
                 inputs.seek_source = Some(source(random, *axes));
                 inputs.seek = random.one_of(&[None, Some(mask), Some(all), Some(all)]);
-                inputs.latch_arm = random.once_in(3);
+                inputs.latch_arm = random.once_in(3).into();
             }
             62 => inputs.seek = random.one_of(&[Some(0), Some(mask), Some(all)]),
-            63 => inputs.latch_arm = true,
+            63 => inputs.latch_arm = 1,
             64..72 => {
                 // The latch is often connected to a switch.
-                inputs.latch ^= random.once_in(2);
+                inputs.latch ^= u8::from(random.once_in(2));
                 match random.below(8) {
                     0..3 => inputs.limit_min ^= mask | 1,
                     3..6 => inputs.limit_max ^= mask | 1,
@@ -142,7 +142,9 @@ impl Host {
                     _ => inputs.inputs[1] ^= mask,
                 }
             }
-            72..74 => (inputs.latch, inputs.latch_arm) = (!inputs.latch, random.once_in(4)),
+            72..74 => {
+                (inputs.latch, inputs.latch_arm) = (inputs.latch ^ 1, random.once_in(4).into());
+            }
             74 if random.once_in(4) => inputs.inputs[1] ^= 1,
             74..76 => (inputs.kick, inputs.clear) = (true, true),
             80..82 => inputs.stop = true,
@@ -184,13 +186,24 @@ fn segment(random: &mut Random) -> Segment {
     Segment { ticks, v, a, j, last: false }
 }
 
+/// What the host does with its latch, done with all latches of a build with several. All pins have
+/// one level, and the cycle decides which latches are armed.
+fn of_all_latches(build: &EngineBuild, inputs: EngineInputs, cycle: usize) -> EngineInputs {
+    if !build.has_several_latches() {
+        return inputs;
+    }
+    let all = (1 << build.guard.latches.len()) - 1;
+    let armed = if cycle.is_multiple_of(2) { all } else { 1 + cycle as u8 / 2 % all };
+    EngineInputs { latch: (inputs.latch & 1) * all, latch_arm: inputs.latch_arm * armed, ..inputs }
+}
+
 /// Runs an engine under a random host.
 pub fn run(build: &EngineBuild, seed: u64, cycles: usize) -> Vec<Cycle> {
     let mut engine = Engine::new(build);
     let mut host = Host::new(build, seed);
     let mut all = Vec::with_capacity(cycles);
     for _ in 0..cycles {
-        let inputs = host.inputs(&engine);
+        let inputs = of_all_latches(build, host.inputs(&engine), all.len());
         let outputs = engine.outputs(&inputs);
         engine.clock(&inputs);
         host.clock(&inputs, &outputs);

@@ -52,8 +52,8 @@ pub fn build(random: &mut Random) -> EngineBuild {
     if guard.inputs != [InputRow::default(); 2] {
         guard.round = guard.round.max(4);
     }
-    let latch = Latch { low: random.below(2) == 0, looks: random.one_of(&[1, 2, 5, 16]) };
-    guard.latch = random.one_of(&[None, Some(latch)]);
+    let latch = Latch::of_pin(random.below(2) == 0, random.one_of(&[1, 2, 5, 16]));
+    guard.latches = random.one_of(&[None, Some(latch)]).into_iter().collect();
     guard.stop = (0..axes).map(|_| 1 << (54 + random.below(7))).collect();
     build.check().unwrap();
     build

@@ -51,12 +51,12 @@ pub fn run(build: &EngineBuild, script: &[(usize, Act)], ticks: usize) -> Run {
                 Act::Start(mask) => held.start = Some(*mask),
                 Act::Source(source) => inputs.seek_source = Some(*source),
                 Act::Seek(mask) => inputs.seek = Some(*mask),
-                Act::Arm => inputs.latch_arm = true,
+                Act::Arm => inputs.latch_arm = 1,
                 Act::Snapshot => inputs.snapshot = true,
                 Act::Switches(0, active) => held.limit_min = *active,
                 Act::Switches(1, active) => held.limit_max = *active,
                 Act::Switches(row, active) => held.inputs[usize::from(*row) - 2] = *active,
-                Act::Latch(active) => held.latch = *active,
+                Act::Latch(active) => held.latch = u8::from(*active),
                 Act::Clear(level) => held.clear = *level,
             }
         }

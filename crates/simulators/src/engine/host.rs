@@ -105,7 +105,7 @@ impl<'a> EngineHost<'a> {
             broken: false,
             seek_source: None,
             seek: None,
-            latch_arm: false,
+            latch_arm: 0,
             snapshot: false,
             cut: false,
             ..self.around
@@ -123,7 +123,7 @@ impl<'a> EngineHost<'a> {
                 Event::Kick => self.around.kick = true,
                 Event::SeekSource(source) => self.around.seek_source = Some(source),
                 Event::Seek(axes) => self.around.seek = Some(axes),
-                Event::LatchArm => self.around.latch_arm = true,
+                Event::LatchArm(latches) => self.around.latch_arm |= latches,
                 Event::Snapshot => self.around.snapshot = true,
                 Event::Broken => self.around.broken = true,
                 Event::Reset(asserted) => self.around.reset = asserted,
@@ -254,7 +254,7 @@ impl<'a> EngineHost<'a> {
         let EngineInputs { kick, broken, seek_source, seek, latch_arm, snapshot, cut, .. } =
             self.around;
         let lasting = kick == self.awake
-            && !(broken || latch_arm || snapshot || cut)
+            && !(broken || latch_arm != 0 || snapshot || cut)
             && seek_source.is_none()
             && seek.is_none();
         // The cycle before an event must be simulated by `advance`.

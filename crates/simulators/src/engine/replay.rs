@@ -10,7 +10,7 @@ use crate::tool::{self, ICARUS};
 use crate::verilator::Simulation;
 use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
 use carrystep_core::engine::{EngineInputs, EngineOutputs, is_recorded, ports_of};
-use carrystep_core::ports::Direction;
+use carrystep_core::ports::{Direction, Port};
 use carrystep_core::{EngineBuild, Program};
 use carrystep_model::Engine;
 use std::fmt::Write as _;
@@ -36,6 +36,8 @@ pub struct Recording {
     pub clocks: u64,
     /// What is kept at the end.
     pub kept: Kept,
+    /// Whether the engine has several latches, and their ports.
+    several: bool,
 }
 
 impl Recording {
@@ -61,6 +63,7 @@ impl Recording {
             sum: 0,
             clocks: 0,
             kept: Kept::default(),
+            several: build.has_several_latches(),
         };
         let settle = settle(build);
         let mut quiet = 0;
@@ -104,36 +107,44 @@ impl Recording {
         for (count, inputs) in &self.stimuli {
             // Writing to a string cannot fail.
             let _ = write!(text, "{count}");
-            for value in driven(Direction::Input, &inputs.at_ports(), self.axes()) {
+            for value in self.driven(Direction::Input, &inputs.at_ports()) {
                 let _ = write!(text, " {value:x}");
             }
             text.push('\n');
         }
         text
     }
-}
 
-/// The value of each recorded port of this direction, cut to its width; 0 where it is not valid.
-fn driven(
-    direction: Direction,
-    values: &[(&str, Option<u64>)],
-    axes: usize,
-) -> impl Iterator<Item = u64> {
-    recorded(direction)
-        .zip(values)
-        .filter_map(|(is_recorded, value)| is_recorded.then_some(value))
-        .zip(widths(direction, axes))
-        .map(|((_, value), width)| value.unwrap_or(0) & ((1 << width) - 1))
-}
+    /// The value of each recorded port of this direction, cut to its width; 0 where it is not
+    /// valid.
+    fn driven(
+        &self,
+        direction: Direction,
+        values: &[(&str, Option<u64>)],
+    ) -> impl Iterator<Item = u64> {
+        let recorded = ports_of(direction).zip(values).filter(|(port, _)| self.has(port));
+        recorded
+            .zip(self.widths(direction))
+            .map(|((_, (_, value)), width)| value.unwrap_or(0) & ((1 << width) - 1))
+    }
 
-/// For each port of this direction, whether benches print it.
-fn recorded(direction: Direction) -> impl Iterator<Item = bool> {
-    ports_of(direction).map(is_recorded)
-}
+    /// True if the engine has this port and benches print it.
+    fn has(&self, port: &Port) -> bool {
+        bench::has(self.several, port) && is_recorded(port)
+    }
 
-/// The widths of the ports of this direction that benches print.
-fn widths(direction: Direction, axes: usize) -> impl Iterator<Item = u32> {
-    ports_of(direction).filter(|port| is_recorded(port)).map(move |port| port.width.of(axes))
+    /// The widths of the ports of this direction that benches print.
+    fn widths(&self, direction: Direction) -> impl Iterator<Item = u32> {
+        let (axes, ports) = (self.axes(), ports_of(direction).filter(|port| self.has(port)));
+        ports.map(move |port| port.width.of(axes))
+    }
+
+    /// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
+    fn packed(&self, outputs: &EngineOutputs) -> u128 {
+        self.widths(Direction::Output)
+            .zip(self.driven(Direction::Output, &outputs.at_ports()))
+            .fold(0, |all, (width, value)| all << width | u128::from(value))
+    }
 }
 
 /// Number of cycles of rest after which every step has been counted.
@@ -155,7 +166,7 @@ pub fn difference(
         Level::Icarus => {
             let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
             tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
-            first_difference(&mut icarus(folder.path(), verilog, recording.axes())?, recording)
+            first_difference(&mut icarus(folder.path(), verilog, recording)?, recording)
         }
         Level::Verilator => difference_of_mutant(verilog, 0, recording),
         Level::Fast | Level::Model | Level::RustHdl => {
@@ -176,7 +187,7 @@ pub fn difference_of_mutant(
 ) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
-    let mut simulation = Command::new(verilated(verilog, recording.axes())?);
+    let mut simulation = Command::new(verilated(verilog, recording)?);
     simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
     first_difference(&mut simulation, recording)
 }
@@ -203,7 +214,7 @@ fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> O
     let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
     for ((cycle, outputs), sum) in recording.outputs.iter().zip(&recording.sums) {
         let line = next();
-        let bits = packed(outputs, recording.axes());
+        let bits = recording.packed(outputs);
         if parsed(&line) != Some((*cycle, bits, *sum)) {
             return Some(format!(
                 "expected in cycle {cycle} {outputs:?}: {bits:x}, and {sum:x} as the checksum of \
@@ -228,17 +239,11 @@ fn parsed(line: &str) -> Option<(u64, u128, u64)> {
     Some((cycle.parse().ok()?, hex(bits)?, u64::try_from(hex(sum)?).ok()?))
 }
 
-/// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
-fn packed(outputs: &EngineOutputs, axes: usize) -> u128 {
-    widths(Direction::Output, axes)
-        .zip(driven(Direction::Output, &outputs.at_ports(), axes))
-        .fold(0, |all, (width, value)| all << width | u128::from(value))
-}
-
-fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
+fn icarus(folder: &Path, verilog: &str, recording: &Recording) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
-    tool::put(folder, &[("core.v", verilog), ("bench.v", &bench::icarus()?)])?;
-    let parameter = format!("-Pengine_bench.AXES={axes}");
+    let bench = bench::icarus(recording.several)?;
+    tool::put(folder, &[("core.v", verilog), ("bench.v", &bench)])?;
+    let parameter = format!("-Pengine_bench.AXES={}", recording.axes());
     let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
     tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
     let mut simulation = Command::new("vvp");
@@ -247,9 +252,9 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
 }
 
 /// The compiled simulation of this Verilog, from the cache or newly compiled.
-fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
-    let flags = format!("-DAXES={axes}");
+fn verilated(verilog: &str, recording: &Recording) -> Result<PathBuf, LevelError> {
+    let flags = format!("-DAXES={}", recording.axes());
     let options: &[&str] = &["-CFLAGS", &flags];
-    let bench = &bench::verilator()?;
+    let bench = &bench::verilator(recording.several)?;
     Simulation { name: "engine", top: "carrystep_engine", bench, options }.compiled(verilog)
 }

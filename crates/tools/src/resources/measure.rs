@@ -87,7 +87,7 @@ pub(super) fn machine(row: &EngineRow) -> Result<EngineBuild, SynthesisError> {
         let inputs = InputRow { exist: ((1_u32 << row.axes) - 1) as u8, low: 0 };
         build.guard.limits = LimitWiring::Pair;
         build.guard.inputs = [inputs; 2];
-        build.guard.latch = Some(Latch { low: false, looks: 1 });
+        build.guard.latches = vec![Latch::of_pin(false, 1)];
         build.outputs = Outputs { exist: 0xff, pwm_divider: 16, off_at_ramps: true };
         build.cuts = true;
     }

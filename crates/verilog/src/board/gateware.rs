@@ -9,10 +9,12 @@ use crate::prefix::Prefix;
 use crate::purposes::{ENGINE_NAME, LINK_NAME};
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
-use carrystep_core::engine::{ENGINE_PORTS, EngineInputs, LimitWiring};
+use carrystep_core::ChosenTick;
+use carrystep_core::engine::{
+    ENGINE_PORTS, EngineBuild, EngineInputs, Latch, LatchSource, LimitWiring, MAX_LATCHES,
+};
 use carrystep_core::link::{BuildId, LineKind, Uart, line_pins};
 use carrystep_core::ports::{Direction, Peer, Port, Width};
-use carrystep_core::{ChosenTick, EngineBuild};
 use carrystep_files::{Machine, SourceText};
 use carrystep_hdl::parameters::EVENT_MEMORY;
 use minijinja::{Value, context};
@@ -179,10 +181,14 @@ impl<'a> Gateware<'a> {
         let bits =
             |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
-        let switches = self.switches().filter(|(_, pin)| *pin).map(|(port, _)| port.name);
+        let switches = self.switches().filter(|(_, pin)| *pin).flat_map(|(port, _)| {
+            let count = self.pins_of(port.name);
+            (0..count).map(|bit| bit_of(port.name, bit, count)).collect::<Vec<_>>()
+        });
         let inputs = INPUTS.iter().zip(self.build.guard.inputs);
         let inputs = inputs.filter(|(_, row)| row.exist & 1 == 1).map(|((_, first), _)| *first);
-        let fixed = ["enable_n"].into_iter().chain(switches).chain(inputs).map(str::to_owned);
+        let inputs = inputs.map(str::to_owned);
+        let fixed = ["enable_n".to_owned()].into_iter().chain(switches).chain(inputs);
         let line = self.line_pins().map(|(_, pin)| pin.to_owned());
         let led = self.has_led().then(|| "led".to_owned());
         let pwm = self.has_pwm().then(|| "pwm".to_owned());
@@ -258,7 +264,7 @@ impl<'a> Gateware<'a> {
             let of_all = port.width == Width::Bits(1);
             of_all && port.peer == Peer::Pins && port.direction == Direction::Input
         };
-        let exists = |name: &str| name != "latch" || self.build.guard.latch.is_some();
+        let exists = |name: &str| name != "latch" || self.pins_of_latches() > 0;
         ENGINE_PORTS
             .iter()
             .filter(single)
@@ -269,6 +275,40 @@ impl<'a> Gateware<'a> {
     fn inactive(&self, name: &str) -> Option<u64> {
         let levels = EngineInputs::default().levels(&self.build.guard).at_ports();
         levels.iter().find(|(port, _)| *port == name).and_then(|(_, level)| *level)
+    }
+
+    /// The number of latches that have pins of their own.
+    fn pins_of_latches(&self) -> usize {
+        let own = |latch: &&Latch| latch.source == LatchSource::Pin;
+        self.build.guard.latches.iter().filter(own).count()
+    }
+
+    /// The number of pins at a port of the engine that is no switch of an axis.
+    fn pins_of(&self, name: &str) -> usize {
+        if name == "latch" { self.pins_of_latches() } else { 1 }
+    }
+
+    /// The Verilog of the pin of each latch of the build, and 0 for those that it does not have.
+    fn latches(&self) -> [String; MAX_LATCHES] {
+        let (axes, (low, _)) = (self.build.axes(), limit_bits(&self.build));
+        let (latches, pins) = (&self.build.guard.latches, self.pins_of_latches());
+        let mut own = 0;
+        std::array::from_fn(|number| match latches.get(number).map(|latch| latch.source) {
+            None => "1'b0".to_owned(),
+            Some(LatchSource::Pin) => {
+                own += 1;
+                bit_of("latch", own - 1, pins)
+            }
+            Some(LatchSource::Switch { row: 0, axis }) => bit_of("limit_min", axis.into(), low),
+            Some(LatchSource::Switch { row: 1, axis }) => bit_of("limit_max", axis.into(), axes),
+            Some(LatchSource::Switch { row, axis }) => {
+                let (row, axis) = (usize::from(row & 1), usize::from(axis));
+                match self.general_bits()[row][axis] {
+                    Some(input) => bit_of("general", input, self.general().count()),
+                    None => INPUTS[row].1.to_owned(),
+                }
+            }
+        })
     }
 
     fn has_led(&self) -> bool {
@@ -320,8 +360,18 @@ impl<'a> Gateware<'a> {
             others => axes - 1,
             count => axes,
             switches => self.switches().map(|(port, pin)| {
-                context! { name => port.name, pin, inactive => self.inactive(port.name) }
+                let inactive = format!("1'b{}", self.inactive(port.name).unwrap_or_default());
+                let wire = match port.name {
+                    "latch" if !self.build.guard.latches.is_empty() => self.latches()[0].clone(),
+                    name if pin => name.to_owned(),
+                    _ => inactive,
+                };
+                context! { name => port.name, pin, wire, range => range(self.pins_of(port.name).max(1)) }
             }).collect::<Vec<Value>>(),
+            more_latches => self.build.has_several_latches().then(|| {
+                let [_, latches @ ..] = self.latches();
+                latches.into_iter().rev().collect::<Vec<_>>().join(", ")
+            }),
             inputs => [0, 1].map(|row| {
                 context! { name => INPUTS[row].0, bits => self.row_of_inputs(row) }
             }),

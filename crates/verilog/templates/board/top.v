@@ -15,7 +15,7 @@ module {{ top }} (
     input wire {{ gate.port }},
 {% endif %}
 {% for switch in switches if switch.pin %}
-    input wire {{ switch.name }},
+    input wire {{ switch.range }}{{ switch.name }},
 {% endfor %}
 {% if low is not none %}
     input wire {{ low }}limit_min,
@@ -103,8 +103,11 @@ module {{ top }} (
 {% endfor %}
         .clock(clock),
 {% for switch in switches %}
-        .{{ switch.name }}({{ switch.name if switch.pin else "1'b" ~ switch.inactive }}),
+        .{{ switch.name }}({{ switch.wire }}),
 {% endfor %}
+{% if more_latches %}
+        .more_latches({ {{- more_latches }}}),
+{% endif %}
 {% if low is none %}
         .limit_min({{ count }}'d0),
 {% elif one_for_all %}

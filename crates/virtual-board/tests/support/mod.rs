@@ -225,8 +225,13 @@ impl<B> Clone for End<B> {
 
 impl<B: Kind> End<B> {
     pub fn new(uart: Uart, faults: Faults, seed: u64) -> Self {
+        Self::of(B::new(uart), uart, faults, seed)
+    }
+
+    /// The end of the line to this board.
+    pub fn of(board: B, uart: Uart, faults: Faults, seed: u64) -> Self {
         Self(Rc::new(RefCell::new(World {
-            board: B::new(uart),
+            board,
             edges: Seen::default(),
             there: Wire::new(faults, seed),
             back: Wire::new(faults, !seed),

@@ -16,7 +16,8 @@ use crate::link::registers::{
 /// the engine accepts a clear at one strobe and ends the stop at the next.
 const CLEAR_WAITS: usize = 6;
 
-pub(super) fn execute(a: &mut Assembler) {
+/// `several_latches` is true for a build that has several latches.
+pub(super) fn execute(a: &mut Assembler, several_latches: bool) {
     a.label("execute");
     a.load(ADDRESS);
     a.xor_number(WRITE | CUT);
@@ -33,14 +34,22 @@ pub(super) fn execute(a: &mut Assembler) {
         (CLEAR, "clear"),
         (SEEK, "seek"),
         (SNAPSHOT, "snapshot"),
-        (LATCH_REGISTER, "latch"),
     ] {
         let address = WRITE | register;
         a.xor_number(compared ^ address);
         a.jump_if(Zero, label);
         compared = address;
     }
-    a.jump("done");
+    a.xor_number(compared ^ (WRITE | LATCH_REGISTER));
+    if several_latches {
+        // The word says which latches are armed, and whose record is read from now on.
+        a.jump_unless(Zero, "done");
+        a.load(WORDS);
+        latch(a);
+    } else {
+        a.jump_if(Zero, "latch");
+        a.jump("done");
+    }
 
     a.label("control");
     a.load(WORDS);
@@ -55,9 +64,9 @@ pub(super) fn execute(a: &mut Assembler) {
     a.acts(CONTROL | KICK);
     a.jump("done");
 
-    a.label("latch");
-    a.acts(KICK | CLEARING);
-    a.jump("done");
+    if !several_latches {
+        latch(a);
+    }
 
     a.label("snapshot");
     // The engine takes the snapshot in one of the next ticks, whose live words are not output; the
@@ -85,5 +94,12 @@ pub(super) fn execute(a: &mut Assembler) {
     a.jump_unless(Zero, "busy");
     a.load(WORDS);
     a.acts(STARTS | WAIT);
+    a.jump("done");
+}
+
+/// Arms the latch, or those latches that A names.
+fn latch(a: &mut Assembler) {
+    a.label("latch");
+    a.acts(KICK | CLEARING);
     a.jump("done");
 }

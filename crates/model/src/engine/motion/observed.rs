@@ -60,7 +60,12 @@ impl Motion {
 
     /// True if the words of state of this tick are latched.
     pub(crate) const fn latches(&self) -> bool {
-        self.latch.latches
+        self.latch.latches()
+    }
+
+    /// The number of the record to which they belong.
+    pub(crate) const fn record(&self) -> u8 {
+        self.latch.record
     }
 
     /// True while the engine returns to its state at configuration.

@@ -2,12 +2,13 @@
 //! axis only repeats its additions, and advances the counters that run during that time.
 //!
 //! All other events (an accepted word, a load, the call of a stop, a change of a debounced switch,
-//! the hit of a seek, an edge of the latch, an axis that comes to rest) are executed by
+//! the hit of a seek, an edge of a latch, an axis that comes to rest) are executed by
 //! [`Motion::clock`]. Every condition here must be conservative: a skipped clock must have no other
 //! effect.
 
 use super::axis_model::AxisModel;
 use super::guard::Stop;
+use super::latch::arms_a_missing_one;
 use super::seek::AxisSeek;
 use super::switches::{INTERLOCK_ROW, SAMPLE_BEAT, Switch};
 use super::{Motion, bits};
@@ -87,11 +88,12 @@ impl Motion {
         let busy = self.pins_busy();
         let idle = self.rest == 2 && self.armed.is_none() && !busy;
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
+        let breaks = inputs.broken || nobody || arms_a_missing_one(guard, inputs);
         self.time_slots
             && !(inputs.reset || self.reset.ending || self.misplaced || self.stray)
             && !(inputs.cut || self.cut.is_busy())
             && self.outputs_are_steady()
-            && (fault || !(inputs.stop || inputs.broken || nobody))
+            && (fault || !(inputs.stop || breaks))
             && inputs.seek.is_none()
             && inputs.seek_source.is_none()
             && !self.seek.sweeps

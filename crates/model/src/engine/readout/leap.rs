@@ -1,6 +1,6 @@
 //! Access for the fast model: the readout after many clocks in which the axes only repeat their
 //! additions. No step is discarded in them, no switch changes its debounced state, no seek hits,
-//! the latch accepts no edge, nothing is cleared and no snapshot is requested, and an axis that
+//! no latch accepts an edge, nothing is cleared and no snapshot is requested, and an axis that
 //! runs goes on running.
 
 use super::counts::{DISCARDED_BEAT, POSITION_BEAT};
