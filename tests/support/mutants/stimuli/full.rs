@@ -51,7 +51,7 @@ pub(super) fn build() -> EngineBuild {
         enable: 2,
         limits: LimitWiring::Pair,
         inputs: [InputRow { exist: 0x37, low: 0x15 }, InputRow { exist: 0x2b, low: 0x09 }],
-        latch: Some(Latch { low: true, looks: 3 }),
+        latches: vec![Latch::of_pin(true, 3)],
         ..Guard::minimal((0..AXES as u64).map(|axis| (1 << 53) + (axis << 50)).collect())
     };
     build

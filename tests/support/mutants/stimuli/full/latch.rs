@@ -28,7 +28,7 @@ fn program() -> Program {
 
 /// The pin is active from a clock on, for this number of clocks.
 fn pulse(at: u64, clocks: u64) -> [(u64, Event); 2] {
-    [(at, Event::Latch(true)), (at + clocks, Event::Latch(false))]
+    [(at, Event::Latch(1)), (at + clocks, Event::Latch(0))]
 }
 
 /// Pulses for fewer and for more ticks than an edge takes, and gaps of all these lengths, from
@@ -38,7 +38,7 @@ fn of_any_length() -> Events {
     let mut at = THEN;
     for offset in 0..12 {
         for ticks in 1..=LOOKS + 1 {
-            events.push((at, Event::LatchArm));
+            events.push((at, Event::LatchArm(1)));
             let begins = at + 8 * offset;
             events.extend(pulse(begins, ticks * TICK - 50));
             // A short gap, which the latch does not accept, and a second pulse.
@@ -53,11 +53,11 @@ fn of_any_length() -> Events {
 /// More edges than the counter of further edges can count; then the latch is armed again, so that
 /// the counter restarts.
 fn further() -> Events {
-    let mut events = vec![(THEN, Event::LatchArm)];
+    let mut events = vec![(THEN, Event::LatchArm(1))];
     for number in 0..40 {
         events.extend(pulse(THEN + TICK + number * (7 * TICK + 1), 3 * TICK + 10));
         if [20, 22, 29].contains(&number) {
-            events.push((THEN + TICK + number * 7 * TICK, Event::LatchArm));
+            events.push((THEN + TICK + number * 7 * TICK, Event::LatchArm(1)));
         }
     }
     events
@@ -72,9 +72,9 @@ fn armed_at_the_edge() -> Events {
         events.extend(pulse(at, 5 * TICK));
         // The pin's flip-flops show the pulse at the strobe of the tick in which it begins.
         let accepts = at + LOOKS * TICK - 1;
-        events.push((accepts + number - 6, Event::LatchArm));
+        events.push((accepts + number - 6, Event::LatchArm(1)));
         if number % 2 == 0 {
-            events.push((accepts + number - 5, Event::LatchArm));
+            events.push((accepts + number - 5, Event::LatchArm(1)));
         }
     }
     events
@@ -86,7 +86,7 @@ fn resets() -> Events {
     let mut events = Events::new();
     for number in 0..8 {
         let at = THEN + number * 40 * TICK;
-        events.push((at, Event::LatchArm));
+        events.push((at, Event::LatchArm(1)));
         if number % 2 == 0 {
             events.extend(pulse(at + 2 * TICK, 4 * TICK));
             events.extend(pulse(at + 10 * TICK, 4 * TICK));
@@ -96,7 +96,7 @@ fn resets() -> Events {
         events.extend([(reset, Event::Reset(true)), (reset + 1, Event::Reset(false))]);
         events.extend(pulse(reset + number * TICK / 2 + 11, (2 + number) * TICK));
         // Armed in the middle of the reset, which has no effect, and after it.
-        events.push((reset + 5 * TICK / 2 + 7 * number, Event::LatchArm));
+        events.push((reset + 5 * TICK / 2 + 7 * number, Event::LatchArm(1)));
     }
     events
 }

@@ -125,10 +125,10 @@ fn with_other_pages(build: &EngineBuild, name: &str, source: SeekSource) -> Vec<
     let base = vec![
         (THEN - 50, Event::SeekSource(source)),
         (THEN, Event::Seek(0x3f)),
-        (THEN, Event::LatchArm),
+        (THEN, Event::LatchArm(1)),
         (REACHED, reached(source, 0x3f)),
         (REACHED + 40 * ROUND, Event::Seek(0)),
-        (REACHED + 40 * ROUND, Event::Latch(false)),
+        (REACHED + 40 * ROUND, Event::Latch(0)),
         (REACHED + 50 * ROUND, reached(source, 0)),
         (END, Event::Broken),
     ];
@@ -144,7 +144,7 @@ fn with_other_pages(build: &EngineBuild, name: &str, source: SeekSource) -> Vec<
         // 9 stands for never.
         if latch != 9 {
             // The edge is accepted at the strobe of the third tick.
-            events.push((tick(latch - 2) + 11, Event::Latch(true)));
+            events.push((tick(latch - 2) + 11, Event::Latch(1)));
         }
         if snapshot != 9 {
             events.push((tick(snapshot) + 60, Event::Snapshot));
