@@ -189,12 +189,16 @@ impl Hold {
             }
             let planned = begin + law.planned(before as f64).round() as u64;
             let here = curve.place(planned).row.min(curve.rows().len() - 1);
-            // What changes where a planned row begins, changes with the first row from there on.
+            // What changes where a planned row begins, changes with the first row from there on. The
+            // last row may begin a little before the last of these places.
             let since = if number == 0 && first.tick == 0 { source } else { source + 1 };
-            let marks = curve.rows().get(since..=here).unwrap_or_default();
+            let last = number + 1 == ends.len();
+            let until = if last { curve.place(end - 1).row } else { here };
+            let marks = curve.rows().get(since..=until).unwrap_or_default();
             let marks = marks.iter().flat_map(|row| row.marks.iter().copied()).collect();
-            source = source.max(here);
-            rows.push(Row { ticks, segments, marks, ..curve.rows()[here].clone() });
+            source = source.max(until);
+            let &Row { line, feed, off, corner, .. } = &curve.rows()[here];
+            rows.push(Row { ticks, segments, line, feed, off, corner, marks });
             (before, now) = (tick, next);
         }
         land(&mut rows, &at, &curve.at(curve.place(end)))?;
@@ -202,8 +206,8 @@ impl Hold {
     }
 
     /// The ends of the rows of a transition, ticks from its beginning: where the planned rows end,
-    /// and between them, so that the rows are nearly as short as the planned ones. The last two rows have lengths without a
-    /// common divisor ([`land`]).
+    /// and between them, so that the rows are nearly as short as the planned ones. The last two rows
+    /// have lengths without a common divisor ([`land`]).
     fn ends(&self, curve: &Curve<'_>, (begin, end): (u64, u64), law: Law) -> Option<Vec<u64>> {
         let first = curve.place(begin).row;
         let mut planned = curve.ticks_to(CurvePlace { row: first, tick: 0 });

@@ -89,7 +89,9 @@ fn holds_keep_limits_path_and_landing() {
     let hold = Hold::new(&machine).unwrap();
     for name in PROGRAMS {
         let items = reader::read(&reader::file(name));
-        let rows = planned(&machine, &items);
+        let mut rows = planned(&machine, &items);
+        // Each row has a mark of its own.
+        (0..).zip(&mut rows).for_each(|(number, row)| row.marks = vec![number]);
         let (places, path) = (places(&rows), programmed(&machine, &items));
         let mut whole = Replay::new(&machine);
         rows.iter().for_each(|row| whole.run(row));
@@ -103,6 +105,8 @@ fn holds_keep_limits_path_and_landing() {
                 replay.run(row);
             }
             replay.assert_limits(&machine);
+            let marks = all.iter().flat_map(|row| row.marks.iter().copied());
+            assert!(marks.eq(0..rows.len() as u64), "{name} {wanted}: each mark once, in order");
             for (axis, planned) in replay.axes.iter().zip(&whole.axes) {
                 assert_eq!(axis.distance, planned.distance, "{name} {wanted}");
             }

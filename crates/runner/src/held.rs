@@ -41,6 +41,10 @@ impl Window {
         let curve = Curve::new(&self.rows, &self.at);
         let (from, carrystep_job::Held { stop, resume, place, next }) =
             hold.hold(&curve, self.first)?;
+        // Behind the window, the resumption would not be checked.
+        if next == self.rows.len() && next >= Self::ROWS {
+            return None;
+        }
         let line = self.rows.get(place.row)?.line;
         let planned = |rows: std::ops::Range<usize>| self.rows.get(rows).unwrap_or_default();
         Some(Held {

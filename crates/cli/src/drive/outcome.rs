@@ -61,7 +61,7 @@ pub struct ProgramDriven {
     pub soft_limits: Vec<String>,
     /// How long the motion goes on at least if the host sends nothing more, ms.
     pub horizon_ms: u64,
-    /// How often the program has waited for somebody to let it go on: M0, M1, M6.
+    /// How often the program has waited for somebody to let it go on: at M0, M1, M6 and in holds.
     pub waits: u64,
 }
 

@@ -88,8 +88,9 @@ impl<'a> Curve<'a> {
         let CurvePlace { row, .. } = self.place(ticks.max(0.0) as u64);
         let (begin, at) = &self.begins[row];
         let within = ticks - *begin as f64;
-        let segments = self.segments(Some(row));
-        at.iter().zip(&segments).map(|(&at, segment)| of_segment(at, segment, within)).collect()
+        let segments = self.rows.get(row).map_or(&[][..], |row| &row.segments);
+        let segments = segments.iter().chain(std::iter::repeat(&REST));
+        at.iter().zip(segments).map(|(&at, segment)| of_segment(at, segment, within)).collect()
     }
 }
 
