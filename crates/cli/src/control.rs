@@ -1,6 +1,6 @@
 //! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
 //! that one: `run`, `jog` and `home` listen on a local socket while they hold the port, and
-//! `carrystep stop`, `resume` and `status` talk to them through it.
+//! `carrystep stop`, `hold`, `resume` and `status` talk to them through it.
 //!
 //! ```text
 //! claim    a lock file per device, named after its number; it contains the holder of the port
@@ -41,7 +41,12 @@ use carrystep_link::{BuildFacts, Status, Wish};
 pub use program::ProgramControl;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::time::Duration;
 use strum::{EnumString, IntoStaticStr};
+
+/// How long the driving command may take to answer. It polls its socket every few milliseconds, but
+/// a busy computer may delay it.
+pub const ANSWER: Duration = Duration::from_secs(2);
 
 /// A request through the socket; each is one line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr)]
@@ -109,8 +114,8 @@ impl Control {
         self.known = Some(known);
     }
 
-    /// Returns `Wish::Stop` once the user has asked for a stop, by Ctrl-C or by `carrystep stop`
-    /// through the socket. The caller must call it after every exchange with the board (for example
+    /// Returns `Wish::Stop` once all axes are to ramp down: after `carrystep stop` through the
+    /// socket, after Ctrl-C while moves run, and after the third one while a program moves. The caller must call it after every exchange with the board (for example
     /// in the `watch` of [`Host::stream`](carrystep_link::Host::stream)) and before a new move
     /// begins. It also answers requests for the status.
     pub fn wish(&mut self, status: &Status) -> Wish {

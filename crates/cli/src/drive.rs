@@ -8,24 +8,27 @@ use crate::found;
 use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
 use carrystep_core::engine::Cause;
-use carrystep_link::{Ended, HostError, Status};
+use carrystep_link::{Ended, HostError, Status, Wish};
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
 pub use moves::Moves;
 pub use outcome::{AxisDriven, Culprit, Driven, How};
-use pause::{Keys, Waited};
 pub use place::Place;
 pub use program::PlannedProgram;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+use wait::{Keys, Waited};
 
 mod itinerary;
 mod line;
 mod moves;
 mod outcome;
-mod pause;
 mod place;
 mod program;
 mod shared;
+mod wait;
+
+/// Time between two searches for a hold that the limits forbid now.
+const TRY_AGAIN: Duration = Duration::from_millis(20);
 
 /// The direction in which each axis was last seen moving.
 #[derive(Default)]
@@ -74,7 +77,7 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    let (mut line, mut keys) = (Line::new(&axes, plan.seconds), Keys::default());
+    let (mut line, mut keys) = (Line::new(&axes, plan.seconds), Keys::listening());
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
     if plan.program.is_some() {
@@ -86,9 +89,8 @@ pub fn drive(
             for at in waits {
                 line.rests();
                 plan.program.iter_mut().for_each(|program| program.waits += 1);
-                match pause::wait(&mut board, &mut control, (&mut keys, &line), at)? {
+                match wait::wait(&mut board, &mut control, (&mut keys, &line), at)? {
                     Waited::GoesOn => {}
-                    Waited::Stopped => return Ok(Ended::Stopped),
                     Waited::Ends => {
                         // The outputs go off in a stretch of their own.
                         itinerary.end();
@@ -97,16 +99,21 @@ pub fn drive(
                     }
                 }
             }
-            let (mut held, mut source) = (ends, itinerary.source());
+            let mut source = itinerary.source();
+            let mut next_try = (!ends).then(Instant::now);
             let streamed = board.stream(&mut *source, |progress| {
                 line.show(progress.status);
                 ways.see(progress.status);
-                if !held && control.program().is_some_and(|program| program.holds()) {
-                    // Where the stretch ends before by itself, the program waits or ends there.
-                    held = true;
-                    itinerary.hold();
+                let holds = control.program().is_some_and(|program| program.holds());
+                if holds && next_try.is_some_and(|next| Instant::now() >= next) {
+                    // A later row may begin a hold where the limits forbid one now.
+                    next_try = (!itinerary.hold()).then(|| Instant::now() + TRY_AGAIN);
                 }
-                control.wish(progress.status)
+                match control.wish(progress.status) {
+                    // The axes rest while the outputs go off.
+                    Wish::Stop if ends => Wish::GoOn,
+                    wish => wish,
+                }
             })?;
             if streamed == Ended::Stopped {
                 return Ok(Ended::Stopped);

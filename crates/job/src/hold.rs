@@ -22,6 +22,7 @@ mod law;
 pub use curve::{Curve, CurvePlace};
 
 use crate::error::JobError;
+use crate::limits::SHORTEST;
 use crate::rhythm::LONGEST;
 use crate::row::Row;
 use crate::turn::{Pair, quiet};
@@ -38,8 +39,13 @@ const FIRST_TRY: f64 = 0.008;
 const LONGER: f64 = 1.2;
 /// How long a hold may wait before it begins, to be at rest sooner, seconds.
 const PROMPT: f64 = 0.03;
-/// The part of [`Hold::least`] below which no stop is tried: the plan may slow down by itself.
-const HOPELESS: f64 = 0.5;
+/// The part of [`Hold::least`] at which the search begins: the plan may slow down by itself.
+const SHORTEST_PART: f64 = 0.5;
+/// The planned time of a hold, as a multiple of the time in which an axis reaches its greatest
+/// speed: stop and resumption take nearly twice that at the least.
+const AMPLE: f64 = 4.0;
+/// Rows that a hold looks at in any case.
+const LEAST_WINDOW: usize = 300;
 /// The planned time of the longest transition, seconds.
 const LONGEST_TRY: f64 = 20.0;
 
@@ -84,8 +90,8 @@ impl Hold {
     }
 
     /// The hold that brings the motion to rest first, of those that begin with a planned row from
-    /// `first` on. It begins within [`PROMPT`], or else as soon as the limits allow. Gives the row
-    /// too with which it begins. `None` if no hold keeps the limits before the rows end.
+    /// `first` on and within [`PROMPT`] of it. Gives the row too with which it begins. `None` if no
+    /// such hold keeps the limits; a later row may have one.
     pub fn hold(&self, curve: &Curve<'_>, first: usize) -> Option<(usize, Held)> {
         let prompt = (PROMPT / self.tick_seconds) as u64;
         let begin = |row| curve.ticks_to(CurvePlace { row, tick: 0 });
@@ -94,7 +100,7 @@ impl Hold {
         for from in first..curve.rows().len() {
             let waited = begin(from) - since;
             let rested = best.as_ref().map_or(u64::MAX, |(rested, ..)| *rested);
-            if waited >= rested || (waited > prompt && best.is_some()) {
+            if waited >= rested || waited > prompt {
                 break;
             }
             if let Some(held) = self.from(curve, from, rested - waited) {
@@ -105,13 +111,22 @@ impl Hold {
         best.map(|(_, from, held)| (from, held))
     }
 
+    /// So many planned rows are enough to stop and to go on if the motion goes on at its greatest
+    /// speed and the rows last 4 ms.
+    pub fn window(&self) -> usize {
+        let times = self.limits.iter().map(|one| one.speed as f64 / one.acceleration as f64);
+        let slowest = times.fold(0.0, f64::max) * self.tick_seconds;
+        (AMPLE * slowest.min(LONGEST_TRY) / SHORTEST) as usize + LEAST_WINDOW
+    }
+
     /// The hold that begins with a row and takes the shortest time, if that is less than `most`
     /// ticks.
     fn from(&self, curve: &Curve<'_>, from: usize, most: u64) -> Option<Held> {
         let begin = curve.ticks_to(CurvePlace { row: from, tick: 0 });
         let longest = ((LONGEST_TRY / self.tick_seconds) as u64).min(curve.ticks() - begin);
         let before = curve.segments(from.checked_sub(1));
-        let mut planned = (FIRST_TRY / self.tick_seconds).max(self.least(curve, begin) * HOPELESS);
+        let mut planned =
+            (FIRST_TRY / self.tick_seconds).max(self.least(curve, begin) * SHORTEST_PART);
         while planned as u64 <= longest && 2 * (planned as u64) < most {
             let law = Law::over(Way::Stop, planned as u64);
             let end = begin + planned as u64;

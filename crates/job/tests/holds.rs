@@ -66,7 +66,8 @@ fn held(
     let end = rows.len().min(base + WINDOW);
     let curve = Curve::new(&rows[base..end], &places[base]);
     let started = std::time::Instant::now();
-    let Some((from, held)) = hold.hold(&curve, wanted - base) else {
+    let tried = (wanted - base..end - base).find_map(|first| hold.hold(&curve, first));
+    let Some((from, held)) = tried else {
         // The program ends before.
         return rows.to_vec();
     };

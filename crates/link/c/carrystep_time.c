@@ -40,8 +40,7 @@ static int64_t excess(int64_t ticks, uint32_t tick_ns, int64_t us)
         return ticks < 0 ? INT64_MIN : INT64_MAX;
     }
     int64_t own = ticks * (int64_t)tick_ns, of_host = us * 1000;
-    /* Both are at least 0 unless the ticks run backward. */
-    int64_t ns = own < 0 ? own : own - of_host;
+    int64_t ns = own < of_host - INT64_MAX ? -INT64_MAX : own - of_host;
     if (ns > MOST_NS || ns < -MOST_NS) {
         return ns < 0 ? INT64_MIN : INT64_MAX;
     }

@@ -46,7 +46,8 @@ typedef struct {
     bool known;    /* least and greatest have a value */
 } carrystep_clocks;
 
-/* Begins a comparison with a gateware whose ticks have this length (register TICK_NS). */
+/* Begins a comparison with a gateware whose ticks have this length, more than 0 (register
+ * TICK_NS). */
 void carrystep_compare(carrystep_clocks *clocks, uint32_t tick_ns);
 
 /* Adds an observation: the tick with this number was read at a time of the host between `before`

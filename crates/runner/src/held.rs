@@ -19,6 +19,8 @@ pub(crate) struct Window {
     pub at: Vec<i128>,
     /// The first row that has not been sent.
     pub first: usize,
+    /// Whether the stretch ends with these rows.
+    pub ends: bool,
 }
 
 /// The rows of a window with a hold among them.
@@ -33,16 +35,13 @@ pub(crate) struct Held {
 }
 
 impl Window {
-    /// Most rows that a hold looks at: 2.4 s of motion or more.
-    pub const ROWS: usize = 600;
-
-    /// The rows with a hold as soon as one is possible; `None` if the stretch ends before.
+    /// The rows with a hold; `None` if none can begin with the next rows.
     pub fn held(&self, hold: &Hold) -> Option<Held> {
         let curve = Curve::new(&self.rows, &self.at);
         let (from, carrystep_job::Held { stop, resume, place, next }) =
             hold.hold(&curve, self.first)?;
         // Behind the window, the resumption would not be checked.
-        if next == self.rows.len() && next >= Self::ROWS {
+        if next == self.rows.len() && !self.ends {
             return None;
         }
         let line = self.rows.get(place.row)?.line;

@@ -1,6 +1,7 @@
 //! How far a board's queues reach ahead of the motion.
 
-/// Eight successive rows of a planned program last at least so long, ms.
+/// Eight successive rows of a planned program last at least so long, ms. A hold may add a shorter
+/// row at its place of rest.
 const EIGHT_ROWS_MS: u64 = 32;
 
 /// The shortest horizon that is not reported with a warning, ms.

@@ -10,7 +10,7 @@
 //!
 //! A row with a [`SyncPoint`] begins a stretch. The row before it is marked as the last one of its
 //! move in all axes, so that the gateware finds an empty queue there and no underrun. A hold ends a
-//! stretch early ([`crate::held`]).
+//! stretch early (`held.rs`).
 
 use crate::held::{Held, Window};
 use carrystep_core::{OutputChange, Segment};
@@ -112,21 +112,24 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         Some(waits)
     }
 
-    /// Ends the present stretch on the planned curve, as soon as limits allow. Returns false if the
-    /// program comes to rest by itself before, or at the same time.
+    /// Ends the present stretch on the planned curve, if the limits allow it from one of the next
+    /// rows on. Returns false if they do not: then it may be possible when more rows have been read.
+    /// If the stretch ends by itself with the rows that were read, nothing is left to do.
     pub fn hold(&mut self) -> bool {
         if self.whole || self.left.is_some() {
-            return false;
+            return true;
         }
         let before = self.read.clone();
         let base = before.as_ref().map_or_else(|| self.at.clone(), |(_, at)| at.clone());
         let mut rows: Vec<Row> = before.into_iter().map(|(row, _)| row).collect();
         let known = rows.len();
         let within = |rows: &[Row], row: &Row| rows.is_empty() || !waits(row);
-        while rows.len() < Window::ROWS && self.peek().is_some_and(|row| within(&rows, row)) {
+        let most = self.hold.window();
+        while rows.len() < most && self.peek().is_some_and(|row| within(&rows, row)) {
             rows.extend(self.ahead.pop_front());
         }
-        let window = Window { rows, at: base, first: known };
+        let ends = self.peek().is_none_or(waits);
+        let window = Window { rows, at: base, first: known, ends };
         let held = window.held(&self.hold);
         let is_held = held.is_some();
         let rows = match held {
@@ -143,12 +146,11 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     /// Drops what is left of the program, and ends it with this change of outputs, at rest. The
     /// next stretch is that row alone.
     pub fn end_with(&mut self, change: OutputChange, ticks: u32) {
-        let segment = Segment { ticks, v: 0, a: 0, j: 0, last: false };
+        let segment = Segment { ticks, v: 0, a: 0, j: 0, last: true };
         let segments = vec![segment; self.segments.len()];
         let marks = vec![change.word().into()];
         let line = self.read.as_ref().map_or(0, |(row, _)| row.line);
-        self.held = None;
-        self.ended = true;
+        (self.held, self.left, self.whole, self.ended) = (None, None, true, true);
         self.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
         self.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
@@ -176,12 +178,15 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             }
             None => self.peek().is_none_or(waits),
         };
+        // The last row of a program is marked by the planner. Where the rows break off because the
+        // program cannot be read any more, no row is: the queues run dry, and the axes ramp down.
+        let last = self.whole && self.peek().is_some();
         let before = self.at.clone();
         self.outputs.push_back(outputs(&row));
         let places = self.at.iter_mut().zip(&mut self.segments);
         for ((at, queue), segment) in places.zip(&row.segments) {
             *at += travel(segment, segment.ticks.into());
-            queue.push_back(Segment { last: self.whole, ..*segment });
+            queue.push_back(Segment { last: last || segment.last, ..*segment });
         }
         self.read = Some((row, before));
     }
@@ -240,6 +245,13 @@ mod tests {
         }
     }
 
+    /// The rows of a program, of which the planner marks the last one.
+    fn whole(mut rows: Vec<Row>) -> Vec<Row> {
+        let last = rows.last_mut().unwrap();
+        last.segments.iter_mut().for_each(|segment| segment.last = true);
+        rows
+    }
+
     fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
         let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
         let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
@@ -255,7 +267,7 @@ mod tests {
 
     #[test]
     fn pause_ends_a_stretch() {
-        let rows = [row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])];
+        let rows = whole(vec![row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
         let mut all = stretches(&rows);
         assert_eq!(all.begin(), Some(Vec::new()));
         assert_eq!((all.start(), all.start()), (Some(3), None));
@@ -285,7 +297,7 @@ mod tests {
 
     #[test]
     fn rest_of_a_stretch_is_dropped() {
-        let rows = [row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])];
+        let rows = whole(vec![row(5, 1, &[]), row(6, 1, &[]), row(7, 1, &[PAUSE])]);
         let mut all = stretches(&rows);
         all.begin();
         all.segment(0);
@@ -337,10 +349,21 @@ mod tests {
         all.segment(0);
         assert!(all.hold());
         while all.segment(0).is_some() {}
+        // The next stretch has begun already where the program waits.
+        assert_eq!(all.begin(), Some(vec![Wait::Hold(4)]));
         all.end_with(off, 4000);
         assert_eq!(all.begin(), Some(Vec::new()));
         assert_eq!(taken(&mut all, 1), [(4000, 0, true)]);
         assert!(all.segment(0).is_some());
         assert_eq!((all.outputs(), all.begin()), (off, None));
+    }
+
+    /// As if the file had changed: the queues have to run dry, which ramps the axes down.
+    #[test]
+    fn rows_that_break_off_have_no_last_one() {
+        let rows = [row(5, 1, &[]), row(6, 1, &[])];
+        let mut all = stretches(&rows);
+        all.begin();
+        assert_eq!(taken(&mut all, 0), [(5, 1, false), (6, 1, false)]);
     }
 }

@@ -3,10 +3,9 @@
 
 use crate::arguments::ProgramPortArguments;
 use crate::connection;
-use crate::control::{self, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRequest};
+use crate::control::{self, ANSWER, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::output;
-use std::time::Duration;
 
 /// How long the driving command may take to answer. It polls its socket every few milliseconds, but
 /// a busy computer may delay it.
@@ -14,7 +13,7 @@ const ANSWER: Duration = Duration::from_secs(2);
 
 /// Brings the program to rest.
 pub fn hold(arguments: &ProgramPortArguments) -> Result<(), Failure> {
-    ask(&arguments.port.name, SocketRequest::Hold, "comes to rest")
+    ask(&arguments.port.name, SocketRequest::Hold, "was asked to bring its program to rest")
 }
 
 /// Lets the program go on.
@@ -25,6 +24,10 @@ pub fn resume(arguments: &ProgramPortArguments) -> Result<(), Failure> {
 /// Asks the command that drives the board at this port.
 fn ask(port: &str, request: SocketRequest, done: &str) -> Result<(), Failure> {
     let state = if request == SocketRequest::Hold { "moves" } else { "waits" };
+    if cfg!(not(unix)) {
+        let message = "on this system no other command can be reached: use the terminal of `run`";
+        return Err(Failure::input(message));
+    }
     let nothing = || {
         Failure::input(format!("no program {state} at {port}: `carrystep status` shows its state"))
     };

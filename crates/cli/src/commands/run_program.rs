@@ -21,11 +21,16 @@ pub fn run(arguments: &RunArguments) -> Result<Driven, Failure> {
     let mut connection = connection::to_machine(&arguments.port, &machine, machine_path, "run")?;
     let memory = BoardMemory::recall(&mut connection);
     let status = *connection.board.status();
+    if !status.answer.idle && !status.answer.fault {
+        let message = "axes move or segments wait, of another host: the program begins where the \
+                       machine rests, so wait for that, or `carrystep stop`";
+        return Err(Failure::input(message));
+    }
     let place = Place::find(&machine, &letters, &memory, &status.positions, arguments.unhomed)?;
     let settings = Settings { start: place.start, ..program::settings(planner) };
     let file = ProgramFile::open(path, place.bounded(&machine), machine_path, settings)?;
     let planned = PlannedProgram::new(&file, &place, || connection.control.wish(&status))?;
-    if let Some(warning) = planned.warning() {
+    for warning in planned.unswitched().chain(planned.warning()) {
         // If this write fails, there is no channel left to report it.
         let _ = writeln!(io::stderr(), "warning: {warning}");
     }

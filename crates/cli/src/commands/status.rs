@@ -2,7 +2,7 @@
 
 use crate::arguments::StatusArguments;
 use crate::connection::{self, Connection};
-use crate::control::{self, Reply, SocketRequest};
+use crate::control::{self, ANSWER, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::found::{self, FoundBoard, Known};
 use crate::memory::{self, BoardMemory};

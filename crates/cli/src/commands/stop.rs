@@ -4,7 +4,7 @@
 use crate::arguments::Stop;
 use crate::commands::status::{read_status, tell};
 use crate::connection::{self, Connection};
-use crate::control::{self, Caller, Holder, Reply, SocketRequest};
+use crate::control::{self, ANSWER, Caller, Holder, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::memory::BoardMemory;
@@ -12,9 +12,6 @@ use carrystep_link::{HostError, random_session};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// How long the driving command may take to read the request. It polls its socket every few
-/// milliseconds, but a busy computer may delay it.
-const TAKEN: Duration = Duration::from_secs(2);
 /// How long it may take to ramp down and to end: longer than the driver's own time-out.
 const ENDED: Duration = Duration::from_secs(15);
 /// How long a port may stay busy without a command that listens: `status` may hold it, or a command
@@ -100,7 +97,7 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
 
 /// Returns true if the command has accepted the stop and ended, and false if it had ended before.
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
-    match caller.ask(SocketRequest::Stop, TAKEN) {
+    match caller.ask(SocketRequest::Stop, ANSWER) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),
         Reply::Line(_) => {
             Err(Failure::Run(connection::hangs(port, &caller.holder, SocketRequest::Stop, "end")))

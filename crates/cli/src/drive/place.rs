@@ -54,8 +54,8 @@ impl Place {
         }
         let (names, are) = (lost.join(", "), if lost.len() == 1 { "is" } else { "are" });
         Err(Failure::input(format!(
-            "{names} {are} not homed, so nobody knows where the program would go: `carrystep home` first; --unhomed takes \
-             the place where the machine is for its zero and ignores `travel`"
+            "{names} {are} not homed, so nobody knows where the program would go: `carrystep home` \
+             first; --unhomed takes the place where the machine is for its zero and ignores `travel`"
         )))
     }
 
@@ -79,6 +79,7 @@ fn within(axis: &Axis, steps: i64) -> Result<(), Failure> {
     let [at, low, high] = [steps, low, high].map(|steps| digits(steps as f64 / axis.unit.steps));
     let unit = &axis.unit.name;
     Err(Failure::input(format!(
-        "{name} stands at {at} {unit}, beyond its travel of {low} to {high} {unit}: jog it back with `carrystep jog {name}`"
+        "{name} stands at {at} {unit}, beyond its travel of {low} to {high} {unit}: jog it back \
+         with `carrystep jog {name}`"
     )))
 }

@@ -5,6 +5,7 @@ use super::outcome::ProgramDriven;
 use super::place::Place;
 use super::shared::Shared;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::pass::{Kept, RowsAhead};
 use crate::program;
 use carrystep_core::OutputChange;
@@ -12,13 +13,20 @@ use carrystep_files::Axis;
 use carrystep_job::Hold;
 use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, SegmentSource, Wish};
-use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey};
+use carrystep_plan::exact::travel;
+use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount};
 use carrystep_report::Detail;
 use carrystep_runner::{Horizon, Stretches, Wait};
 use std::cell::RefCell;
 
 /// The row in which the outputs of a program that is ended go off, seconds.
 const LAST_ROW: f64 = 0.004;
+
+/// Half a step in units of 2^-64 step.
+const HALF_STEP: i128 = 1 << 63;
+
+/// The message where the planning was ended.
+const STOPPED: &str = "stopped while the program was planned; nothing was sent";
 
 /// Number of rows between two looks at requests for a stop while a program is planned.
 const ROWS_OF_A_LOOK: u64 = 1024;
@@ -46,27 +54,44 @@ impl<'a> PlannedProgram<'a> {
     ) -> Result<Self, Failure> {
         let machine = file.machine();
         let axes = machine.axes.len();
-        let starved =
-            |error: Starved| Failure::input(format!("{}: {error}", file.path().display()));
+        let name = file.path().display();
+        let starved = |Starved { axis, at_ms, late_us, baud }: Starved| {
+            Failure::input(format!(
+                "{name}: {baud} baud are too slow for this program: axis {axis} would run dry {at_ms} ms after the start, \
+                 its next segment {late_us} us late; give [machine.link] a higher baud rate"
+            ))
+        };
         let mut supply =
             Supply::new(axes as u8, machine.timebase.tick_ns(), machine.queue, machine.baud);
-        let (mut first, mut rows) = (vec![0; axes], 0_u64);
-        let (survey, _) = program::survey(file, Detail::Figures, |row| {
-            for ((number, way), &segment) in (0..).zip(&mut first).zip(&row.segments) {
-                if *way == 0 {
-                    let moves = [segment.v, segment.a, segment.j].into_iter().find(|of| *of != 0);
-                    *way = moves.map_or(0, |of| of.signum() as i8);
+        let (mut gone, mut first, mut rows) = (vec![0_i128; axes], vec![0; axes], 0_u64);
+        let planned = program::survey(file, Detail::Figures, |row| {
+            let motors = gone.iter_mut().zip(&mut first).zip(&row.segments);
+            for (number, ((gone, way), &segment)) in (0..).zip(motors) {
+                *gone += travel(&segment, segment.ticks.into());
+                if *way == 0 && gone.abs() >= HALF_STEP {
+                    *way = gone.signum() as i8;
                 }
                 supply.add(&Command::Segment { axis: number, segment }).map_err(starved)?;
             }
             rows += 1;
             if rows.is_multiple_of(ROWS_OF_A_LOOK) && wish() == Wish::Stop {
-                let message = "stopped while the program was planned; nothing was sent";
-                return Err(Failure::Run(message.to_owned()));
+                return Err(Failure::Run(STOPPED.to_owned()));
             }
             Ok(())
-        })?;
+        });
+        // A signal ends the planning, too.
+        let stopped = || Failure::Run(STOPPED.to_owned());
+        let (survey, _) =
+            planned.map_err(|error| if interrupt::is_asked() { stopped() } else { error })?;
         supply.finish().map_err(starved)?;
+        let switches = &survey.counts.switches;
+        let blind = switches.iter().find(|one| matches!(one.switch, Switch::Probe | Switch::Input));
+        if let Some(SwitchCount { switch, line, .. }) = blind {
+            return Err(Failure::input(format!(
+                "{name}: line {line}: `run` cannot do this yet: {switch} ({})",
+                switch.instead()
+            )));
+        }
         let named = |(axis, soft): (&Axis, &bool)| soft.then(|| axis.name.clone());
         let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
         let horizon = Horizon::of_queue(machine.queue as u64);
@@ -74,13 +99,23 @@ impl<'a> PlannedProgram<'a> {
         Ok(Self { file, survey, seconds, first, horizon, soft_limits })
     }
 
+    /// What the program switches and the machine does not, each with its first line.
+    pub fn unswitched(&self) -> impl Iterator<Item = String> + '_ {
+        let waits = |one: &&SwitchCount| !matches!(one.switch, Switch::Pause | Switch::ToolChange);
+        self.survey.counts.switches.iter().filter(waits).map(
+            |SwitchCount { switch, line, .. }| {
+                format!("line {line}: {switch}: {}", switch.instead())
+            },
+        )
+    }
+
     /// A warning if a host that is loaded may well be late.
     pub fn warning(&self) -> Option<String> {
         let ms = self.horizon.ms();
         self.horizon.is_short().then(|| {
             format!(
-                "the queues of the board hold {ms} ms of motion: if this computer is busy for longer, the axes ramp down. \
-                 queue_depth in the machine file makes them deeper where the part has the memory"
+                "the queues of the board hold {ms} ms of motion: if this computer is busy for longer, \
+                 the axes ramp down. queue_depth in the machine file makes them deeper where the part has the memory"
             )
         })
     }

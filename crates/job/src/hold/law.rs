@@ -1,12 +1,13 @@
 //! The time law of a hold: how fast the motion goes along the planned one.
 //!
 //! ```text
-//! rate   1 ____                          ____ 1
-//!              \\                        /
-//!               \\                      /
-//!        0       `-.______________.-'
-//!          |  stop   |    rest    | resume |
-//!          0         T            0        T
+//! rate   1 ____                         ____
+//!              \                       /
+//!               \                     /
+//!        0       `-._______________.-'
+//!              |   |               |   |
+//!              0   T               0   T
+//!              stop      rest      resumption
 //! ```
 //!
 //! The rate is 1 - S(t/T) or S(t/T) with S(u) = 6 u^5 - 15 u^4 + 10 u^3, the quintic of Flash and

@@ -51,7 +51,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(Latches::of_words(latches, captures))
     }
 
-    /// Arms latches, bit k of the mask latch k: each takes the state of all axes at its next edge.
+    /// Arms latches, bit k of the mask latch k: each takes the state of all axes at its next edge. In
+    /// a build with several latches, hosts that read the LATCH_ registers see latch 0 from now on.
     ///
     /// # Errors
     /// [`HostError::NoLatch`] if the build does not have one of them; then nothing is armed.

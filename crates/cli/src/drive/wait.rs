@@ -1,12 +1,13 @@
-//! A wait of a program, at a place of its own or in a hold, until somebody lets it go on: by Enter in
-//! this terminal, or by `carrystep resume` in another one. The board hears this host all the while, so that its watchdog rests.
+//! A wait of a program, at a place of its own or in a hold, until somebody lets it go on: by Enter
+//! in this terminal, or by `carrystep resume` in another one. The command reads the state of the
+//! board meanwhile, so that it notices a stop and answers other commands.
 
 use super::Line;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::{Control, ProgramControl};
 use carrystep_link::{HostError, Wish};
 use carrystep_runner::Wait;
-use std::io::{self, IsTerminal as _, Write as _};
+use std::io::{self, Write as _};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
@@ -14,19 +15,15 @@ use std::time::Duration;
 const LOOK: Duration = Duration::from_millis(10);
 
 /// The lines that the user enters in this terminal.
-#[derive(Default)]
 pub(super) struct Keys {
     lines: Option<Receiver<()>>,
 }
 
 impl Keys {
-    /// Forgets the lines that were entered before, and listens from now on. Returns whether there
-    /// is a terminal.
-    fn listen(&mut self) -> bool {
-        if !io::stdin().is_terminal() {
-            return false;
-        }
-        let lines = self.lines.get_or_insert_with(|| {
+    /// Listens from now on, if this command runs in the foreground of a terminal: a read in the
+    /// background would suspend it.
+    pub fn listening() -> Self {
+        let lines = is_foreground().then(|| {
             let (sender, lines) = channel();
             // The thread ends with the process: nothing can end a read of a terminal.
             std::thread::spawn(move || {
@@ -39,13 +36,30 @@ impl Keys {
             });
             lines
         });
-        lines.try_iter().for_each(drop);
-        true
+        Self { lines }
+    }
+
+    /// Forgets what was entered before. Returns whether anybody can enter something.
+    fn forget(&self) -> bool {
+        self.lines.iter().flat_map(Receiver::try_iter).for_each(drop);
+        self.lines.is_some()
     }
 
     fn entered(&self) -> bool {
         self.lines.as_ref().is_some_and(|lines| lines.try_recv().is_ok())
     }
+}
+
+/// Whether this process reads from a terminal, in whose foreground it is.
+#[cfg(unix)]
+fn is_foreground() -> bool {
+    rustix::termios::tcgetpgrp(io::stdin()).is_ok_and(|group| group == rustix::process::getpgrp())
+}
+
+/// Whether this process reads from a terminal.
+#[cfg(not(unix))]
+fn is_foreground() -> bool {
+    io::IsTerminal::is_terminal(&io::stdin())
 }
 
 /// How a wait ended.
@@ -55,23 +69,22 @@ pub(super) enum Waited {
     GoesOn,
     /// The program is to end here, at rest.
     Ends,
-    /// The axes are to be stopped.
-    Stopped,
 }
 
-/// Waits until somebody lets the program go on.
+/// Waits until somebody lets the program go on, or ends it.
 pub(super) fn wait(
     board: &mut ConnectedBoard,
     control: &mut Control,
     (keys, line): (&mut Keys, &Line<'_>),
     at: Wait,
 ) -> Result<Waited, ConnectedBoardError> {
-    let enter = if keys.listen() { "Enter, or " } else { "" };
+    let enter = if keys.forget() { "Enter, or " } else { "" };
     line.above(|| {
         // If this write fails, there is no channel left to report it.
         let _ = writeln!(
             io::stderr(),
-            "{at}: the machine rests; {enter}`carrystep resume` in another terminal lets it go on, and Ctrl-C ends it"
+            "{at}: the machine rests; {enter}`carrystep resume` in another terminal lets it go on, \
+             and Ctrl-C ends it"
         );
     });
     control.program().into_iter().for_each(|program| program.rests(at.to_string()));
@@ -82,7 +95,7 @@ pub(super) fn wait(
             return Err(HostError::Fault { cause: answer.cause, culprits: answer.culprits });
         }
         if control.wish(&status) == Wish::Stop {
-            return Ok(Waited::Stopped);
+            return Ok(Waited::Ends);
         }
         let program = control.program();
         let (ends, resumed) =
