@@ -7,10 +7,6 @@ use crate::control::{self, ANSWER, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRe
 use crate::failure::Failure;
 use crate::output;
 
-/// How long the driving command may take to answer. It polls its socket every few milliseconds, but
-/// a busy computer may delay it.
-const ANSWER: Duration = Duration::from_secs(2);
-
 /// Brings the program to rest.
 pub fn hold(arguments: &ProgramPortArguments) -> Result<(), Failure> {
     ask(&arguments.port.name, SocketRequest::Hold, "was asked to bring its program to rest")

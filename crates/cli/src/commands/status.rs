@@ -11,10 +11,6 @@ use carrystep_link::frame;
 use carrystep_link::registers::{DISCARDED, TICKS};
 use std::time::{Duration, Instant};
 
-/// How long the driving command may take to answer. It polls its socket every few milliseconds, but
-/// a busy computer may delay it.
-const ANSWER: Duration = Duration::from_secs(2);
-
 /// Reports the state of a board. If another command drives the board, the state comes from that
 /// command.
 pub fn status(arguments: &StatusArguments) -> Result<(), Failure> {
