@@ -20,6 +20,8 @@ pub struct Rows {
     counts: Counts,
     /// The place where the last move that was read ends.
     end: Point,
+    /// The places to wait at since the last motion, change of outputs or dwell.
+    waits: Vec<SyncPoint>,
     state: State,
     /// Whether no row has been given yet.
     is_empty: bool,
@@ -53,6 +55,7 @@ impl Rows {
             planner,
             counts: Counts::default(),
             end: file.settings().start,
+            waits: Vec::new(),
             state: State::Reads,
             is_empty: true,
             path: file.path().to_owned(),
@@ -88,7 +91,7 @@ impl Rows {
                 continue;
             };
             self.counts.add(&event);
-            for item in self.items(&event).into_iter().flatten() {
+            for item in self.items(&event) {
                 self.planner.push(&item).map_err(|error| self.refused(error))?;
             }
         }
@@ -98,25 +101,33 @@ impl Rows {
         ProgramError::of_planner(&self.path, &self.machine, error)
     }
 
-    /// What the planner is given for an event.
-    fn items(&mut self, event: &Event) -> [Option<Item>; 2] {
-        let rest = |dwell: f64, line: u64| Some(Item::Rest { dwell, line });
-        match *event {
+    /// What the planner is given for an event. A place to wait at is only marked when something
+    /// follows it.
+    fn items(&mut self, event: &Event) -> Vec<Item> {
+        let rest = |dwell: f64, line: u64| Item::Rest { dwell, line };
+        let (first, then) = match *event {
             Event::Move(ref one) => {
                 self.end = one.to;
-                [Some(Item::Move(self.element(one))), None]
+                (None, Some(Item::Move(self.element(one))))
             }
-            Event::Rest { seconds, line } => [rest(seconds, line), None],
+            Event::Rest { seconds, line } if seconds > 0.0 => (None, Some(rest(seconds, line))),
+            Event::Rest { line, .. } => (Some(rest(0.0, line)), None),
             Event::Outputs { change, with_motion, line } => {
                 let mark = Item::Mark(change.word().into());
-                [rest(0.0, line).filter(|_| !with_motion), Some(mark)]
+                (Some(rest(0.0, line)).filter(|_| !with_motion), Some(mark))
             }
             Event::Switch { switch, line } => {
-                let waits = SyncPoint::of(switch, line);
-                [rest(0.0, line), waits.map(|point| Item::Mark(point.mark()))]
+                self.waits.extend(SyncPoint::of(switch, line));
+                (Some(rest(0.0, line)), None)
             }
-            Event::End { .. } => [None, None],
+            Event::End { .. } => (None, None),
+        };
+        let mut items: Vec<Item> = first.into_iter().collect();
+        if let Some(then) = then {
+            items.extend(self.waits.drain(..).map(|point| Item::Mark(point.mark())));
+            items.push(then);
         }
+        items
     }
 
     fn element(&self, one: &ProgrammedMove) -> Element {

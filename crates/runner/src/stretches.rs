@@ -321,7 +321,7 @@ mod tests {
         }
         let sent = 7 * 4000 * i128::from(V / 2);
         assert!(all.hold());
-        assert!(!all.hold(), "there is one already");
+        assert!(all.hold(), "there is one already: nothing is left to do");
         let mut stop = Vec::new();
         while let Some(segment) = all.segment(0) {
             stop.push(segment);
