@@ -3,8 +3,8 @@
 //! goes to the promises of rung 7.
 //!
 //! ```text
-//! an engine's Verilog for 2 us -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
-//! the model -- recordings of moves, starts, stops --------------------------------------------------> is run against it
+//! an engine's Verilog for 2 us -- yosys mutate --> one netlist of all -- Verilator --> a program
+//! the model -- recordings of moves, starts, stops ------------------------------------> runs it
 //! ```
 
 pub mod draw;

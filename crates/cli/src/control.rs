@@ -115,9 +115,10 @@ impl Control {
     }
 
     /// Returns `Wish::Stop` once all axes are to ramp down: after `carrystep stop` through the
-    /// socket, after Ctrl-C while moves run, and after the third one while a program moves. The caller must call it after every exchange with the board (for example
-    /// in the `watch` of [`Host::stream`](carrystep_link::Host::stream)) and before a new move
-    /// begins. It also answers requests for the status.
+    /// socket, after Ctrl-C while moves run, and after the third one while a program moves. The
+    /// caller must call it after every exchange with the board (for example in the `watch` of
+    /// [`Host::stream`](carrystep_link::Host::stream)) and before a new move begins. It also answers
+    /// requests for the status.
     pub fn wish(&mut self, status: &Status) -> Wish {
         let stops = match &self.program {
             Some(program) => program.stops(),

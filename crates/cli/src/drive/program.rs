@@ -57,8 +57,8 @@ impl<'a> PlannedProgram<'a> {
         let name = file.path().display();
         let starved = |Starved { axis, at_ms, late_us, baud }: Starved| {
             Failure::input(format!(
-                "{name}: {baud} baud are too slow for this program: axis {axis} would run dry {at_ms} ms after the start, \
-                 its next segment {late_us} us late; give [machine.link] a higher baud rate"
+                "{name}: {baud} baud are too slow for this program: axis {axis} would run dry \
+                 {at_ms} ms after the start, its next segment {late_us} us late; give [machine.link] a higher baud rate"
             ))
         };
         let mut supply =
@@ -115,7 +115,8 @@ impl<'a> PlannedProgram<'a> {
         self.horizon.is_short().then(|| {
             format!(
                 "the queues of the board hold {ms} ms of motion: if this computer is busy for longer, \
-                 the axes ramp down. queue_depth in the machine file makes them deeper where the part has the memory"
+                 the axes ramp down. queue_depth in the machine file makes them deeper where the part \
+                 has the memory"
             )
         })
     }
