@@ -233,7 +233,7 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
         "docs/mutants.md",
         &[
             format!("{all} of them are drawn, of all modules"),
-            format!("{all_of_full} of them are drawn, of the modules"),
+            format!("{all_of_full} mutants are drawn, of the modules"),
             format!("# all {all} and all {all_of_full}, and a table"),
             format!("Every test run takes the first {few} mutants"),
             format!("the first {few_of_full} of the engine with everything"),
