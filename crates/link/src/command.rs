@@ -128,6 +128,13 @@ pub trait SegmentSource {
     }
     /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
+    /// Whether [`Wish::Cut`](crate::Wish::Cut) may be asked for while this source is streamed.
+    fn may_cut(&self) -> bool {
+        false
+    }
+    /// The gateware has refused the last cut, so all segments of before are still in its queues.
+    /// From now on the source gives what it would have given without the cut.
+    fn cut_refused(&mut self) {}
 }
 
 impl<S: SegmentSource + ?Sized> SegmentSource for &mut S {
@@ -141,6 +148,14 @@ impl<S: SegmentSource + ?Sized> SegmentSource for &mut S {
 
     fn start(&mut self) -> Option<u8> {
         (**self).start()
+    }
+
+    fn may_cut(&self) -> bool {
+        (**self).may_cut()
+    }
+
+    fn cut_refused(&mut self) {
+        (**self).cut_refused();
     }
 }
 

@@ -18,6 +18,8 @@ struct Axis {
     waiting: u32,
     /// Sum of the ticks of all segments that were sent.
     ticks: u64,
+    /// Number of segments that were sent and not cut off.
+    sent: u32,
 }
 
 /// Chooses what to send next. Of the axes with a free queue place, the one whose sent segments last
@@ -35,6 +37,8 @@ pub struct Feeder<S> {
     outputs: OutputChange,
     start: Option<u8>,
     last_start: bool,
+    /// The state before a cut that is not decided yet.
+    uncut: Option<([Axis; MOST_AXES as usize], OutputChange)>,
 }
 
 impl<S: SegmentSource> Feeder<S> {
@@ -42,7 +46,7 @@ impl<S: SegmentSource> Feeder<S> {
     pub fn new(source: S) -> Self {
         let axes = [Axis::default(); MOST_AXES as usize];
         let outputs = OutputChange::NONE;
-        Self { source, wide: false, axes, outputs, start: None, last_start: false }
+        Self { source, wide: false, axes, outputs, start: None, last_start: false, uncut: None }
     }
 
     /// A wide feeder.
@@ -102,6 +106,7 @@ impl<S: SegmentSource> Feeder<S> {
                     axis.waiting += u32::from(!axis.open);
                     axis.open = !segment.last;
                     axis.ticks += u64::from(segment.ticks);
+                    axis.sent += 1;
                 }
             }
             if wide.mask & 1 == 1 {
@@ -154,6 +159,42 @@ impl<S: SegmentSource> Feeder<S> {
     /// Whether a segment of this axis is waiting to be sent.
     pub fn wants(&self, axis: u8) -> bool {
         self.axes.get(usize::from(axis)).is_some_and(|axis| axis.ahead.is_some())
+    }
+
+    /// Number of segments of an axis that were sent and not cut off.
+    pub fn sent(&self, axis: u8) -> u32 {
+        self.axes.get(usize::from(axis)).map_or(0, |axis| axis.sent)
+    }
+
+    /// The source. Only [`SegmentSource::may_cut`] is asked of it.
+    pub const fn source(&self) -> &S {
+        &self.source
+    }
+
+    /// A cut is sent now, behind the first `keep` segments of each axis: the next segments of the
+    /// source follow these, and go on with their move. Until [`Self::decided`] is called, the state
+    /// of before is kept.
+    pub fn cut(&mut self, axes: u8, keep: u32) {
+        self.uncut = Some((self.axes, core::mem::take(&mut self.outputs)));
+        let ticks = self.axes.iter().map(|axis| axis.ticks).max().unwrap_or_default();
+        for (_, axis) in (0..axes).zip(&mut self.axes) {
+            *axis = Axis { ahead: None, dry: false, open: true, waiting: 0, ticks, sent: keep };
+        }
+    }
+
+    /// Whether a cut was sent and is not decided.
+    pub const fn is_cutting(&self) -> bool {
+        self.uncut.is_some()
+    }
+
+    /// The cut was granted, or nothing was dropped: then the state is that of before.
+    pub fn decided(&mut self, granted: bool) {
+        if let Some((axes, outputs)) = self.uncut.take()
+            && !granted
+        {
+            (self.axes, self.outputs) = (axes, outputs);
+            self.source.cut_refused();
+        }
     }
 
     /// Whether a start is waiting to be sent.

@@ -3,6 +3,7 @@
 //! [`Host::open`] first.
 
 mod cancelled;
+mod cutting;
 mod error;
 mod homing;
 mod latches;
@@ -15,7 +16,7 @@ mod time;
 pub use error::{HomingFault, HostError};
 pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 pub use latches::{Latches, MOST_LATCHES};
-pub use motion::{Ended, Progress, Wish};
+pub use motion::{Ended, Progress, Queues, Wish};
 #[cfg(feature = "std")]
 pub use session::random_session;
 pub use snapshot::{AxisState, Snapshot};

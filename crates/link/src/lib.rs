@@ -41,7 +41,7 @@ pub use frame::{Answer, Body, FrameError, Refusal, Request};
 pub use host::random_session;
 pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
 pub use host::{AxisState, Snapshot};
-pub use host::{Clock, Ended, Host, HostError, Moment, Patience, Progress, Status, Wish};
+pub use host::{Clock, Ended, Host, HostError, Moment, Patience, Progress, Queues, Status, Wish};
 pub use line::{Exchanged, Line};
 pub use session::{Session, SessionLost, Timing, WriteError};
 pub use ticks::{ClockComparison, ClockDifference, TickCount};

@@ -81,6 +81,8 @@ pub struct Session<const N: usize> {
     capturing: bool,
     /// Whether a write was refused because the seek of one of its axes has ended.
     seek_ended: bool,
+    /// Whether a cut is unacknowledged.
+    cutting: bool,
     /// Whether the last cut was refused.
     cut_refused: bool,
     /// Whether the last write of SEEK named an axis.
@@ -111,6 +113,7 @@ impl<const N: usize> Session<N> {
             starting: false,
             capturing: false,
             seek_ended: false,
+            cutting: false,
             cut_refused: false,
             seeking: false,
             armed: false,
@@ -152,6 +155,7 @@ impl<const N: usize> Session<N> {
         self.starting = false;
         self.capturing = false;
         self.seek_ended = false;
+        self.cutting = false;
         self.cut_refused = false;
         self.seeking = false;
         self.powering = false;
@@ -209,6 +213,24 @@ impl<const N: usize> Session<N> {
         Ok(())
     }
 
+    /// Whether a CUT is unacknowledged.
+    pub const fn cutting(&self) -> bool {
+        self.cutting
+    }
+
+    /// A CUT that was queued drops so many segments of an axis if it is granted: segments behind it
+    /// have their room. If it is refused, they are removed with it, and the room is read again.
+    pub(crate) fn drops(&mut self, axis: u8, segments: u8) {
+        for (_, room) in of_mask(1 << axis, self.room.iter_mut()) {
+            *room = room.saturating_add(segments);
+        }
+    }
+
+    /// Number of further segments that the queue of an axis can hold, as far as this host knows.
+    pub(crate) fn room(&self, axis: u8) -> u8 {
+        self.room.get(usize::from(axis)).copied().unwrap_or_default()
+    }
+
     /// Whether the gateware has refused the last cut, because a segment that it names neither waits
     /// nor runs any more. The cut and all writes behind it were removed; none was executed.
     pub const fn cut_refused(&self) -> bool {
@@ -258,6 +280,7 @@ impl<const N: usize> Session<N> {
         match body {
             Body::Write { address: START, .. } => self.starting = true,
             Body::Write { address: SNAPSHOT, .. } => self.capturing = true,
+            Body::Cut(_) => self.cutting = true,
             Body::Write { address: SEEK, word } => {
                 (self.seek_ended, self.seeking) = (false, word & SEEK_AXES != 0);
             }
@@ -274,8 +297,8 @@ impl<const N: usize> Session<N> {
 
     /// Removes the writes that were never sent, so that the next one is sent at once.
     pub fn withdraw(&mut self) {
-        let Self { under_way, starting, capturing, .. } = self;
-        self.window.withdraw(|body| settle(body, under_way, starting, capturing));
+        let Self { under_way, starting, capturing, cutting, .. } = self;
+        self.window.withdraw(|body| settle(body, under_way, [starting, capturing, cutting]));
     }
 
     /// Queues as much of a program as there is room for, and reads the state of axes without room.
@@ -363,15 +386,18 @@ impl<const N: usize> Session<N> {
         // Such a write can never be executed.
         let ends = matches!(answer.refusal, Some(Refusal::SeekEnded | Refusal::Cut))
             && self.window.answered(answer).is_some();
-        let Self { under_way, starting, capturing, .. } = self;
-        let mut settled = |body: &Body| settle(body, under_way, starting, capturing);
+        let Self { under_way, starting, capturing, cutting, .. } = self;
+        let mut settled = |body: &Body| settle(body, under_way, [starting, capturing, cutting]);
         if !self.window.answer(answer, now, &mut settled) {
             return;
         }
         if ends {
             self.window.clear(settled);
             self.seek_ended |= answer.refusal == Some(Refusal::SeekEnded);
-            self.cut_refused |= answer.refusal == Some(Refusal::Cut);
+            if answer.refusal == Some(Refusal::Cut) {
+                self.cut_refused = true;
+                self.room = [0; MOST_AXES as usize];
+            }
         }
         // An answer says at least how much room there was, and room only grows until this host
         // sends a segment.
@@ -387,14 +413,16 @@ fn of_mask<T>(mask: u8, items: impl Iterator<Item = T>) -> impl Iterator<Item = 
     (0..MOST_AXES).zip(items).filter(move |(axis, _)| mask >> axis & 1 == 1)
 }
 
-/// Updates the counts when a write is acknowledged or withdrawn.
-fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool, capturing: &mut bool) {
+/// Updates the counts, and whether a START, a SNAPSHOT and a CUT are unacknowledged, when a write
+/// is acknowledged or withdrawn.
+fn settle(body: &Body, under_way: &mut [u8], [start, snapshot, cut]: [&mut bool; 3]) {
     for (_, count) in of_mask(body.axes(), under_way.iter_mut()) {
         *count = count.saturating_sub(1);
     }
     match *body {
-        Body::Write { address: START, .. } => *starting = false,
-        Body::Write { address: SNAPSHOT, .. } => *capturing = false,
+        Body::Write { address: START, .. } => *start = false,
+        Body::Write { address: SNAPSHOT, .. } => *snapshot = false,
+        Body::Cut(_) => *cut = false,
         _ => {}
     }
 }

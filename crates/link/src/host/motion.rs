@@ -1,13 +1,14 @@
 //! Motion: streams a program until the machine has executed it, and jogs one axis.
 
 use super::cancelled::CancelledStart;
+use super::cutting::Cutting;
 use super::snapshot::SnapshotReader;
 use super::{Clock, Host, HostError, Snapshot, Status};
 use crate::command::{ProgramError, Segment};
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
-use crate::registers::{POSITION, SNAPSHOT, TICKS};
+use crate::registers::{MOST_AXES, POSITION, SNAPSHOT, STATUS, TICKS};
 use crate::session::Session;
 
 /// TICKS is read once in so many reads of the state, for the comparison of the clocks.
@@ -22,6 +23,21 @@ pub struct Progress<'a> {
     pub handed_over: bool,
     /// The last snapshot that was taken on [`Wish::Snapshot`].
     pub snapshot: Option<&'a Snapshot>,
+    /// The queues, if the source may cut them.
+    pub queues: Option<Queues>,
+}
+
+/// What is known of the queues of a program that may be cut, in segments of each axis since the
+/// program began. Segments that were cut off do not count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Queues {
+    /// Number of segments that every axis has got.
+    pub sent: u32,
+    /// Number of segments that have begun to run in the axis that is furthest. It may be further by
+    /// now: the state is that of the last answers.
+    pub begun: u32,
+    /// Number of cuts that were granted.
+    pub cuts: u32,
 }
 
 /// Decision of the caller who watches a program.
@@ -33,6 +49,15 @@ pub enum Wish {
     /// Ignored while one is being taken, and by calls other than [`Host::stream`] and
     /// [`Host::jog`].
     Snapshot,
+    /// Cut the queues of all axes behind their first `keep` segments, of which the last one should
+    /// not end before the cut and the next segments have arrived. The source gives what follows
+    /// them from now on; its segments are those of all axes in common, with the same ticks. If the
+    /// gateware refuses the cut, it calls [`SegmentSource::cut_refused`]. Ignored by calls other
+    /// than [`Host::stream`], and if the source did not say that it may cut.
+    Cut {
+        /// Number of segments that stay, from 1 to [`Queues::sent`].
+        keep: u32,
+    },
     /// Stop all axes by their ramps now.
     Stop,
 }
@@ -114,6 +139,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if !ready && !fault {
             return Err(ProgramError::NoPower.into());
         }
+        let mut cutting = if source.may_cut() { Some(self.cutting()?) } else { None };
         let mut feeder = Feeder::wide(source);
         let mut last_status = self.clock.milliseconds();
         let mut looks = 0_u32;
@@ -122,7 +148,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let mut cancelled = CancelledStart::default();
         loop {
             capture.advance(&mut self.session, axes);
-            let handed_over = match self.session.feed(&mut feeder) {
+            let feeds = cutting
+                .as_mut()
+                .is_none_or(|cutting| cutting.advance(&mut self.session, &mut feeder));
+            let fed = if feeds { self.session.feed(&mut feeder) } else { Ok(false) };
+            let handed_over = match fed {
                 Ok(done) => done && !self.session.writing(),
                 Err(error) => {
                     // The queues must not run empty in the middle of a move: ramp all axes down
@@ -162,8 +192,16 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 return Ok(Ended::Done);
             }
             let snapshot = snapshot.as_ref();
-            match watch(&Progress { status: &self.status, handed_over, snapshot }) {
+            let queues = cutting.as_ref().map(|cutting| Queues {
+                sent: cutting.sent(&feeder),
+                begun: cutting.begun(&self.session, &feeder),
+                cuts: cutting.granted(),
+            });
+            match watch(&Progress { status: &self.status, handed_over, snapshot, queues }) {
                 Wish::GoOn => {}
+                Wish::Cut { keep } => {
+                    cutting.iter_mut().for_each(|cutting| cutting.ask(keep));
+                }
                 Wish::Snapshot if matches!(capture, Capture::None) => {
                     let write = Body::Write { address: SNAPSHOT, word: 0 };
                     if self.session.write(write).is_ok() {
@@ -175,7 +213,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                     self.stop_while(|status| {
                         // The caller watches the ramps too. Its decision has no effect here,
                         // because the axes already stop.
-                        let _ = watch(&Progress { status, handed_over, snapshot });
+                        let _ = watch(&Progress { status, handed_over, snapshot, queues });
                     })?;
                     return Ok(Ended::Stopped);
                 }
@@ -197,6 +235,16 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
             }
         }
+    }
+
+    /// The cuts of a program that begins now, at rest.
+    fn cutting(&mut self) -> Result<Cutting, HostError<L::Error>> {
+        let axes = self.axes();
+        let address = |axis: usize| of_axis(STATUS, (axis as u8).min(axes.saturating_sub(1)));
+        let status =
+            self.registers(core::array::from_fn::<u8, { MOST_AXES as usize }, _>(address))?;
+        let status = status.get(..usize::from(axes)).unwrap_or_default();
+        Ok(Cutting::new(status, self.facts.queue_depth))
     }
 
     /// Moves one axis by these segments; the last of them is marked `last`. Otherwise as

@@ -47,8 +47,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 self.powered = self.status.answer.ready;
                 return Ok(Ended::Done);
             }
-            if watch(&Progress { status: &self.status, handed_over: false, snapshot: None })
-                == Wish::Stop
+            if watch(&Progress {
+                status: &self.status,
+                handed_over: false,
+                snapshot: None,
+                queues: None,
+            }) == Wish::Stop
             {
                 return Ok(Ended::Stopped);
             }

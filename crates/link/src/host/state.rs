@@ -34,7 +34,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             "the drivers' power",
             |answer| answer.ready,
             |status| {
-                asked = watch(&Progress { status, handed_over: false, snapshot: None });
+                asked =
+                    watch(&Progress { status, handed_over: false, snapshot: None, queues: None });
                 asked
             },
         )?;

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 /// Probabilities in millionths: `flip`, `drop` and `double` for each byte, the others for each
 /// piece that is sent.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faults {
     pub flip: u32,
     pub drop: u32,
