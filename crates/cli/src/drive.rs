@@ -100,21 +100,26 @@ pub fn drive(
                 }
             }
             let mut source = itinerary.source();
-            let mut next_try = (!ends).then(Instant::now);
+            let mut next_try = Instant::now();
+            let mut cuts = 0;
             let streamed = board.stream(&mut *source, |progress| {
                 line.show(progress.status);
                 ways.see(progress.status);
-                let holds = control.program().is_some_and(|program| program.holds());
-                if holds && next_try.is_some_and(|next| Instant::now() >= next) {
-                    // A later row may begin a hold where the limits forbid one now.
-                    next_try = (!itinerary.hold()).then(|| Instant::now() + TRY_AGAIN);
-                }
+                cuts = progress.queues.map_or(0, |queues| queues.cuts);
                 match control.wish(progress.status) {
                     // The axes rest while the outputs go off.
-                    Wish::Stop if ends => Wish::GoOn,
-                    wish => wish,
+                    Wish::Stop if !ends => return Wish::Stop,
+                    _ => {}
                 }
+                let holds = control.program().is_some_and(|program| program.holds());
+                if ends || !holds || itinerary.is_held() || Instant::now() < next_try {
+                    return Wish::GoOn;
+                }
+                // A later row may begin a hold where the limits forbid one now.
+                next_try = Instant::now() + TRY_AGAIN;
+                itinerary.hold(progress.queues).map_or(Wish::GoOn, |keep| Wish::Cut { keep })
             })?;
+            plan.program.iter_mut().for_each(|program| program.cuts += cuts);
             if streamed == Ended::Stopped {
                 return Ok(Ended::Stopped);
             }

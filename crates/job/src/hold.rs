@@ -39,7 +39,7 @@ const FIRST_TRY: f64 = 0.008;
 /// By how much each try is longer than the one before.
 const LONGER: f64 = 1.2;
 /// How long a hold may wait before it begins, to be at rest sooner, seconds.
-const PROMPT: f64 = 0.03;
+const PROMPT: f64 = 0.016;
 /// The part of [`Hold::least`] at which the search begins: the plan may slow down by itself.
 const SHORTEST_PART: f64 = 0.5;
 /// The planned time of a hold, as a multiple of the time in which an axis reaches its greatest

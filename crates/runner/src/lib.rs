@@ -10,7 +10,8 @@
 
 mod held;
 mod horizon;
+mod reading;
 mod stretches;
 
 pub use horizon::Horizon;
-pub use stretches::{Stretches, Wait};
+pub use stretches::{Stretches, Wait, kept_ticks};

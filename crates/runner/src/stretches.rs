@@ -10,16 +10,20 @@
 //!
 //! A row with a [`SyncPoint`] begins a stretch. The row before it is marked as the last one of its
 //! move in all axes, so that the gateware finds an empty queue there and no underrun. A hold ends a
-//! stretch early (`held.rs`).
+//! stretch early (`held.rs`): behind the rows that were read, or behind earlier ones if the board
+//! can cut the others off.
 
 use crate::held::{Held, Window};
+use crate::reading::Reading;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::Hold;
-use carrystep_link::SegmentSource;
+use carrystep_link::{Queues, SegmentSource};
 use carrystep_plan::exact::travel;
-use carrystep_program::{Row, SyncPoint, outputs, sync_points};
-use std::collections::VecDeque;
+use carrystep_program::{Row, SyncPoint, sync_points};
 use std::fmt;
+
+/// The time that a cut keeps behind the rows that have begun to run, ns.
+const KEPT_NS: u64 = 20_000_000;
 
 /// What a program waits for before a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,137 +45,149 @@ impl fmt::Display for Wait {
 
 /// The rows of a program, stretch by stretch: as a [`SegmentSource`], it gives the segments of the
 /// stretch that was begun last. Memory holds only the rows of which an axis has not taken its
-/// segment yet, and those that a hold looks at.
+/// segment yet, those that may wait in the board's queues, and those that a hold looks at.
 #[derive(Debug)]
 pub struct Stretches<I: Iterator<Item = Row>> {
     rows: I,
     hold: Hold,
-    /// Rows that come before those of `rows`.
-    ahead: VecDeque<Row>,
-    /// The row that was read last, and P of each axis where it begins, 2^-64 step from machine zero.
-    read: Option<(Row, Vec<i128>)>,
-    /// P of each axis where the next row begins.
-    at: Vec<i128>,
-    /// Rows of the present stretch that are still to be read, if a hold has shortened it.
-    left: Option<usize>,
-    /// The line in which a hold brings the motion to rest at the end of this stretch.
-    held: Option<u64>,
+    /// How long the rows last that a cut keeps behind those that have begun, ticks; `None` if the
+    /// board cannot cut its queues.
+    kept: Option<u64>,
+    /// Number of cuts of the stretch that the board has refused.
+    refused: u32,
+    now: Reading,
+    /// The place before a cut that the board has not decided.
+    uncut: Option<Reading>,
     /// Whether nothing of `rows` is wanted any more.
     ended: bool,
-    /// Segments of each axis that were read and not taken.
-    segments: Vec<VecDeque<Segment>>,
-    /// The changes of outputs of the rows of which axis 0 has not taken its segment.
-    outputs: VecDeque<OutputChange>,
-    /// What changes with the segment that axis 0 has just taken.
-    change: OutputChange,
     /// The axes of the start that was not taken.
     start: Option<u8>,
-    /// Whether the last row that was read is the last of its stretch.
-    whole: bool,
 }
 
 impl<I: Iterator<Item = Row>> Stretches<I> {
-    /// The stretches of these rows, which begin at these steps from machine zero.
-    pub fn new(rows: I, start_steps: &[i64], hold: Hold) -> Self {
-        Self {
-            rows,
-            hold,
-            ahead: VecDeque::new(),
-            read: None,
-            at: start_steps.iter().map(|&steps| i128::from(steps) << 64).collect(),
-            left: None,
-            held: None,
-            ended: false,
-            segments: vec![VecDeque::new(); start_steps.len()],
-            outputs: VecDeque::new(),
-            change: OutputChange::NONE,
-            start: None,
-            whole: true,
-        }
+    /// The stretches of these rows, which begin at these steps from machine zero. `kept` says how
+    /// long the rows last that a cut keeps behind those that have begun to run, ticks
+    /// ([`kept_ticks`]); `None` if the board cannot cut its queues.
+    pub fn new(rows: I, start_steps: &[i64], hold: Hold, kept: Option<u64>) -> Self {
+        let now = Reading::new(start_steps);
+        Self { rows, hold, kept, refused: 0, now, uncut: None, ended: false, start: None }
     }
 
     /// Begins the next stretch, and returns what the program waits for before. `None` at the end of
     /// the program. What is left of the stretch before is dropped.
     pub fn begin(&mut self) -> Option<Vec<Wait>> {
-        while !self.whole {
+        while !self.now.whole {
             self.next_row();
         }
-        let waits = match self.held.take() {
+        let waits = match self.now.held.take() {
             Some(line) => vec![Wait::Hold(line)],
             None => sync_points(self.peek()?).map(Wait::SyncPoint).collect(),
         };
         self.peek()?;
-        let axes = self.segments.len();
-        self.segments.iter_mut().for_each(VecDeque::clear);
-        self.outputs.clear();
-        self.change = OutputChange::NONE;
+        let axes = self.now.segments.len();
         self.start = Some(((1_u16 << axes) - 1) as u8);
-        self.read = None;
-        self.left = None;
-        self.whole = false;
+        (self.uncut, self.refused) = (None, 0);
+        self.now.begin();
         Some(waits)
     }
 
+    /// Whether a hold ends the present stretch.
+    pub const fn is_held(&self) -> bool {
+        self.now.left.is_some()
+    }
+
     /// Ends the present stretch on the planned curve, if the limits allow it from one of the next
-    /// rows on. Returns false if they do not: then it may be possible when more rows have been read.
-    /// If the stretch ends by itself with the rows that were read, nothing is left to do.
-    pub fn hold(&mut self) -> bool {
-        if self.whole || self.left.is_some() {
-            return true;
+    /// rows on. If they do not, it may be possible when more rows have been read. Nothing is done
+    /// for a stretch that has been held, or that ends by itself with the rows that were read.
+    pub fn hold(&mut self) {
+        if self.now.whole || self.is_held() {
+            return;
         }
-        let before = self.read.clone();
-        let base = before.as_ref().map_or_else(|| self.at.clone(), |(_, at)| at.clone());
+        let before = self.now.last().cloned();
+        let base = before.as_ref().map_or_else(|| self.now.at().to_vec(), |(_, at)| at.clone());
         let mut rows: Vec<Row> = before.into_iter().map(|(row, _)| row).collect();
         let known = rows.len();
         let within = |rows: &[Row], row: &Row| rows.is_empty() || !waits(row);
         let most = self.hold.window();
         while rows.len() < most && self.peek().is_some_and(|row| within(&rows, row)) {
-            rows.extend(self.ahead.pop_front());
+            rows.extend(self.now.ahead.pop_front());
         }
         let ends = self.peek().is_none_or(waits);
         let window = Window { rows, at: base, first: known, ends };
-        let held = window.held(&self.hold);
-        let is_held = held.is_some();
-        let rows = match held {
+        let rows = match window.held(&self.hold) {
             Some(Held { before, behind, line }) => {
-                (self.left, self.held) = (Some(before.len()), Some(line));
+                (self.now.left, self.now.held) = (Some(before.len()), Some(line));
                 [before, behind].concat()
             }
             None => window.rows.into_iter().skip(known).collect(),
         };
-        rows.into_iter().rev().for_each(|row| self.ahead.push_front(row));
-        is_held
+        rows.into_iter().rev().for_each(|row| self.now.ahead.push_front(row));
+    }
+
+    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
+    /// stretch behind which the board has to cut its queues: the hold follows these. `None` if
+    /// nothing has to be cut; whether there is a hold now, [`Self::is_held`] says.
+    pub fn hold_in(&mut self, queues: Queues) -> Option<u32> {
+        let Some(keep) = self.cut(queues) else {
+            self.hold();
+            return None;
+        };
+        // The rows that the hold looks at have to stay if the cut is refused.
+        let mut ends = self.now.ahead.iter().any(waits);
+        while self.now.ahead.len() <= self.hold.window() && !ends {
+            let Some(row) = self.rows.next().filter(|_| !self.ended) else { break };
+            ends = waits(&row);
+            self.now.ahead.push_back(row);
+        }
+        let before = self.now.clone();
+        if self.now.rewind(keep) {
+            self.hold();
+        }
+        if self.is_held() {
+            self.uncut = Some(before);
+            return Some(keep);
+        }
+        self.now = before;
+        None
+    }
+
+    /// The number of rows of the stretch that a cut keeps; `None` if it would drop none. A host that
+    /// was late for a cut keeps more with the next one.
+    fn cut(&self, queues: Queues) -> Option<u32> {
+        let kept = self.kept?.checked_shl(self.refused)?;
+        let may = !self.is_held() && self.uncut.is_none() && queues.begun > 0;
+        self.now.behind(queues.begun, kept).filter(|&keep| may && keep < queues.sent)
     }
 
     /// Drops what is left of the program, and ends it with this change of outputs, at rest. The
     /// next stretch is that row alone.
     pub fn end_with(&mut self, change: OutputChange, ticks: u32) {
         let segment = Segment { ticks, v: 0, a: 0, j: 0, last: true };
-        let segments = vec![segment; self.segments.len()];
+        let segments = vec![segment; self.now.segments.len()];
         let marks = vec![change.word().into()];
-        let line = self.read.as_ref().map_or(0, |(row, _)| row.line);
-        (self.held, self.left, self.whole, self.ended) = (None, None, true, true);
-        self.ahead.clear();
+        let line = self.now.last().map_or(0, |(row, _)| row.line);
+        (self.now.held, self.now.left, self.now.whole, self.ended) = (None, None, true, true);
+        self.now.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
-        self.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
+        self.now.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
     }
 
     /// The next row, which stays.
     fn peek(&mut self) -> Option<&Row> {
-        if self.ahead.is_empty() && !self.ended {
-            self.ahead.extend(self.rows.next());
+        if self.now.ahead.is_empty() && !self.ended {
+            self.now.ahead.extend(self.rows.next());
         }
-        self.ahead.front()
+        self.now.ahead.front()
     }
 
     /// Reads the next row of the stretch.
     fn next_row(&mut self) {
         self.peek();
-        let Some(row) = self.ahead.pop_front().filter(|_| !self.whole) else {
-            self.whole = true;
+        let Some(row) = self.now.ahead.pop_front().filter(|_| !self.now.whole) else {
+            self.now.whole = true;
             return;
         };
-        self.whole = match &mut self.left {
+        self.now.whole = match &mut self.now.left {
             Some(left) => {
                 *left -= 1;
                 *left == 0
@@ -180,16 +196,15 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         };
         // The last row of a program is marked by the planner. Where the rows break off because the
         // program cannot be read any more, no row is: the queues run dry, and the axes ramp down.
-        let last = self.whole && self.peek().is_some();
-        let before = self.at.clone();
-        self.outputs.push_back(outputs(&row));
-        let places = self.at.iter_mut().zip(&mut self.segments);
-        for ((at, queue), segment) in places.zip(&row.segments) {
-            *at += travel(segment, segment.ticks.into());
-            queue.push_back(Segment { last: last || segment.last, ..*segment });
-        }
-        self.read = Some((row, before));
+        let ends = self.now.whole && self.peek().is_some();
+        self.now.take(row, ends, |segment| travel(segment, segment.ticks.into()));
     }
+}
+
+/// Ticks that the rows last at least which a cut keeps behind those that have begun to run: the hold
+/// has to be planned, and to arrive, meanwhile.
+pub const fn kept_ticks(tick_ns: u64) -> u64 {
+    KEPT_NS.div_ceil(tick_ns)
 }
 
 /// Whether somebody has to let the machine go on before a row.
@@ -200,22 +215,33 @@ fn waits(row: &Row) -> bool {
 impl<I: Iterator<Item = Row>> SegmentSource for Stretches<I> {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         let axis = usize::from(axis);
-        while self.segments.get(axis)?.is_empty() && !self.whole {
+        while self.now.segments.get(axis)?.is_empty() && !self.now.whole {
             self.next_row();
         }
-        let segment = self.segments.get_mut(axis)?.pop_front();
+        let segment = self.now.segments.get_mut(axis)?.pop_front();
         if axis == 0 {
-            self.change = self.outputs.pop_front().unwrap_or(OutputChange::NONE);
+            self.now.change = self.now.outputs.pop_front().unwrap_or(OutputChange::NONE);
         }
         segment
     }
 
     fn outputs(&mut self) -> OutputChange {
-        std::mem::replace(&mut self.change, OutputChange::NONE)
+        std::mem::replace(&mut self.now.change, OutputChange::NONE)
     }
 
     fn start(&mut self) -> Option<u8> {
         self.start.take()
+    }
+
+    fn may_cut(&self) -> bool {
+        self.kept.is_some()
+    }
+
+    fn cut_refused(&mut self) {
+        if let Some(before) = self.uncut.take() {
+            self.now = before;
+            self.refused += 1;
+        }
     }
 }
 
@@ -255,7 +281,7 @@ mod tests {
     fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
         let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
         let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
-        Stretches::new(rows.iter().cloned(), &[0, 0], hold)
+        Stretches::new(rows.iter().cloned(), &[0, 0], hold, Some(20_000))
     }
 
     fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {
@@ -320,8 +346,9 @@ mod tests {
             assert!((0..7).all(|_| all.segment(axis).is_some()));
         }
         let sent = 7 * 4000 * i128::from(V / 2);
-        assert!(all.hold());
-        assert!(all.hold(), "there is one already: nothing is left to do");
+        all.hold();
+        assert!(all.is_held());
+        all.hold();
         let mut stop = Vec::new();
         while let Some(segment) = all.segment(0) {
             stop.push(segment);
@@ -340,6 +367,89 @@ mod tests {
         assert_eq!(behind.last().map(|segment| segment.v), Some(V / 2));
     }
 
+    /// What is left of a stretch.
+    fn rest(all: &mut impl SegmentSource) -> [Vec<Segment>; 2] {
+        [0, 1].map(|axis| std::iter::from_fn(|| all.segment(axis)).collect())
+    }
+
+    #[test]
+    fn hold_in_the_queues_begins_behind_what_is_kept() {
+        let rows: Vec<Row> = (0..500).map(|_| row(4000, V / 2, &[])).collect();
+        let mut all = stretches(&rows);
+        all.begin();
+        for axis in [0, 1] {
+            assert!((0..31).all(|_| all.segment(axis).is_some()));
+        }
+        let queues = Queues { sent: 30, begun: 3, cuts: 0 };
+        assert_eq!(all.hold_in(queues), Some(8));
+        assert!(all.is_held());
+        let [stop, other] = rest(&mut all);
+        assert_eq!(stop.len(), other.len());
+        assert!(stop.last().is_some_and(|segment| segment.last));
+        assert_eq!(all.begin(), Some(vec![Wait::Hold(4)]));
+        let [behind, _] = rest(&mut all);
+        let distance = |taken: &[Segment]| {
+            taken.iter().map(|segment| travel(segment, segment.ticks.into())).sum::<i128>()
+        };
+        let whole = 500 * 4000 * i128::from(V / 2);
+        let kept = 8 * 4000 * i128::from(V / 2);
+        assert_eq!(kept + distance(&stop) + distance(&behind), whole);
+    }
+
+    /// Each refusal doubles what the next cut keeps, until nothing is left to cut off: then the hold
+    /// comes behind the queues.
+    #[test]
+    fn late_host_holds_behind_the_queues() {
+        let rows: Vec<Row> = (0..500).map(|_| row(4000, V / 2, &[])).collect();
+        let mut all = stretches(&rows);
+        all.begin();
+        assert!((0..31).all(|_| all.segment(0).is_some() && all.segment(1).is_some()));
+        let queues = Queues { sent: 31, begun: 4, cuts: 0 };
+        let mut kept = Vec::new();
+        while let Some(keep) = all.hold_in(queues) {
+            kept.push(keep - queues.begun);
+            all.cut_refused();
+        }
+        assert_eq!((kept, all.is_held()), (vec![5, 10, 20], true));
+    }
+
+    #[test]
+    fn refused_cut_leaves_the_rows_as_they_were() {
+        let change = OutputChange::of_word(1 << 4 | 1 << 12);
+        let mut rows: Vec<Row> = (0..60).map(|_| row(4000, V / 2, &[])).collect();
+        rows[40].marks.push(change.word().into());
+        rows.push(row(9, 1, &[PAUSE]));
+        let rows = whole(rows);
+        // Taken before the cut, and behind it before it is refused.
+        for (before, behind) in [(20, 0), (31, 1), (42, 3), (60, 5)] {
+            let mut all = stretches(&rows);
+            all.begin();
+            let mut taken = Vec::new();
+            for _ in 0..before {
+                all.segment(1);
+                taken.push((all.segment(0), all.outputs()));
+            }
+            let queues = Queues { sent: before, begun: before - 19, cuts: 0 };
+            assert_eq!(all.hold_in(queues), Some(before - 14), "{before}");
+            assert!((0..behind).all(|_| (all.segment(0), all.outputs()).0.is_some()));
+            all.cut_refused();
+            assert!(!all.is_held());
+            while let Some(segment) = all.segment(0) {
+                all.segment(1);
+                taken.push((Some(segment), all.outputs()));
+            }
+            let planned = rows[..60].iter().enumerate().map(|(number, row)| {
+                let none = OutputChange::NONE;
+                let last = number == 59;
+                let outputs = if number == 40 { change } else { none };
+                (Some(Segment { last, ..row.segments[0] }), outputs)
+            });
+            assert_eq!(taken, planned.collect::<Vec<_>>(), "{before} {behind}");
+            let pause = SyncPoint { switch: Switch::Pause, line: 9 };
+            assert_eq!(all.begin(), Some(vec![Wait::SyncPoint(pause)]));
+        }
+    }
+
     #[test]
     fn program_ends_with_its_outputs_off() {
         let off = OutputChange { mask: 0xff, levels: 0, duty: Some(0) };
@@ -347,7 +457,8 @@ mod tests {
         let mut all = stretches(&rows);
         all.begin();
         all.segment(0);
-        assert!(all.hold());
+        all.hold();
+        assert!(all.is_held());
         while all.segment(0).is_some() {}
         // The next stretch has begun already where the program waits.
         assert_eq!(all.begin(), Some(vec![Wait::Hold(4)]));

@@ -3,7 +3,7 @@
 use super::outcome::ProgramDriven;
 use crate::failure::Failure;
 use carrystep_files::Machine;
-use carrystep_link::SegmentSource;
+use carrystep_link::{Queues, SegmentSource};
 use carrystep_runner::Wait;
 
 /// The figures of a plan that has been planned to its end.
@@ -28,9 +28,15 @@ pub trait Itinerary {
     /// The segments of the stretch that was begun last.
     fn source(&self) -> Box<dyn SegmentSource + '_>;
 
-    /// Ends the present stretch early, on the path. Returns false if it ends by itself before, or
-    /// cannot be held.
-    fn hold(&self) -> bool {
+    /// Ends the present stretch early, on the path. Returns the number of segments of each axis
+    /// behind which the board is to cut its queues; `None` if the hold comes behind them, or if the
+    /// limits forbid one now.
+    fn hold(&self, _queues: Option<Queues>) -> Option<u32> {
+        None
+    }
+
+    /// Whether a hold ends the present stretch.
+    fn is_held(&self) -> bool {
         false
     }
 

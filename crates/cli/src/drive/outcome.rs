@@ -63,6 +63,8 @@ pub struct ProgramDriven {
     pub horizon_ms: u64,
     /// How often the program has waited for somebody to let it go on: at M0, M1, M6 and in holds.
     pub waits: u64,
+    /// How often a hold has cut the queues of the board.
+    pub cuts: u32,
 }
 
 /// An axis that caused a stop.
@@ -145,11 +147,12 @@ impl fmt::Display for Driven {
 
 impl fmt::Display for ProgramDriven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lines, soft_limits, horizon_ms, waits } = self;
+        let Self { lines, soft_limits, horizon_ms, waits, cuts } = self;
         let bounds = match &soft_limits[..] {
             [] => "no soft limits".to_owned(),
             names => format!("soft limits of {}", names.join(", ")),
         };
-        writeln!(f, "{lines} lines, {waits} waits, {bounds}, horizon {horizon_ms} ms")
+        let cut = if *cuts == 0 { String::new() } else { format!(", queues cut {cuts} times") };
+        writeln!(f, "{lines} lines, {waits} waits{cut}, {bounds}, horizon {horizon_ms} ms")
     }
 }

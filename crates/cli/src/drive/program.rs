@@ -12,11 +12,11 @@ use carrystep_core::OutputChange;
 use carrystep_files::Axis;
 use carrystep_job::Hold;
 use carrystep_link::supply::{Starved, Supply};
-use carrystep_link::{Command, SegmentSource, Wish};
+use carrystep_link::{Command, Queues, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
 use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount};
 use carrystep_report::Detail;
-use carrystep_runner::{Horizon, Stretches, Wait};
+use carrystep_runner::{Horizon, Stretches, Wait, kept_ticks};
 use std::cell::RefCell;
 
 /// The row in which the outputs of a program that is ended go off, seconds.
@@ -133,6 +133,7 @@ impl<'a> PlannedProgram<'a> {
                 soft_limits: self.soft_limits.clone(),
                 horizon_ms: self.horizon.ms(),
                 waits: 0,
+                cuts: 0,
             }),
         }
     }
@@ -150,8 +151,9 @@ impl<'a> PlannedProgram<'a> {
         // Signals hold the program. What stops it ends the reading of these rows.
         let rows = RowsAhead::until(Rows::new(file)?, || false);
         let rows = kept.until_an_error(rows);
+        let uncut = machine.cuts.then(|| kept_ticks(machine.timebase.tick_ns()));
         let hold = Hold::new(machine).map_err(|error| Failure::input(error.to_string()))?;
-        let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold));
+        let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold, uncut));
         drive(&ProgramStretches { file, kept: &kept, stretches })
     }
 }
@@ -172,8 +174,19 @@ impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
         Box::new(Shared(&self.stretches))
     }
 
-    fn hold(&self) -> bool {
-        self.stretches.borrow_mut().hold()
+    fn hold(&self, queues: Option<Queues>) -> Option<u32> {
+        let mut stretches = self.stretches.borrow_mut();
+        match queues {
+            Some(queues) => stretches.hold_in(queues),
+            None => {
+                stretches.hold();
+                None
+            }
+        }
+    }
+
+    fn is_held(&self) -> bool {
+        self.stretches.borrow().is_held()
     }
 
     fn end(&self) {

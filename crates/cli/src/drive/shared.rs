@@ -19,4 +19,12 @@ impl<S: SegmentSource> SegmentSource for Shared<'_, S> {
     fn start(&mut self) -> Option<u8> {
         self.0.borrow_mut().start()
     }
+
+    fn may_cut(&self) -> bool {
+        self.0.borrow().may_cut()
+    }
+
+    fn cut_refused(&mut self) {
+        self.0.borrow_mut().cut_refused();
+    }
 }

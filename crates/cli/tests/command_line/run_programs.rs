@@ -282,24 +282,41 @@ fn spindle(folder: &Folder, board: Board) -> Vec<String> {
 
 #[test]
 fn held_program_rests_on_its_path_and_goes_on() {
+    let told = holds_and_goes_on(&folder(LONG));
+    assert_eq!(told["program"]["cuts"], 0);
+}
+
+/// The queues last 124 ms. A fast board empties them while the hold is planned, except for three
+/// segments: it refuses most cuts.
+#[test]
+fn hold_cuts_deep_queues() {
     let folder = folder(LONG);
-    let board = Board::new(&folder, "--vcd a.vcd --fast");
-    assert_eq!(hold(&folder, &board).status, 2);
-    let mut child = begins(&folder, &board);
-    moving(&folder, &mut child, &board.port);
+    let deep = "[machine]\nqueue_depth = 31\ncuts = true\n";
+    folder.write("machine.toml", MACHINE.replacen("[machine]\n", deep, 1));
+    let told = holds_and_goes_on(&folder);
+    assert_eq!(told["program"]["horizon_ms"], 124);
+    assert!(told["program"]["cuts"].as_u64().is_some_and(|cuts| cuts <= 3));
+}
+
+/// Holds the program three times, and checks that it stays on its path.
+fn holds_and_goes_on(folder: &Folder) -> Value {
+    let board = Board::new(folder, "--vcd a.vcd --fast");
+    assert_eq!(hold(folder, &board).status, 2);
+    let mut child = begins(folder, &board);
+    moving(folder, &mut child, &board.port);
     let mut earlier = Vec::new();
     for _ in 0..3 {
-        let ran = hold(&folder, &board);
+        let ran = hold(folder, &board);
         passed(&ran);
         assert!(ran.stdout.contains("was asked to bring its program to rest"), "{}", ran.stdout);
-        assert!(waits(&folder, &board, &mut child).starts_with("hold in line "));
-        let rest = positions(&status(&folder, &board));
-        assert_eq!(rest, positions(&status(&folder, &board)));
+        assert!(waits(folder, &board, &mut child).starts_with("hold in line "));
+        let rest = positions(&status(folder, &board));
+        assert_eq!(rest, positions(&status(folder, &board)));
         assert_ne!(rest, earlier);
         earlier = rest;
-        assert_eq!(hold(&folder, &board).status, 2, "it rests already");
-        passed(&resume(&folder, &board));
-        while status(&folder, &board)["idle"] == true {}
+        assert_eq!(hold(folder, &board).status, 2, "it rests already");
+        passed(&resume(folder, &board));
+        while status(folder, &board)["idle"] == true {}
     }
     let told = done(child);
     assert_eq!((&told["ended"], &told["program"]["waits"]), (&"done".into(), &3.into()));
@@ -308,6 +325,7 @@ fn held_program_rests_on_its_path_and_goes_on() {
     passed(&ran);
     // Without the holds, the times would be those of the plan.
     assert_eq!(folder.run("check a.vcd job.ngc --machine machine.toml").status, 1);
+    told
 }
 
 #[test]
