@@ -27,6 +27,9 @@ const PINS: [&str; 11] = [
     "engine",
 ];
 
+/// Losses that change every bit of a count of three bits.
+const LOSSES: u32 = 5;
+
 /// All of them. In the shipped engine they take long, because it debounces for long: each is run
 /// only for the modules that it is about.
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
@@ -39,6 +42,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         let mut of_pins = vec![high_at_the_clear(build, axis)];
         of_pins.extend(rests_with_a_step(build, axis));
         of_pins.extend(crowded(build, axis));
+        of_pins.push(loses_steps(build, axis));
         all.extend(of_pins.into_iter().map(|stimulus| stimulus.only_for(&PINS)));
     }
     all
@@ -181,6 +185,31 @@ fn rests_with_a_step(build: &EngineBuild, axis: usize) -> Vec<Stimulus> {
         all.push(run(&format!(", frozen {before} clocks before"), &events));
     }
     all
+}
+
+/// The same again and again, with a freeze that discards the step that is held back each time, until
+/// every bit of the pulser's count of losses has changed.
+fn loses_steps(build: &EngineBuild, axis: usize) -> Stimulus {
+    let to = |v: i64| if axis.is_multiple_of(2) { v } else { -v };
+    let run = |times: u32, events: &Events| {
+        let v = [i64::MAX - 99, 0, 0, 200, -(1 << 60)];
+        let mut program = Program::new();
+        for _ in 0..times {
+            program.extend((1..).zip(v).map(|(place, v)| segment(axis, 1, to(v), place == 5)));
+            program.push(Command::Start { mask: 1 << axis });
+            program.extend([Command::Wait { clocks: 30 * TICK as u32 }, Command::Clear]);
+        }
+        Stimulus::new(build, format!("axis {axis} loses steps"), &program, events)
+    };
+    let losses = |stimulus: &Stimulus| stimulus.recording.kept[axis][3];
+    let mut events = Events::new();
+    for times in 1..=LOSSES {
+        let last = last_rise(&run(times, &events), axis).expect("the axis steps");
+        let frozen = (1..9).map(|before| [&events[..], &[(last - before, Event::Broken)]].concat());
+        let loses = |events: &Events| losses(&run(times, events)) == times;
+        events = frozen.into_iter().find(loses).expect("a freeze that discards the step");
+    }
+    run(LOSSES, &events)
 }
 
 /// The clock in which STEP of an axis becomes high for the last time.
