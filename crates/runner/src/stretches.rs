@@ -149,11 +149,11 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let segment = Segment { ticks, v: 0, a: 0, j: 0, last: true };
         let segments = vec![segment; self.segments.len()];
         let marks = vec![change.word().into()];
-        let line = self.read.as_ref().map_or(0, |(row, _)| row.line);
+        let (line, block) = self.read.as_ref().map_or((0, 0), |(row, _)| (row.line, row.block));
         (self.held, self.left, self.whole, self.ended) = (None, None, true, true);
         self.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
-        self.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
+        self.ahead.push_back(Row { ticks, segments, line, block, feed, off, corner, marks });
     }
 
     /// The next row, which stays.
@@ -238,6 +238,7 @@ mod tests {
             ticks,
             segments: vec![segment(v), segment(2 * v)],
             line: 4,
+            block: 5,
             feed: 1.0,
             off: 0.0,
             corner: 0.0,
