@@ -21,7 +21,7 @@ pub use port::{
     StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
-pub use program::{FromArguments, PlannerArguments, ProgramArguments};
+pub use program::{PlannerArguments, ProgramArguments};
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};

@@ -83,6 +83,13 @@ pub fn drive(
     if plan.program.is_some() {
         control.runs_program();
     }
+    // The block in which the tool is, as long as nothing has stopped it.
+    let block = |status: &Status| {
+        let moved: Vec<i32> = (start.positions.iter().zip(&status.positions))
+            .map(|(before, now)| now.wrapping_sub(*before))
+            .collect();
+        Some(&moved).filter(|_| !status.answer.fault).and_then(|moved| itinerary.block(moved))
+    };
     let mut follow = || -> Result<Ended, ConnectedBoardError> {
         let mut ends = false;
         'stretches: while let Some(waits) = itinerary.begin() {
@@ -104,6 +111,7 @@ pub fn drive(
             let streamed = board.stream(&mut *source, |progress| {
                 line.show(progress.status);
                 ways.see(progress.status);
+                control.reached(block(progress.status));
                 let holds = control.program().is_some_and(|program| program.holds());
                 if holds && next_try.is_some_and(|next| Instant::now() >= next) {
                     // A later row may begin a hold where the limits forbid one now.
@@ -117,6 +125,9 @@ pub fn drive(
             })?;
             if streamed == Ended::Stopped {
                 return Ok(Ended::Stopped);
+            }
+            if !ends {
+                control.reached(block(board.status()));
             }
         }
         if ends {
@@ -161,6 +172,11 @@ pub fn drive(
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     itinerary.whole()?;
+    if ended != How::Done
+        && let Some(program) = &mut plan.program
+    {
+        program.block = control.program().and_then(|program| program.block);
+    }
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],

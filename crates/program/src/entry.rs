@@ -73,12 +73,17 @@ pub struct Entry {
     /// the result is assumed, pauses and tool changes.
     pub passed: Vec<SwitchCount>,
     /// The machine place at which the program is taken to have begun.
-    pub(crate) program_start: Point,
+    program_start: Point,
     /// The axes of which it is not known where they began. They have not moved.
     pub(crate) unknown: [bool; AXES],
 }
 
 impl Entry {
+    /// The machine place at which the program is taken to have begun, mm and degrees.
+    pub const fn program_start(&self) -> Point {
+        self.program_start
+    }
+
     /// Executes the blocks before the one with which a program begins.
     ///
     /// # Errors

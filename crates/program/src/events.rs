@@ -129,7 +129,7 @@ impl Events {
     pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
         file.same()?;
         let Some(entry) = file.entry() else { return Self::begin(file, file.settings().start) };
-        let mut events = Self::begin(file, entry.program_start)?;
+        let mut events = Self::begin(file, entry.program_start())?;
         events.pass_over(entry.block.number)?;
         let machine = file.settings().start;
         let error = |fault| ProgramError::new(file.path(), entry.block.line, fault);

@@ -8,9 +8,11 @@
 //!
 //! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
 
+mod blocks;
 mod held;
 mod horizon;
 mod stretches;
 
+pub use blocks::BlockAt;
 pub use horizon::Horizon;
 pub use stretches::{Stretches, Wait};

@@ -12,6 +12,7 @@
 //! move in all axes, so that the gateware finds an empty queue there and no underrun. A hold ends a
 //! stretch early (`held.rs`).
 
+use crate::blocks::{BlockAt, Recent};
 use crate::held::{Held, Window};
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::Hold;
@@ -68,11 +69,13 @@ pub struct Stretches<I: Iterator<Item = Row>> {
     start: Option<u8>,
     /// Whether the last row that was read is the last of its stretch.
     whole: bool,
+    recent: Recent,
 }
 
 impl<I: Iterator<Item = Row>> Stretches<I> {
-    /// The stretches of these rows, which begin at these steps from machine zero.
-    pub fn new(rows: I, start_steps: &[i64], hold: Hold) -> Self {
+    /// The stretches of these rows, which begin at these steps from machine zero, for a board with
+    /// queues of this length.
+    pub fn new(rows: I, start_steps: &[i64], hold: Hold, queue: usize) -> Self {
         Self {
             rows,
             hold,
@@ -87,7 +90,14 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             change: OutputChange::NONE,
             start: None,
             whole: true,
+            recent: Recent::of_queue(queue),
         }
+    }
+
+    /// In which block of the program the tool is if the axes are at these steps from machine zero.
+    /// Only rows count that the board may not have finished. Of several that fit, it is the first.
+    pub fn block_at(&self, positions: &[i64]) -> Option<BlockAt> {
+        self.recent.nearest(positions)
     }
 
     /// Begins the next stretch, and returns what the program waits for before. `None` at the end of
@@ -183,6 +193,8 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let last = self.whole && self.peek().is_some();
         let before = self.at.clone();
         self.outputs.push_back(outputs(&row));
+        let Row { block, line, .. } = row;
+        self.recent.add(BlockAt { block, line }, &before, &row.segments);
         let places = self.at.iter_mut().zip(&mut self.segments);
         for ((at, queue), segment) in places.zip(&row.segments) {
             *at += travel(segment, segment.ticks.into());
@@ -256,7 +268,7 @@ mod tests {
     fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
         let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
         let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
-        Stretches::new(rows.iter().cloned(), &[0, 0], hold)
+        Stretches::new(rows.iter().cloned(), &[0, 0], hold, 7)
     }
 
     fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {

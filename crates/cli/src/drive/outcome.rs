@@ -3,6 +3,7 @@
 //! The fields are names in the JSON of `carrystep run`; its schema is generated from them.
 
 use crate::control::StoppedBy;
+use crate::found::BlockFound;
 use carrystep_files::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -63,6 +64,10 @@ pub struct ProgramDriven {
     pub horizon_ms: u64,
     /// How often the program has waited for somebody to let it go on: at M0, M1, M6 and in holds.
     pub waits: u64,
+    /// The block in which the tool was when the program ended early; `--from-block` goes on there.
+    pub block: Option<BlockFound>,
+    /// The machine place where the program began, as `--began-at` takes it.
+    pub began_at: String,
 }
 
 /// An axis that caused a stop.
@@ -145,11 +150,17 @@ impl fmt::Display for Driven {
 
 impl fmt::Display for ProgramDriven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lines, soft_limits, horizon_ms, waits } = self;
+        let Self { lines, soft_limits, horizon_ms, waits, block, began_at } = self;
         let bounds = match &soft_limits[..] {
             [] => "no soft limits".to_owned(),
             names => format!("soft limits of {}", names.join(", ")),
         };
-        writeln!(f, "{lines} lines, {waits} waits, {bounds}, horizon {horizon_ms} ms")
+        writeln!(f, "{lines} lines, {waits} waits, {bounds}, horizon {horizon_ms} ms")?;
+        let Some(found) = block else { return Ok(()) };
+        let number = found.number;
+        writeln!(
+            f,
+            "it ended in {found}: --from-block {number} --began-at {began_at} goes on there"
+        )
     }
 }
