@@ -29,8 +29,9 @@ pub const DEFAULT_SPINDLE_DWELL: f64 = 3.0;
 /// The feed of the way down if no F is in force, mm/s: 120 mm/min.
 pub const ENTRY_FEED: f64 = 2.0;
 
-/// By how much the second beginning differs from the first, mm and degrees.
-const ELSEWHERE: Point = [1.37, 2.61, 3.19, 4.43, 5.87, 7.01];
+/// By how much the second beginning differs from the first, mm and degrees. It is far above, so
+/// that the highest z differs if the beginning is one of those that it may be.
+const ELSEWHERE: Point = [1.37, 2.61, 10_003.19, 4.43, 5.87, 7.01];
 
 /// The index of z.
 const Z: usize = LINEAR - 1;
@@ -97,11 +98,13 @@ impl Entry {
         let skipped = events.pass_over(number)?;
         let (place, modes) = (*events.at(), events.steps().modes());
         let mut unknown = from.began_at.map(|known| known.is_none());
+        let mut is_height_known = true;
         if number <= 1 {
             // The program begins where the machine is.
             unknown = [false; AXES];
         } else if unknown.contains(&true) {
-            let differs = differing(file, number, &program_start, &mut events, unknown)?;
+            let (differs, top) = differing(file, number, &program_start, &mut events, unknown)?;
+            is_height_known = top == skipped.highest;
             unknown = std::array::from_fn(|axis| unknown[axis] && differs[axis]);
         }
         let last = events.steps().block();
@@ -118,6 +121,11 @@ impl Entry {
         let error = |fault| ProgramError::new(file.path(), block.line, fault);
         if let Some(axis) = (0..AXES).find(|&axis| unknown[axis] && skipped.moved[axis]) {
             return Err(error(Fault::Began(AXIS_LETTERS[axis])));
+        }
+        // Without a move of z, before and behind, the tool stays at its height.
+        let has_z = file.letters().axis(Z).is_some();
+        if has_z && !is_height_known && skipped.moved[Z] && from.safe_z.is_none() {
+            return Err(error(Fault::Height));
         }
         let height = height(file, from.safe_z, &skipped, &place).map_err(error)?;
         let spins = modes.spindle != Turn::Off;
@@ -154,23 +162,22 @@ fn last_block<R: std::io::Read + std::io::Seek>(
     last
 }
 
-/// The axes of which the place or the offsets depend on where the program began.
+/// The axes of which the place or the offsets depend on where the program began, and the highest z
+/// of the program that begins elsewhere.
 fn differing(
     file: &ProgramFile,
     block: u64,
     start: &Point,
     events: &mut Events,
     unknown: [bool; AXES],
-) -> Result<[bool; AXES], ProgramError> {
+) -> Result<([bool; AXES], Option<f64>), ProgramError> {
     let shift = |axis: usize| if unknown[axis] { ELSEWHERE[axis] } else { 0.0 };
     let mut other = Events::begin(file, std::array::from_fn(|axis| start[axis] + shift(axis)))?;
-    while let Some(step) = other.steps().step_before(block) {
-        if step.is_err() {
-            // From there, the program would be a mistake.
-            return Ok([true; AXES]);
-        }
-    }
-    Ok(events.steps().differs(other.steps()))
+    let Ok(skipped) = other.pass_over(block) else {
+        // From there, the program would be a mistake.
+        return Ok(([true; AXES], None));
+    };
+    Ok((events.steps().differs(other.steps()), skipped.highest))
 }
 
 /// The height of the way of X and Y.

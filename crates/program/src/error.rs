@@ -116,6 +116,11 @@ pub enum Fault {
     /// A program is entered in its middle, and where it goes depends on where it began.
     #[error("the place of {0} depends on where the program began, which is not known")]
     Began(char),
+    /// The program has moved z, and its highest z may be that where it began.
+    #[error(
+        "the highest z before this block depends on where the program began, which is not known"
+    )]
+    Height,
     /// The height of an entry is not above the place.
     #[error("the safe height z = {safe} mm is below {place} mm, where the block begins")]
     SafeHeight {
@@ -181,6 +186,11 @@ impl Fault {
             }
             Self::Began(axis) => {
                 format!("give the machine place where it began, with --began-at {axis}=...")
+            }
+            Self::Height => {
+                "give a safe height with --safe-z, or the machine place where it began, with \
+                             --began-at z=..."
+                    .into()
             }
             Self::SafeHeight { .. } => "give a greater --safe-z, or none".into(),
             Self::NoHeight => "leave out --safe-z".into(),

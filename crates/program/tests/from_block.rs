@@ -261,6 +261,20 @@ fn safe_height_is_above_the_place_and_within_travel() {
     let file = entered(&file, AXES, with(51.0)).unwrap();
     let error = carrystep_program::Rows::new(&file).unwrap().find_map(Result::err).unwrap();
     assert!(error.to_string().contains("z would go to 51 mm, beyond its travel"), "{error}");
+    // The way of G0 X1 was at the height where the program began, whatever that was.
+    let text = "F60\nG0 X1 Y1\nG1 Z-1\nG1 X2\nM2\n";
+    let said = refused("xyz", text, from(4));
+    assert!(
+        said.contains("the highest z before this block") && said.contains("--safe-z"),
+        "{said}"
+    );
+    assert_eq!(
+        entry("xyz", text, AXES, FromBlock { safe_z: Some(3.0), ..from(4) }).unwrap().height,
+        Some(3.0)
+    );
+    let mut known = from(4);
+    known.began_at[2] = Some(2.0);
+    assert_eq!(entry("xyz", text, AXES, known).unwrap().height, Some(2.0));
     // A tool that is higher does not go down first.
     let high = [0.0, 0.0, 20.0, 0.0, 0.0, 0.0];
     assert_eq!(entry("xyz", MILLED, high, from(7)).unwrap().height, Some(20.0));
