@@ -155,6 +155,10 @@ pub struct PlanArguments {
     /// List every segment: ticks, V, A, J.
     #[arg(long)]
     pub segments: bool,
+    /// List the executed blocks of a program instead: number, line, the time at which the motion
+    /// begins, text. With --json-lines, a JSON document in a line for each block.
+    #[arg(long, help_heading = program::HEADING, conflicts_with_all = ["json", "segments", "report", "from_block"])]
+    pub list_blocks: bool,
     /// Write a page: the path by speed and by what binds it, the axes beside their limits, where the
     /// time goes. It needs no network.
     #[arg(long, value_name = "FILE.html")]

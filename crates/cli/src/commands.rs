@@ -9,6 +9,7 @@ pub mod demo;
 pub mod doctor;
 pub mod hold;
 pub mod home;
+pub mod list_blocks;
 pub mod machine;
 pub mod plan;
 pub mod plan_program;

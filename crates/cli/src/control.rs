@@ -34,10 +34,11 @@ use control_socket::ControlSocket;
 #[cfg(not(unix))]
 pub use none::{Caller, ControlSocket, PortClaim, Reply, call, claim, holder};
 
-use crate::found::{FoundBoard, Known};
+use crate::found::{BlockFound, FoundBoard, Known};
 pub use crate::holder::Holder;
 use crate::interrupt;
 use carrystep_link::{BuildFacts, Status, Wish};
+use carrystep_runner::BlockAt;
 pub use program::ProgramControl;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -144,6 +145,7 @@ impl Control {
                     let found = FoundBoard {
                         held_by: Some(holder.clone()),
                         waits: program.as_ref().and_then(|program| program.waits.clone()),
+                        block: program.as_ref().and_then(|program| program.block),
                         ..FoundBoard::new(status, known, None)
                     };
                     serde_json::to_string(&found).unwrap_or_default()
@@ -161,6 +163,16 @@ impl Control {
     /// ends it.
     pub fn runs_program(&mut self) {
         self.program = Some(ProgramControl::default());
+    }
+
+    /// Notes the block in which the tool of a program is, until a stop is requested.
+    pub fn reached(&mut self, block: Option<BlockAt>) {
+        if let Some(program) = &mut self.program
+            && let Some(BlockAt { block: number, line }) = block
+            && self.stopped_by.is_none()
+        {
+            program.block = Some(BlockFound { number, line });
+        }
     }
 
     /// Notes that the user has ended the program that runs.

@@ -6,8 +6,8 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, check_program, doctor, home, machine, plan, plan_program, profile, sweep,
-    table, verilog,
+    boards, build, check, check_program, doctor, home, list_blocks, machine, plan, plan_program,
+    profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job, program_run};
@@ -38,6 +38,7 @@ documents! {
     "home", 1: home::HomeReport;
     "machine-new", 1: machine::WrittenMachine<'_>;
     "plan", 1: plan::Planned<'_>;
+    "plan-block", 1: list_blocks::ListedBlock<'_>;
     "plan-end", 1: plan::PlanEnd;
     "plan-move", 1: plan::PlannedLine<'_>;
     "plan-program", 1: plan_program::PlannedProgram;

@@ -83,6 +83,13 @@ pub fn drive(
     if plan.program.is_some() {
         control.runs_program();
     }
+    // The block in which the tool is, as long as nothing has stopped it.
+    let block = |status: &Status| {
+        let moved: Vec<i32> = (start.positions.iter().zip(&status.positions))
+            .map(|(before, now)| now.wrapping_sub(*before))
+            .collect();
+        Some(&moved).filter(|_| !status.answer.fault).and_then(|moved| itinerary.block(moved))
+    };
     let mut follow = || -> Result<Ended, ConnectedBoardError> {
         let mut ends = false;
         'stretches: while let Some(waits) = itinerary.begin() {
@@ -106,6 +113,7 @@ pub fn drive(
                 line.show(progress.status);
                 ways.see(progress.status);
                 cuts = progress.queues.map_or(0, |queues| queues.cuts);
+                control.reached(block(progress.status));
                 match control.wish(progress.status) {
                     // The axes rest while the outputs go off.
                     Wish::Stop if !ends => return Wish::Stop,
@@ -122,6 +130,9 @@ pub fn drive(
             plan.program.iter_mut().for_each(|program| program.cuts += cuts);
             if streamed == Ended::Stopped {
                 return Ok(Ended::Stopped);
+            }
+            if !ends {
+                control.reached(block(board.status()));
             }
         }
         if ends {
@@ -166,6 +177,11 @@ pub fn drive(
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     itinerary.whole()?;
+    if ended != How::Done
+        && let Some(program) = &mut plan.program
+    {
+        program.block = control.program().and_then(|program| program.block);
+    }
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],

@@ -66,11 +66,29 @@ pub struct FoundBoard {
     /// What the program of that command waits for, at rest; `carrystep resume` lets it go on.
     #[serde(default)]
     pub waits: Option<String>,
+    /// The block in which the program of that command is.
+    #[serde(default)]
+    pub block: Option<BlockFound>,
     /// The command that `carrystep stop` has stopped, if there was one.
     #[serde(default)]
     pub stopped: Option<Holder>,
     /// Each axis.
     pub axes: Vec<AxisFound>,
+}
+
+/// An executed block of a program, as `plan --list-blocks` numbers it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+pub struct BlockFound {
+    /// Its number, from 1, for `--from-block`.
+    pub number: u64,
+    /// Its line.
+    pub line: u64,
+}
+
+impl fmt::Display for BlockFound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "block {} (line {})", self.number, self.line)
+    }
 }
 
 /// One axis.
@@ -146,6 +164,7 @@ impl FoundBoard {
             remedy: cause.map(|cause| cause.remedy().to_owned()),
             held_by: None,
             waits: None,
+            block: None,
             stopped: None,
             axes: axes.iter().enumerate().map(axis).collect(),
         }
@@ -167,6 +186,9 @@ impl fmt::Display for FoundBoard {
         }
         if let Some(waits) = &self.waits {
             writeln!(f, "it waits: {waits}; `carrystep resume` lets it go on")?;
+        }
+        if let Some(block) = &self.block {
+            writeln!(f, "it is in {block}")?;
         }
         let culprits: Vec<&str> =
             self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();

@@ -14,6 +14,7 @@ use std::path::Path;
 pub fn load(path: &Path, arguments: &ProgramArguments) -> Result<ProgramFile, Failure> {
     let (machine_path, machine) = machine(path, &arguments.planner)?;
     let mut settings = settings(&arguments.planner);
+    settings.from = arguments.from.from();
     for &(letter, at) in &arguments.at {
         settings.start[letter] = at;
     }

@@ -1,5 +1,6 @@
 //! The figures of a planned program, as a table and in `--json`.
 
+use crate::entry::EntryFigures;
 use crate::table::columns;
 use carrystep_core::Timebase;
 use carrystep_files::unit::digits;
@@ -51,6 +52,9 @@ pub struct ProgramFigures {
     pub tolerance_max_mm: Option<f64>,
     /// What the program does and the plan does not.
     pub not_done: Vec<NotDone>,
+    /// How the program is entered, with `--from-block`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub entry: Option<EntryFigures>,
     /// Where the time goes.
     pub time_use: TimeUse,
     /// Each axis, in the order of the machine file.
@@ -128,6 +132,7 @@ impl ProgramFigures {
             tolerance_min_mm: counts.tolerance_mm.map(|[least, _]| least),
             tolerance_max_mm: counts.tolerance_mm.map(|[_, most]| most),
             not_done: not_done.collect(),
+            entry: EntryFigures::of(file),
             time_use: time_use.clone(),
             axes: machine
                 .axes
@@ -202,6 +207,7 @@ impl ProgramAxis {
 
 impl fmt::Display for ProgramFigures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.entry.iter().try_for_each(|entry| write!(f, "{entry}"))?;
         let Self { lines, moves, arcs, runs, rows, total_ticks, tick_ns, total_s, .. } = self;
         writeln!(f, "lines {lines}, moves {moves}, arcs {arcs}, runs from rest to rest {runs}")?;
         writeln!(

@@ -23,6 +23,8 @@ pub struct Step {
     pub file: Shared<str>,
     /// Line in the file, from 1.
     pub line: u64,
+    /// Number of the executed block, from 1 ([`ExecutedBlock`](crate::ExecutedBlock)).
+    pub block: u64,
     /// What is to be done.
     pub canon: Canon,
 }
@@ -141,6 +143,14 @@ pub enum Canon {
 }
 
 impl Canon {
+    /// Whether it is a move.
+    pub const fn is_motion(&self) -> bool {
+        matches!(
+            self,
+            Self::Traverse { .. } | Self::Feed { .. } | Self::Arc(_) | Self::Probe { .. }
+        )
+    }
+
     /// Whether the machine comes to rest after it, and what follows can depend on what happens
     /// then: a probe, M66, M6, M0, M1 and M60.
     pub fn is_sync_point(&self) -> bool {

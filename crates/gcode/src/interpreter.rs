@@ -1,6 +1,7 @@
 //! Reads a program line by line and gives its canonical moves one by one.
 
 use crate::assign;
+use crate::block::ExecutedBlock;
 use crate::canon::{Canon, Point, Step};
 use crate::comment;
 use crate::error::{ErrorKind, Fault, GcodeError};
@@ -50,17 +51,21 @@ const LINES_OF_A_CHECK: u32 = 1000;
 pub struct Interpreter<R> {
     files: Files<R>,
     flow: Flow,
-    state: State,
+    pub(crate) state: State,
     /// The file of the present line.
     file: Arc<str>,
     line: Squeezed,
-    block: Block,
+    /// The line as it is in the file.
+    text: Vec<u8>,
+    words: Block,
     /// Steps of the present line that are not given yet.
     outcome: Outcome,
     block_delete: bool,
     /// Lines that may still run again.
     blocks_left: u64,
     blocks: u64,
+    /// Number of the executed block, from 1; 0 before the first one.
+    block: u64,
     /// Lines until the files are checked for changes again.
     until_check: u32,
     /// Bytes of the main program up to the furthest line that was executed outside of subroutines.
@@ -114,11 +119,13 @@ impl<R: Read + Seek> Interpreter<R> {
             flow: Flow::default(),
             state,
             line: Squeezed::default(),
-            block: Block::default(),
+            text: Vec::new(),
+            words: Block::default(),
             outcome: Outcome::default(),
             block_delete: options.block_delete,
             blocks_left: options.blocks,
             blocks: options.blocks,
+            block: 0,
             until_check: LINES_OF_A_CHECK,
             furthest: 0,
             percents: 0,
@@ -163,6 +170,63 @@ impl<R: Read + Seek> Interpreter<R> {
         self.state.memory.set(numbers::INPUT, value.unwrap_or(-1.0));
     }
 
+    /// The next step of the blocks before this one. `None` if the next line would be executed as
+    /// this block: then nothing of it has been done, and any call goes on with it. `None` as well
+    /// after the last step; [`is_over`](Self::is_over) tells which.
+    ///
+    /// # Errors
+    /// As the iterator.
+    pub fn step_before(&mut self, block: u64) -> Option<Result<Step, GcodeError>> {
+        if self.is_over {
+            return None;
+        }
+        let step = self.next_step(block);
+        self.ended(step)
+    }
+
+    /// Executes what is left of the present block, and then the next one, without giving their
+    /// steps. `None` at the end of the program.
+    ///
+    /// # Errors
+    /// As the iterator.
+    pub fn next_block(&mut self) -> Option<Result<ExecutedBlock, GcodeError>> {
+        let wanted = self.block + 1;
+        let mut moves = false;
+        while let Some(step) = self.step_before(wanted + 1) {
+            match step {
+                Ok(step) => moves |= step.block == wanted && step.canon.is_motion(),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        if self.block < wanted {
+            return None;
+        }
+        let text = String::from_utf8_lossy(&self.text);
+        Some(Ok(ExecutedBlock {
+            number: self.block,
+            file: self.file.clone(),
+            line: self.state.line,
+            text: text.trim_end_matches(['\r', '\n']).to_owned(),
+            moves,
+        }))
+    }
+
+    /// Which file and line is next, and how deep the calls are.
+    pub(crate) fn next_line_place(&self) -> (String, u64, usize) {
+        let next = self.files.next();
+        (self.files.name(next.file).to_string(), next.place.lines, self.state.call_level)
+    }
+
+    /// The number of the block that was executed last, from 1; 0 before the first one.
+    pub const fn block(&self) -> u64 {
+        self.block
+    }
+
+    /// Whether the program has ended, or an error was given.
+    pub const fn is_over(&self) -> bool {
+        self.is_over
+    }
+
     /// The next step of the present line.
     fn pending(&mut self) -> Result<Option<Canon>, ErrorKind> {
         if let Some(canon) = self.outcome.before.pop_front() {
@@ -185,15 +249,20 @@ impl<R: Read + Seek> Interpreter<R> {
     }
 
     /// Reads and executes lines until there is a step; `None` after the last one.
-    fn next_step(&mut self) -> Result<Option<Step>, Fault> {
+    /// Stops before block `before`.
+    fn next_step(&mut self, before: u64) -> Result<Option<Step>, Fault> {
         loop {
             if let Some(canon) = self.pending().map_err(whole_line)? {
                 if canon.is_sync_point() {
                     self.until_check = 0;
                 }
-                return Ok(Some(Step { file: self.file.clone(), line: self.state.line, canon }));
+                let (file, line, block) = (self.file.clone(), self.state.line, self.block);
+                return Ok(Some(Step { file, line, block, canon }));
             }
             if self.outcome.ends {
+                return Ok(None);
+            }
+            if self.block.saturating_add(1) >= before {
                 return Ok(None);
             }
             if self.until_check == 0 {
@@ -215,6 +284,9 @@ impl<R: Read + Seek> Interpreter<R> {
             self.state.line = at.place.lines.max(1);
             return self.end_of_file();
         }
+        self.block += 1;
+        self.text.clear();
+        self.text.extend_from_slice(self.files.line());
         if self.flow.is_in_call() || at.place.offset < self.furthest {
             self.count_block().map_err(whole_line)?;
         } else {
@@ -229,11 +301,11 @@ impl<R: Read + Seek> Interpreter<R> {
             }
             LineKind::Deletable | LineKind::Block => {}
         }
-        grammar::read(&self.line, &mut self.block)?;
+        grammar::read(&self.line, &mut self.words)?;
         for text in &self.line.comments {
             self.outcome.before.push_back(comment::canon(text, &self.state));
         }
-        let next = if let Some(control) = &self.block.control {
+        let next = if let Some(control) = &self.words.control {
             self.flow.execute(&mut self.files, at, control, &mut self.state)?
         } else {
             self.execute()?;
@@ -258,11 +330,11 @@ impl<R: Read + Seek> Interpreter<R> {
 
     /// Executes a line without O-word. Assignments take effect after all values are computed.
     fn execute(&mut self) -> Result<(), Fault> {
-        if self.block.words.is_empty() && self.block.assignments.is_empty() {
+        if self.words.words.is_empty() && self.words.assignments.is_empty() {
             return Ok(());
         }
-        let mut request = Request::new(&self.block, &self.state)?;
-        assign::assign(&mut self.state, &self.block.assignments)?;
+        let mut request = Request::new(&self.words, &self.state)?;
+        assign::assign(&mut self.state, &self.words.assignments)?;
         execute::execute(&mut self.state, &mut request, &mut self.outcome)
     }
 }
@@ -271,13 +343,17 @@ impl<R: Read + Seek> Iterator for Interpreter<R> {
     type Item = Result<Step, GcodeError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.is_over {
-            return None;
-        }
-        let mut step = self.next_step();
+        self.step_before(u64::MAX)
+    }
+}
+
+impl<R: Read + Seek> Interpreter<R> {
+    /// What the iterator gives for a step; notes the end of the program.
+    fn ended(&mut self, mut step: Result<Option<Step>, Fault>) -> Option<Result<Step, GcodeError>> {
         self.is_over = match &step {
             Ok(Some(step)) => step.canon == Canon::End,
-            Ok(None) | Err(_) => true,
+            Ok(None) => self.outcome.ends,
+            Err(_) => true,
         };
         // A mistake in a file that has changed is none of the program's.
         if self.is_over

@@ -18,6 +18,7 @@
 //!            offsets  coordinate systems and stored places
 //!            tool_length offsets of tools; tools: the tool table
 //!            switches spindle, coolant, tool; inputs_outputs
+//! blocks   block      lines as they are executed; modes: the modes between two of them
 //! ```
 //!
 //! The memory is constant, whatever the length of the program, but for the O-words. No program
@@ -25,6 +26,7 @@
 //! limited.
 
 mod assign;
+mod block;
 pub mod canon;
 mod circle;
 mod codes;
@@ -41,6 +43,7 @@ mod grammar;
 mod inputs_outputs;
 mod interpreter;
 mod memory;
+mod modes;
 mod motion;
 mod offsets;
 mod options;
@@ -58,10 +61,12 @@ mod tool_length;
 mod tools;
 mod values;
 
+pub use block::ExecutedBlock;
 pub use canon::{
     AXES, AXIS_LETTERS, Arc, Canon, Input, Pace, PathMode, Plane, Point, Step, Turn, Until,
 };
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
+pub use modes::Modes;
 pub use options::{DEFAULT_BLOCKS, Options};
 pub use tools::{Tool, ToolTable};

@@ -72,6 +72,22 @@ impl Memory {
         Ok(())
     }
 
+    /// The numbered parameters that differ by more than this from those of another program.
+    pub(crate) fn differing(&self, other: &Self, by: f64) -> impl Iterator<Item = usize> {
+        let pairs = self.numbered.iter().zip(&other.numbered).enumerate();
+        pairs.filter(move |(_, (a, b))| (*a - *b).abs() > by).map(|(number, _)| number)
+    }
+
+    /// Whether a named parameter differs by more than this from that of another program.
+    pub(crate) fn names_differ(&self, other: &Self, by: f64) -> bool {
+        let differ = |a: f64, b: f64| (a - b).abs() > by;
+        let names = |one: &Names, other: &Names| {
+            one.len() != other.len()
+                || one.iter().any(|(name, &a)| other.get(name).is_none_or(|&b| differ(a, b)))
+        };
+        names(&self.global, &other.global) || names(&self.local, &other.local)
+    }
+
     /// Begins a call: the values are `#1` and so on, and the other ones up to `#30` are 0.
     pub(crate) fn enter(&mut self, values: &[f64]) -> SetAside {
         let mut arguments = [0.0; ARGUMENTS];

@@ -34,6 +34,8 @@ pub struct Element {
     pub tolerance: Tolerance,
     /// The source line, for errors and reports.
     pub line: u64,
+    /// A number of the caller that does not fall from one element to the next, for reports.
+    pub block: u64,
 }
 
 /// A circular arc in a plane of two coordinates. All others change in proportion to the angle, so

@@ -23,6 +23,8 @@ pub(crate) struct Passed {
     pub piece: u64,
     /// Its source line.
     pub line: u64,
+    /// Its number of the caller.
+    pub block: u64,
     /// The lowest feed of the pieces in the interval.
     pub feed: f64,
     /// The greatest measured distance from the path in the interval, as a part of the tolerance.
@@ -36,7 +38,7 @@ impl Passed {
     /// curvature, 1/mm.
     pub fn new<const N: usize>(from: u64, to: u64, off: f64, bend: f64, path: &Path<N>) -> Self {
         let (mut feed, mut length, mut beyond) = (f64::INFINITY, f64::INFINITY, 0.0_f64);
-        let (mut line, mut tolerance) = (0, f64::INFINITY);
+        let (mut line, mut block, mut tolerance) = (0, 0, f64::INFINITY);
         for piece in (from..=to).filter_map(|piece| path.piece(piece)) {
             feed = feed.min(piece.feed);
             length = length.min(piece.length);
@@ -44,11 +46,11 @@ impl Passed {
             let own = piece.bends()[0];
             // A curve that is hardly sharper than its arc follows the arc.
             beyond = beyond.max(if bend > SHARPER * own { bend - own } else { 0.0 });
-            line = piece.line;
+            (line, block) = (piece.line, piece.block);
         }
         // The height of an arc over its chord.
         let corner = beyond * length * length / 8.0 / tolerance;
-        Self { piece: to, line, feed, off, corner }
+        Self { piece: to, line, block, feed, off, corner }
     }
 }
 

@@ -77,6 +77,7 @@ pub(crate) struct Job<const N: usize> {
     /// The piece that the path had reached at the end of the last row.
     reached: u64,
     line: u64,
+    block: u64,
     rows: VecDeque<Row>,
     ended: bool,
 }
@@ -128,6 +129,7 @@ impl<const N: usize> Job<N> {
             marks: VecDeque::new(),
             reached: 0,
             line: 0,
+            block: 0,
             rows: VecDeque::new(),
             ended: false,
         })
@@ -212,6 +214,7 @@ impl<const N: usize> Job<N> {
         let mut piece =
             Piece::new(self.at, to, element.arc, feed, element.tolerance, line, self.linear);
         let moves = |letters: std::ops::Range<usize>| from[letters.clone()] != programmed[letters];
+        piece.block = element.block;
         piece.turns_only = element.arc.is_none() && !moves(0..self.linear) && moves(self.linear..N);
         if piece.length > NO_MOVE {
             let direction = piece.tangent(0.0);
@@ -296,8 +299,8 @@ impl<const N: usize> Job<N> {
     fn rest(&mut self, ticks: u32) {
         if ticks > 0 {
             let segments = [Segment { ticks, v: 0, a: 0, j: 0, last: false }; N];
-            let (piece, line) = (self.reached, self.line);
-            let passed = Passed { piece, line, feed: f64::INFINITY, off: 0.0, corner: 0.0 };
+            let (piece, line, block) = (self.reached, self.line, self.block);
+            let passed = Passed { piece, line, block, feed: f64::INFINITY, off: 0.0, corner: 0.0 };
             self.row(&Span { ticks, segments }, &passed);
         }
     }
@@ -347,10 +350,10 @@ impl<const N: usize> Job<N> {
             self.marks.pop_front();
         }
         self.reached = self.reached.max(passed.piece);
-        self.line = passed.line;
-        let &Passed { line, feed, off, corner, .. } = passed;
+        (self.line, self.block) = (passed.line, passed.block);
+        let &Passed { line, block, feed, off, corner, .. } = passed;
         let (ticks, segments) = (span.ticks, span.segments.to_vec());
-        self.rows.push_back(Row { ticks, segments, line, feed, off, corner, marks });
+        self.rows.push_back(Row { ticks, segments, line, block, feed, off, corner, marks });
     }
 
     /// The motors at a control point, in units of 2^-64 step.

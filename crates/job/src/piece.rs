@@ -26,6 +26,8 @@ pub(crate) struct Piece<const N: usize> {
     pub feed: f64,
     pub tolerance: Tolerance,
     pub line: u64,
+    /// [`Element::block`](crate::Element::block), which the caller sets.
+    pub block: u64,
     /// Only rotary letters move, so that the feed is theirs. The program decides it: where the end
     /// of a run is rounded to whole steps, the other letters move a little, too.
     pub turns_only: bool,
@@ -75,7 +77,7 @@ impl<const N: usize> Piece<N> {
         let length = norm(&along).hypot(turned);
         let along = along.map(|x| if length > 0.0 { x / length } else { 0.0 });
         let turns_only = bend.is_none() && along[..linear].iter().all(|&x| x == 0.0);
-        Self { start, end, length, feed, tolerance, line, turns_only, along, bend }
+        Self { start, end, length, feed, tolerance, line, block: 0, turns_only, along, bend }
     }
 
     /// Part `number` of `count` equal parts of a piece that was made with this arc.
@@ -91,7 +93,7 @@ impl<const N: usize> Piece<N> {
         let arc = arc.map(|arc| Arc { angle: arc.angle / count as f64, ..arc });
         let (start, end) = (place(number), place(number + 1));
         let part = Self::new(start, end, arc, self.feed, self.tolerance, self.line, linear);
-        Self { turns_only: self.turns_only, ..part }
+        Self { turns_only: self.turns_only, block: self.block, ..part }
     }
 
     /// The point at length `s`.

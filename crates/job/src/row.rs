@@ -11,6 +11,8 @@ pub struct Row {
     pub segments: Vec<Segment>,
     /// The source line of the element that the path has reached at the end of the row.
     pub line: u64,
+    /// The number ([`Element::block`](crate::Element::block)) of that element.
+    pub block: u64,
     /// The lowest feed of the elements that the path passes in the row, mm/s (degrees/s where only
     /// rotary letters move); infinite in rapid moves and at rest.
     pub feed: f64,

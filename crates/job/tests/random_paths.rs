@@ -86,6 +86,7 @@ fn items(shapes: &[Shape], feed: f64, tolerance: f64) -> Vec<Item> {
             feed: if number % 7 == 3 { None } else { Some(feed) },
             tolerance: Tolerance { linear: tolerance, rotary: tolerance },
             line,
+            block: 0,
         }));
         (before, at) = (at, to);
     }
@@ -197,6 +198,7 @@ fn bad_elements_are_refused_with_their_line() {
         feed: Some(10.0),
         tolerance: Tolerance { linear: 0.01, rotary: 0.01 },
         line: 7,
+        block: 0,
     };
     let refused = |element: Element| {
         let mut planner = Planner::new(&machine, &Cartesian, 3, &[0.0; 3]).unwrap();

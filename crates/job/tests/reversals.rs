@@ -25,6 +25,7 @@ fn planned(x: f64) -> Vec<Row> {
             feed: Some(50.0),
             tolerance: Tolerance { linear: 0.01, rotary: 0.01 },
             line: 1,
+            block: 0,
         })
     };
     rows(planner, [to(x), to(0.0)]).collect::<Result<_, _>>().unwrap()

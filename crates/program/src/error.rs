@@ -105,6 +105,33 @@ pub enum Fault {
          there is no dwell"
     )]
     Nothing,
+    /// The program has no such executed block.
+    #[error("there is no block {block}: the program has {last}, numbered from 1")]
+    NoBlock {
+        /// The block.
+        block: u64,
+        /// The number of the last one.
+        last: u64,
+    },
+    /// A program is entered in its middle, and where it goes depends on where it began.
+    #[error("the place of {0} depends on where the program began, which is not known")]
+    Began(char),
+    /// The program has moved z, and its highest z may be that where it began.
+    #[error(
+        "the highest z before this block depends on where the program began, which is not known"
+    )]
+    Height,
+    /// The height of an entry is not above the place.
+    #[error("the safe height z = {safe} mm is below {place} mm, where the block begins")]
+    SafeHeight {
+        /// The height, mm.
+        safe: f64,
+        /// z where the block begins, mm.
+        place: f64,
+    },
+    /// A height is given for a machine without z.
+    #[error("a safe height is given, and the machine has no axis z")]
+    NoHeight,
     /// The file is not the one that was read first.
     #[error("the file has changed while it was used")]
     Changed,
@@ -154,6 +181,19 @@ impl Fault {
             Self::Nothing => "check that this is the program that you mean, and that its end is \
                               behind its moves"
                 .into(),
+            Self::NoBlock { .. } => {
+                "`carrystep plan JOB.ngc --list-blocks` shows the blocks".into()
+            }
+            Self::Began(axis) => {
+                format!("give the machine place where it began, with --began-at {axis}=...")
+            }
+            Self::Height => {
+                "give a safe height with --safe-z, or the machine place where it began, with \
+                             --began-at z=..."
+                    .into()
+            }
+            Self::SafeHeight { .. } => "give a greater --safe-z, or none".into(),
+            Self::NoHeight => "leave out --safe-z".into(),
             Self::Changed => "leave the file alone until the command has ended".into(),
         })
     }

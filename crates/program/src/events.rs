@@ -1,6 +1,7 @@
 //! Canonical moves as events for a machine: each move with its start, its feed and the tolerance in
 //! force, rests, and what is switched.
 
+use crate::entry::{Entry, Skipped};
 use crate::error::{Fault, ProgramError};
 use crate::file::ProgramFile;
 use crate::letter::LINEAR;
@@ -9,7 +10,7 @@ use crate::outputs::{Effect, ProgramOutputs};
 use crate::switch::Switch;
 use carrystep_core::OutputChange;
 use carrystep_gcode::{
-    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
+    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step, Turn,
 };
 use carrystep_job::Tolerance;
 use std::collections::VecDeque;
@@ -75,6 +76,8 @@ pub struct ProgrammedMove {
     pub tolerance: Tolerance,
     /// Line of the program.
     pub line: u64,
+    /// The executed block, from 1; of an entry, the one that follows it.
+    pub block: u64,
 }
 
 impl ProgrammedMove {
@@ -109,21 +112,35 @@ pub struct Events {
     outputs: ProgramOutputs,
     tolerance_mm: Option<f64>,
     at: Point,
+    /// The block of the step that is being added.
+    block: u64,
+    /// The axes of which it is not known where the program began. They must not move.
+    unknown: [bool; AXES],
     mode: PathMode,
     /// What the last canonical move gives and has not been taken yet.
     waiting: VecDeque<Event>,
 }
 
 impl Events {
-    /// Reads a program from its beginning.
+    /// Reads a program from its beginning, or from its entry.
     ///
     /// # Errors
     /// The file cannot be read, is not the one that was opened, or its O-words are wrong.
     pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
         file.same()?;
+        let Some(entry) = file.entry() else { return Self::begin(file, file.settings().start) };
+        let mut events = Self::begin(file, entry.program_start())?;
+        events.pass_over(entry.block.number)?;
+        let machine = file.settings().start;
+        let error = |fault| ProgramError::new(file.path(), entry.block.line, fault);
+        events.enter(entry, machine).map_err(error)?;
+        Ok(events)
+    }
+
+    /// Reads a program that begins at this place from its beginning.
+    pub(crate) fn begin(file: &ProgramFile, start: Point) -> Result<Self, ProgramError> {
         let settings = file.settings();
-        let options =
-            Options { start: settings.start, blocks: settings.blocks, ..Options::default() };
+        let options = Options { start, blocks: settings.blocks, ..Options::default() };
         let steps = Interpreter::open(file.path(), &options)
             .map_err(|error| ProgramError::of_gcode(file.path(), error))?;
         Ok(Self {
@@ -134,7 +151,9 @@ impl Events {
             letters: file.letters().clone(),
             outputs: ProgramOutputs::new(file.machine()),
             tolerance_mm: settings.tolerance_mm,
-            at: settings.start,
+            at: start,
+            block: 0,
+            unknown: [false; AXES],
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
             waiting: VecDeque::new(),
         })
@@ -163,7 +182,73 @@ impl Events {
         }
     }
 
-    fn add(&mut self, Step { line, canon, .. }: Step) -> Result<(), Fault> {
+    /// Executes the blocks before this one without their motion.
+    pub(crate) fn pass_over(&mut self, block: u64) -> Result<Skipped, ProgramError> {
+        let mut skipped = Skipped::default();
+        while let Some(step) = self.steps.step_before(block) {
+            let step = step.map_err(|error| ProgramError::of_gcode(&self.path, error))?;
+            let line = step.line;
+            self.one_file &= *step.file == *self.name;
+            skipped.step(&step.canon, &self.outputs);
+            self.add(step).map_err(|fault| ProgramError::new(&self.path, line, fault))?;
+            self.waiting.drain(..).for_each(|event| skipped.event(&event));
+        }
+        Ok(skipped)
+    }
+
+    /// The interpreter.
+    pub(crate) const fn steps(&mut self) -> &mut Interpreter<File> {
+        &mut self.steps
+    }
+
+    /// The place up to which the events have been read.
+    pub(crate) const fn at(&self) -> &Point {
+        &self.at
+    }
+
+    /// Adds the way from where the machine is to the place where the block begins, with what is
+    /// switched on it.
+    fn enter(&mut self, entry: &Entry, machine: Point) -> Result<(), Fault> {
+        let line = entry.block.line;
+        let rest = |seconds| Event::Rest { seconds, line };
+        let place = std::mem::replace(&mut self.at, machine);
+        let mode = std::mem::replace(&mut self.mode, PathMode::ExactStop);
+        self.block = entry.block.number;
+        let height = |place: Point| match entry.height {
+            Some(height) => [place[0], place[1], height, place[3], place[4], place[5]],
+            None => place,
+        };
+        for to in [height(machine), height(place)] {
+            if to != self.at {
+                self.go(line, to, None, None)?;
+            }
+        }
+        let modes = &entry.modes;
+        if modes.spindle != Turn::Off {
+            let effect = self.outputs.spindle(modes.spindle, modes.rpm)?;
+            self.change(effect, false, Switch::Spindle, line);
+        }
+        if modes.mist || modes.flood {
+            let effect = self.outputs.coolant(modes.mist, modes.flood);
+            self.change(effect, false, Switch::Coolant, line);
+        }
+        if entry.dwell > 0.0 {
+            self.waiting.push_back(rest(entry.dwell));
+        }
+        if place != self.at {
+            self.go(line, place, None, Some(Pace::PerSecond(entry.feed)))?;
+        }
+        if !entry.outputs.is_none() {
+            let (change, with_motion) = (entry.outputs, false);
+            self.waiting.push_back(Event::Outputs { change, with_motion, line });
+        }
+        self.waiting.push_back(rest(0.0));
+        (self.mode, self.unknown) = (mode, entry.unknown);
+        Ok(())
+    }
+
+    fn add(&mut self, Step { line, block, canon, .. }: Step) -> Result<(), Fault> {
+        self.block = block;
         let rest = Event::Rest { seconds: 0.0, line };
         match canon {
             Canon::Traverse { to } => self.go(line, to, None, None)?,
@@ -239,10 +324,14 @@ impl Events {
             if moves && self.letters.axis(letter).is_none() {
                 return Err(Fault::NoAxis(AXIS_LETTERS[letter]));
             }
+            if moves && self.unknown[letter] {
+                return Err(Fault::Began(AXIS_LETTERS[letter]));
+            }
         }
         let from = std::mem::replace(&mut self.at, to);
         let tolerance = self.tolerance();
-        let mut one = ProgrammedMove { from, to, arc, feed: None, tolerance, line };
+        let block = self.block;
+        let mut one = ProgrammedMove { from, to, arc, feed: None, tolerance, line, block };
         one.feed = pace.map(|pace| match pace {
             Pace::PerSecond(speed) => speed,
             Pace::Seconds(seconds) => one.length() / seconds,

@@ -1,5 +1,6 @@
 //! A program, its machine, and how it is to be run.
 
+use crate::entry::{Entry, FromBlock};
 use crate::error::{Fault, ProgramError};
 use crate::letter::unit;
 use crate::letters::Letters;
@@ -22,18 +23,21 @@ pub fn is_program(path: &Path) -> bool {
 /// How a program is to be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Machine place at the beginning: x, y, z in mm, a, b, c in degrees.
+    /// Machine place at the beginning: x, y, z in mm, a, b, c in degrees. With `from`, the entry
+    /// begins there.
     pub start: Point,
     /// Tolerance in mm instead of G64's; greater than 0.
     pub tolerance_mm: Option<f64>,
     /// Lines that loops and subroutines may run again.
     pub blocks: u64,
+    /// The block with which the program begins, instead of its first one.
+    pub from: Option<FromBlock>,
 }
 
 impl Default for Settings {
-    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`].
+    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`], the whole program.
     fn default() -> Self {
-        Self { start: Point::default(), tolerance_mm: None, blocks: DEFAULT_BLOCKS }
+        Self { start: Point::default(), tolerance_mm: None, blocks: DEFAULT_BLOCKS, from: None }
     }
 }
 
@@ -48,6 +52,7 @@ pub struct ProgramFile {
     letters: Letters,
     settings: Settings,
     signs: Signs,
+    entry: Option<Entry>,
 }
 
 impl ProgramFile {
@@ -56,7 +61,7 @@ impl ProgramFile {
     ///
     /// # Errors
     /// The file cannot be read, the machine cannot run jobs, its line is too slow for them, or it
-    /// cannot start at that place.
+    /// cannot start at that place, or the program cannot be entered at the block.
     pub fn open(
         path: &Path,
         machine: Machine,
@@ -71,8 +76,12 @@ impl ProgramFile {
         carrystep_job::check_line(&machine)
             .map_err(|error| ProgramError::new(machine_path, 0, Fault::Plan(error)))?;
         let signs = (there.len(), there.modified().ok());
-        let this = Self { path: path.to_owned(), machine, letters, settings, signs };
+        let path = path.to_owned();
+        let mut this = Self { path, machine, letters, settings, signs, entry: None };
         this.check_start()?;
+        if let Some(from) = &this.settings.from {
+            this.entry = Some(Entry::find(&this, from)?);
+        }
         Ok(this)
     }
 
@@ -123,6 +132,11 @@ impl ProgramFile {
     /// How the program is to be run.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// How the program is entered, if it does not begin with its first block.
+    pub const fn entry(&self) -> Option<&Entry> {
+        self.entry.as_ref()
     }
 
     /// The steps of each axis at a place, rounded half away from zero in exact decimals.

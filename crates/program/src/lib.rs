@@ -10,10 +10,15 @@
 //!                                    '-> marks  the legs between which outputs change, for it
 //! ```
 //!
+//! An [`Entry`] takes the place of the blocks before the one with which a program begins; [`Blocks`]
+//! lists them.
+//!
 //! Legs and marks come from the canonical moves and not from the planner, so that the checker
 //! judges the pins by the program alone.
 
+mod blocks;
 mod counts;
+mod entry;
 mod error;
 mod events;
 mod file;
@@ -27,9 +32,12 @@ mod survey;
 mod switch;
 mod sync;
 
+pub use blocks::{Blocks, TimedBlock};
 pub use carrystep_gcode::AXIS_LETTERS;
+pub use carrystep_gcode::{Modes, PathMode, Plane, Turn};
 pub use carrystep_job::Row;
 pub use counts::{Counts, SwitchCount};
+pub use entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 pub use error::{Fault, ProgramError};
 pub use events::{DEFAULT_TOLERANCE, Event, Events, ProgrammedMove};
 pub use file::{ProgramFile, Settings, is_program};

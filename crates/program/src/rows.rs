@@ -137,7 +137,14 @@ impl Rows {
             Some(Arc { plane, centre: arc.centre, angle: arc.sweep })
         });
         let to = self.letters.coordinates(&one.to);
-        Element { to, arc, feed: one.feed, tolerance: one.tolerance, line: one.line }
+        Element {
+            to,
+            arc,
+            feed: one.feed,
+            tolerance: one.tolerance,
+            line: one.line,
+            block: one.block,
+        }
     }
 }
 

@@ -87,6 +87,7 @@ mod tests {
             ticks: 1,
             segments: Vec::new(),
             line: 0,
+            block: 0,
             feed: 0.0,
             off: 0.0,
             corner: 0.0,

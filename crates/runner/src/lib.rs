@@ -8,10 +8,12 @@
 //!
 //! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
 
+mod blocks;
 mod held;
 mod horizon;
 mod reading;
 mod stretches;
 
+pub use blocks::BlockAt;
 pub use horizon::Horizon;
 pub use stretches::{Stretches, Wait, kept_ticks};

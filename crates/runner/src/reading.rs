@@ -78,6 +78,11 @@ impl Reading {
         self.read.back()
     }
 
+    /// The rows that were read last, at most so many, with P of each axis where each begins.
+    pub fn recent(&self, most: usize) -> impl Iterator<Item = &(Row, Vec<i128>)> {
+        self.read.iter().skip(self.read.len().saturating_sub(most))
+    }
+
     /// P of each axis where the next row begins.
     pub fn at(&self) -> &[i128] {
         &self.at

@@ -13,6 +13,7 @@
 //! stretch early (`held.rs`): behind the rows that were read, or behind earlier ones if the board
 //! can cut the others off.
 
+use crate::blocks::{BlockAt, nearest};
 use crate::held::{Held, Window};
 use crate::reading::Reading;
 use carrystep_core::{OutputChange, Segment};
@@ -24,6 +25,9 @@ use std::fmt;
 
 /// The time that a cut keeps behind the rows that have begun to run, ns.
 const KEPT_NS: u64 = 20_000_000;
+
+/// Rows that are read and not in a queue: the one that runs, and those on the line.
+const ON_THE_WAY: usize = 4;
 
 /// What a program waits for before a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +54,8 @@ impl fmt::Display for Wait {
 pub struct Stretches<I: Iterator<Item = Row>> {
     rows: I,
     hold: Hold,
+    /// Number of segments that the queue of an axis holds.
+    queue: usize,
     /// How long the rows last that a cut keeps behind those that have begun, ticks; `None` if the
     /// board cannot cut its queues.
     kept: Option<u64>,
@@ -65,12 +71,24 @@ pub struct Stretches<I: Iterator<Item = Row>> {
 }
 
 impl<I: Iterator<Item = Row>> Stretches<I> {
-    /// The stretches of these rows, which begin at these steps from machine zero. `kept` says how
-    /// long the rows last that a cut keeps behind those that have begun to run, ticks
-    /// ([`kept_ticks`]); `None` if the board cannot cut its queues.
-    pub fn new(rows: I, start_steps: &[i64], hold: Hold, kept: Option<u64>) -> Self {
-        let now = Reading::new(start_steps);
-        Self { rows, hold, kept, refused: 0, now, uncut: None, ended: false, start: None }
+    /// The stretches of these rows, which begin at these steps from machine zero, for a board with
+    /// queues of so many segments.
+    pub fn new(rows: I, start_steps: &[i64], hold: Hold, queue: usize) -> Self {
+        let (kept, now) = (None, Reading::new(start_steps));
+        Self { rows, hold, queue, kept, refused: 0, now, uncut: None, ended: false, start: None }
+    }
+
+    /// The same for a board that can cut its queues: each cut keeps the rows that last for so many
+    /// ticks behind those that have begun to run ([`kept_ticks`]).
+    #[must_use]
+    pub fn with_cuts(self, kept: u64) -> Self {
+        Self { kept: Some(kept), ..self }
+    }
+
+    /// In which block of the program the tool is if the axes are at these steps from machine zero.
+    /// Only rows count that the board may not have finished. Of several that fit, it is the first.
+    pub fn block_at(&self, positions: &[i64]) -> Option<BlockAt> {
+        nearest(self.now.recent(self.queue + ON_THE_WAY), positions)
     }
 
     /// Begins the next stretch, and returns what the program waits for before. `None` at the end of
@@ -165,11 +183,11 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let segment = Segment { ticks, v: 0, a: 0, j: 0, last: true };
         let segments = vec![segment; self.now.segments.len()];
         let marks = vec![change.word().into()];
-        let line = self.now.last().map_or(0, |(row, _)| row.line);
+        let (line, block) = self.now.last().map_or((0, 0), |(row, _)| (row.line, row.block));
         (self.now.held, self.now.left, self.now.whole, self.ended) = (None, None, true, true);
         self.now.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
-        self.now.ahead.push_back(Row { ticks, segments, line, feed, off, corner, marks });
+        self.now.ahead.push_back(Row { ticks, segments, line, block, feed, off, corner, marks });
     }
 
     /// The next row, which stays.
@@ -264,6 +282,7 @@ mod tests {
             ticks,
             segments: vec![segment(v), segment(2 * v)],
             line: 4,
+            block: 5,
             feed: 1.0,
             off: 0.0,
             corner: 0.0,
@@ -281,7 +300,7 @@ mod tests {
     fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
         let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
         let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
-        Stretches::new(rows.iter().cloned(), &[0, 0], hold, Some(20_000))
+        Stretches::new(rows.iter().cloned(), &[0, 0], hold, 31).with_cuts(20_000)
     }
 
     fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {

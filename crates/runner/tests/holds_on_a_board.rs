@@ -87,7 +87,8 @@ fn run(path: &Path, request: Option<Request>) -> Run {
     let file = ProgramFile::open(path, machine.clone(), &text.path, Settings::default()).unwrap();
     let rows = Rows::new(&file).unwrap().map(Result::unwrap);
     let (hold, kept) = (Hold::new(&machine).unwrap(), kept_ticks(machine.timebase.tick_ns()));
-    let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold, Some(kept)));
+    let stretches = Stretches::new(rows, &file.start_steps(), hold, machine.queue).with_cuts(kept);
+    let stretches = RefCell::new(stretches);
     let end = End::of(ModelBoard::new(&engine, uart), uart, Faults::default(), 1);
     let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
     host.open(SESSION).unwrap();

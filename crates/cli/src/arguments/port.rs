@@ -1,7 +1,7 @@
 //! The arguments of the commands that talk to a board. The docstrings of the fields are the
 //! command's help.
 
-use super::program::{HEADING, PlannerArguments};
+use super::program::{FromArguments, HEADING, PlannerArguments};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -36,6 +36,11 @@ pub struct RunArguments {
     pub port: PortArguments,
     #[command(flatten)]
     pub planner: PlannerArguments,
+    #[command(flatten)]
+    pub from: FromArguments,
+    /// Do not ask before a program begins with --from-block.
+    #[arg(long, help_heading = HEADING, requires = "from_block")]
+    pub yes: bool,
     /// Take the place where the machine is for its zero, although it has limit switches and is not
     /// homed, and ignore `travel`.
     #[arg(long, help_heading = HEADING)]

@@ -1,7 +1,7 @@
 //! The options of programs in G-code, which `plan`, `simulate`, `check` and `run` share.
 
 use crate::failure::Failure;
-use carrystep_program::AXIS_LETTERS;
+use carrystep_program::{AXIS_LETTERS, FromBlock};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,12 +23,34 @@ pub struct PlannerArguments {
     pub blocks: Option<u64>,
 }
 
+/// The options of a program that does not begin with its first block.
+#[derive(Debug, Args)]
+pub struct FromArguments {
+    /// Begin with this executed block, as `plan --list-blocks` numbers them. The blocks before it
+    /// are executed without motion; Z goes up, X and Y to the place, Z down.
+    #[arg(long, help_heading = HEADING, value_name = "BLOCK", value_parser = clap::value_parser!(u64).range(1..))]
+    pub from_block: Option<u64>,
+    /// The machine place where the program began, as far as the place of the block depends on it
+    /// (G91, G92), mm or degrees.
+    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place, requires = "from_block", allow_hyphen_values = true)]
+    pub began_at: Vec<(usize, f64)>,
+    /// The machine height of the way of X and Y to the block, mm. Default: the highest so far.
+    #[arg(long, help_heading = HEADING, value_name = "MM", value_parser = height, requires = "from_block", allow_negative_numbers = true)]
+    pub safe_z: Option<f64>,
+    /// How long the spindle turns before Z goes down, s. Default: the G4 behind its M3, otherwise 3.
+    #[arg(long, help_heading = HEADING, value_name = "S", value_parser = dwell, requires = "from_block")]
+    pub spindle_dwell: Option<f64>,
+}
+
 /// The options of programs in G-code that run on no board.
 #[derive(Debug, Args)]
 pub struct ProgramArguments {
     #[command(flatten)]
     pub planner: PlannerArguments,
+    #[command(flatten)]
+    pub from: FromArguments,
     /// The machine place where the program begins, mm or degrees, for example x=10,z=-2. Default: 0.
+    /// With --from-block, the machine goes from there to the place of the block.
     #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
     pub at: Vec<(usize, f64)>,
 }
@@ -53,6 +75,30 @@ fn place(text: &str) -> Result<(usize, f64), String> {
     read.ok_or_else(|| "expected a letter of x, y, z, a, b, c and a place: x=12.5".to_owned())
 }
 
+/// Reads a machine height, mm.
+fn height(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| value.abs() <= 1e9);
+    value.ok_or_else(|| "expected a height in mm".to_owned())
+}
+
+/// Reads a dwell, s.
+fn dwell(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=3600.0).contains(value));
+    value.ok_or_else(|| "expected a time from 0 to 3600 s".to_owned())
+}
+
+impl FromArguments {
+    /// The block with which the program begins, if one is given.
+    pub fn from(&self) -> Option<FromBlock> {
+        let mut began_at = [None; AXIS_LETTERS.len()];
+        for &(letter, at) in &self.began_at {
+            began_at[letter] = Some(at);
+        }
+        let Self { safe_z, spindle_dwell, .. } = *self;
+        self.from_block.map(|block| FromBlock { block, began_at, safe_z, spindle_dwell })
+    }
+}
+
 impl PlannerArguments {
     /// Refuses these options, and other options of programs, for a move file.
     pub fn refuse_for_moves(&self, others: &[(&str, bool)]) -> Result<(), Failure> {
@@ -73,6 +119,9 @@ impl PlannerArguments {
 impl ProgramArguments {
     /// Refuses options of programs for a move file.
     pub fn refuse_for_moves(&self) -> Result<(), Failure> {
-        self.planner.refuse_for_moves(&[("--at", !self.at.is_empty())])
+        self.planner.refuse_for_moves(&[
+            ("--at", !self.at.is_empty()),
+            ("--from-block", self.from.from_block.is_some()),
+        ])
     }
 }

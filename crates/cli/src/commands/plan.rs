@@ -77,6 +77,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return plan_program::run(arguments);
     }
     arguments.program.refuse_for_moves()?;
+    if arguments.list_blocks {
+        let message = "--list-blocks is an option of G-code programs";
+        return Err(Failure::input(message));
+    }
     let source = job::load(&arguments.file, arguments.fit_ns)?;
     let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     if arguments.json_lines {

@@ -2,6 +2,7 @@
 //! segments.
 
 use crate::arguments::PlanArguments;
+use crate::commands::list_blocks;
 use crate::document::Named;
 use crate::failure::Failure;
 use crate::output::OutputFile;
@@ -61,6 +62,9 @@ fn changed(row: &Row) -> Option<ChangedOutputs> {
 /// Plans a program and shows the plan.
 pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
     program::refuse(&[("--fit-ns", arguments.fit_ns.is_some())])?;
+    if arguments.list_blocks {
+        return list_blocks::run(arguments);
+    }
     let file = program::load(&arguments.file, &arguments.program)?;
     let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     let (mut text, mut number) = (Spool::new(), 0);

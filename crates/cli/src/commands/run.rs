@@ -17,7 +17,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if is_program(&arguments.file) {
         return told(&run_program::run(arguments)?, arguments.json);
     }
-    arguments.planner.refuse_for_moves(&[("--unhomed", arguments.unhomed)])?;
+    arguments.planner.refuse_for_moves(&[
+        ("--unhomed", arguments.unhomed),
+        ("--from-block", arguments.from.from_block.is_some()),
+    ])?;
     let source = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
     told(&moved(source, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)

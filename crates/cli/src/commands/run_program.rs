@@ -2,7 +2,9 @@
 //! its end, then stream it while it is planned again.
 
 use crate::arguments::RunArguments;
+use crate::confirm::confirm;
 use crate::drive::{Driven, Place, PlannedProgram, drive};
+use crate::entry::EntryFigures;
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use crate::{connection, program};
@@ -27,12 +29,16 @@ pub fn run(arguments: &RunArguments) -> Result<Driven, Failure> {
         return Err(Failure::input(message));
     }
     let place = Place::find(&machine, &letters, &memory, &status.positions, arguments.unhomed)?;
-    let settings = Settings { start: place.start, ..program::settings(planner) };
+    let from = arguments.from.from();
+    let settings = Settings { start: place.start, from, ..program::settings(planner) };
     let file = ProgramFile::open(path, place.bounded(&machine), machine_path, settings)?;
     let planned = PlannedProgram::new(&file, &place, || connection.control.wish(&status))?;
     for warning in planned.unswitched().chain(planned.warning()) {
         // If this write fails, there is no channel left to report it.
         let _ = writeln!(io::stderr(), "warning: {warning}");
+    }
+    if let Some(entry) = EntryFigures::of(&file) {
+        confirm(&entry, arguments.yes, || connection.control.wish(&status))?;
     }
     planned.along(|itinerary| {
         drive(connection, memory, planned.plan(), itinerary, arguments.into_limit)

@@ -1,5 +1,6 @@
 //! What the user wants of a program that a command runs: to hold it, to let it go on, to end it.
 
+use crate::found::BlockFound;
 use crate::interrupt;
 
 /// Signals that ramp the axes down while a program moves.
@@ -12,6 +13,8 @@ const END: u32 = 2;
 pub struct ProgramControl {
     /// What the program waits for.
     pub(super) waits: Option<String>,
+    /// The block in which the tool was last seen before anything stopped it.
+    pub block: Option<BlockFound>,
     holds: bool,
     resumed: bool,
     /// The number of signals before the present motion.
@@ -28,7 +31,7 @@ impl ProgramControl {
 
     /// The program moves on.
     pub fn moves(&mut self) {
-        *self = Self { before: interrupt::count(), ..Self::default() };
+        *self = Self { before: interrupt::count(), block: self.block, ..Self::default() };
     }
 
     /// Notes a request for a hold; false if the program rests.

@@ -4,7 +4,7 @@ use super::outcome::ProgramDriven;
 use crate::failure::Failure;
 use carrystep_files::Machine;
 use carrystep_link::{Queues, SegmentSource};
-use carrystep_runner::Wait;
+use carrystep_runner::{BlockAt, Wait};
 
 /// The figures of a plan that has been planned to its end.
 pub struct Plan<'a> {
@@ -38,6 +38,12 @@ pub trait Itinerary {
     /// Whether a hold ends the present stretch.
     fn is_held(&self) -> bool {
         false
+    }
+
+    /// In which block of a program the tool is if the axes have moved by these steps since the
+    /// beginning.
+    fn block(&self, _moved: &[i32]) -> Option<BlockAt> {
+        None
     }
 
     /// Drops what is left, except that all outputs go off in a last stretch.

@@ -3,6 +3,7 @@
 //! The fields are names in the JSON of `carrystep run`; its schema is generated from them.
 
 use crate::control::StoppedBy;
+use crate::found::BlockFound;
 use carrystep_files::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -65,6 +66,10 @@ pub struct ProgramDriven {
     pub waits: u64,
     /// How often a hold has cut the queues of the board.
     pub cuts: u32,
+    /// The block in which the tool was when the program ended early; `--from-block` goes on there.
+    pub block: Option<BlockFound>,
+    /// The machine place where the program began, as `--began-at` takes it.
+    pub began_at: String,
 }
 
 /// An axis that caused a stop.
@@ -147,12 +152,18 @@ impl fmt::Display for Driven {
 
 impl fmt::Display for ProgramDriven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lines, soft_limits, horizon_ms, waits, cuts } = self;
+        let Self { lines, soft_limits, horizon_ms, waits, cuts, block, began_at } = self;
         let bounds = match &soft_limits[..] {
             [] => "no soft limits".to_owned(),
             names => format!("soft limits of {}", names.join(", ")),
         };
         let cut = if *cuts == 0 { String::new() } else { format!(", queues cut {cuts} times") };
-        writeln!(f, "{lines} lines, {waits} waits{cut}, {bounds}, horizon {horizon_ms} ms")
+        writeln!(f, "{lines} lines, {waits} waits{cut}, {bounds}, horizon {horizon_ms} ms")?;
+        let Some(found) = block else { return Ok(()) };
+        let number = found.number;
+        writeln!(
+            f,
+            "it ended in {found}: --from-block {number} --began-at {began_at} goes on there"
+        )
     }
 }

@@ -14,9 +14,11 @@ use carrystep_job::Hold;
 use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, Queues, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
-use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount};
+use carrystep_program::{
+    AXIS_LETTERS, AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount,
+};
 use carrystep_report::Detail;
-use carrystep_runner::{Horizon, Stretches, Wait, kept_ticks};
+use carrystep_runner::{BlockAt, Horizon, Stretches, Wait, kept_ticks};
 use std::cell::RefCell;
 
 /// The row in which the outputs of a program that is ended go off, seconds.
@@ -134,6 +136,8 @@ impl<'a> PlannedProgram<'a> {
                 horizon_ms: self.horizon.ms(),
                 waits: 0,
                 cuts: 0,
+                block: None,
+                began_at: began_at(self.file),
             }),
         }
     }
@@ -151,11 +155,22 @@ impl<'a> PlannedProgram<'a> {
         // Signals hold the program. What stops it ends the reading of these rows.
         let rows = RowsAhead::until(Rows::new(file)?, || false);
         let rows = kept.until_an_error(rows);
-        let uncut = machine.cuts.then(|| kept_ticks(machine.timebase.tick_ns()));
         let hold = Hold::new(machine).map_err(|error| Failure::input(error.to_string()))?;
-        let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold, uncut));
-        drive(&ProgramStretches { file, kept: &kept, stretches })
+        let start_steps = file.start_steps();
+        let mut stretches = Stretches::new(rows, &start_steps, hold, machine.queue);
+        if machine.cuts {
+            stretches = stretches.with_cuts(kept_ticks(machine.timebase.tick_ns()));
+        }
+        let stretches = RefCell::new(stretches);
+        drive(&ProgramStretches { file, kept: &kept, stretches, start_steps })
     }
+}
+
+/// The machine place where a program began, as `--began-at` takes it.
+fn began_at(file: &ProgramFile) -> String {
+    let start = file.entry().map_or(file.settings().start, |entry| entry.program_start());
+    let axis = |&letter: &usize| format!("{}={}", AXIS_LETTERS[letter], start[letter]);
+    file.letters().of_axes().iter().map(axis).collect::<Vec<_>>().join(",")
 }
 
 /// The stretches of a program.
@@ -163,6 +178,8 @@ struct ProgramStretches<'a, I: Iterator<Item = Row>> {
     file: &'a ProgramFile,
     kept: &'a Kept,
     stretches: RefCell<Stretches<I>>,
+    /// Where the program begins, steps from machine zero.
+    start_steps: Vec<i64>,
 }
 
 impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
@@ -187,6 +204,13 @@ impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
 
     fn is_held(&self) -> bool {
         self.stretches.borrow().is_held()
+    }
+
+    fn block(&self, moved: &[i32]) -> Option<BlockAt> {
+        let positions = self.start_steps.iter().zip(moved);
+        let positions: Vec<i64> =
+            positions.map(|(&start, &moved)| start.saturating_add(moved.into())).collect();
+        self.stretches.borrow().block_at(&positions)
     }
 
     fn end(&self) {

@@ -26,6 +26,8 @@ mod device;
 mod documents;
 mod empty_programs;
 mod engine;
+#[cfg(target_os = "linux")]
+mod from_block;
 #[cfg(unix)]
 mod homing;
 #[cfg(unix)]

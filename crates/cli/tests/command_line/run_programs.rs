@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Three axes, of which x can be homed. The watchdog is long, because the computer that runs these
 /// tests may be busy.
-const MACHINE: &str = r#"[machine]
+pub const MACHINE: &str = r#"[machine]
 clock_hz = 48_000_000
 tick_ns = 2000
 
@@ -74,13 +74,13 @@ fn begins(folder: &Folder, board: &Board) -> Child {
     drives(folder, "run job.ngc --machine machine.toml", &board.port)
 }
 
-fn status(folder: &Folder, board: &Board) -> Value {
+pub fn status(folder: &Folder, board: &Board) -> Value {
     let ran = folder.run(&format!("status --port {} --machine machine.toml --json", board.port));
     serde_json::from_str(&ran.stdout).unwrap_or_default()
 }
 
 /// Waits until the program waits, and returns what for.
-fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
+pub fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
     loop {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         if let Some(waits) = status(folder, board)["waits"].as_str() {
@@ -265,7 +265,7 @@ fn signal(child: &Child) {
     assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
 }
 
-fn positions(found: &Value) -> Vec<i64> {
+pub fn positions(found: &Value) -> Vec<i64> {
     let axes = found["axes"].as_array().unwrap();
     axes.iter().map(|axis| axis["position"].as_i64().unwrap()).collect()
 }

@@ -52,8 +52,8 @@ pub(super) fn rows(
         let marks = curve.rows().get(since..=until).unwrap_or_default();
         let marks = marks.iter().flat_map(|row| row.marks.iter().copied()).collect();
         source = source.max(until);
-        let &Row { line, feed, off, corner, .. } = &curve.rows()[here];
-        rows.push(Row { ticks, segments, line, feed, off, corner, marks });
+        let &Row { line, block, feed, off, corner, .. } = &curve.rows()[here];
+        rows.push(Row { ticks, segments, line, block, feed, off, corner, marks });
         (before, now) = (tick, next);
     }
     land(&mut rows, &at, &curve.at(curve.place(end)))?;

@@ -36,6 +36,7 @@ pub fn read(text: &str) -> Vec<Item> {
             feed: if mode == 0 { None } else { feed },
             tolerance: Tolerance { linear: tolerance, rotary: tolerance },
             line: number as u64 + 1,
+            block: 0,
         }));
         at = to;
     }

@@ -1,0 +1,211 @@
+//! Programs that go on at one of their blocks, on virtual boards: after a hold, after the death of the
+//! host, with and without somebody who confirms.
+//!
+//! `CARRYSTEP_KILLS` sets the number of hosts that die.
+
+use crate::command::{Folder, Ran};
+use crate::run_programs::{MACHINE, positions, status, waits};
+use crate::schemas;
+use crate::stops::{drives, moving};
+use crate::terminal::Screen;
+use crate::virtual_boards::{Board, document, passed};
+use serde_json::Value;
+use std::process::Command;
+use std::time::Duration;
+
+/// A path of some 20 seconds on which no two rounds are the same.
+const JOB: &str = "G21 G90 G64 P0.02 F1800\nM3 S1000\nG4 P0.2\nG0 Z3\nG0 X1 Y0\nG1 Z-1\n\
+    #1=0\no1 repeat [6]\n#1=[#1+1]\nG1 X[4+#1/8] Y4\nG3 X[4+#1/8] Y4 I-3 J1\n\
+    G1 X-4 Z-[0.4+#1/16]\nG1 X0 Y[#1/4]\no1 endrepeat\nG0 Z3\nG0 X2.5 Y-1.25\nM2\n";
+/// Where it ends, steps.
+const END: [i64; 3] = [200, -100, 1200];
+const PLACES: &str = "\nx at 200\ny at -100\nz at 1200\n";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("machine.toml", MACHINE);
+    folder.write("job.ngc", JOB);
+    folder
+}
+
+fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
+    folder.run(&format!("run job.ngc --machine machine.toml --port {} {options}", board.port))
+}
+
+/// Waits until the program is in this block or behind it, and returns in which.
+fn reaches(folder: &Folder, board: &Board, block: u64) -> u64 {
+    loop {
+        let now = status(folder, board)["block"]["number"].as_u64().unwrap_or(0);
+        if now >= block {
+            return now;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn blocks(folder: &Folder) -> Vec<Value> {
+    let ran = folder.run("plan job.ngc --machine machine.toml --list-blocks --json-lines");
+    passed(&ran);
+    ran.stdout.lines().map(schemas::check).collect()
+}
+
+#[test]
+fn host_that_is_killed_is_followed_by_another_one() {
+    let kills = std::env::var("CARRYSTEP_KILLS").ok().and_then(|text| text.parse().ok());
+    let kills: u64 = kills.unwrap_or(2);
+    let blocks = blocks(&folder());
+    let moves: Vec<&Value> = blocks.iter().filter(|block| !block["begins_s"].is_null()).collect();
+    for kill in 0..kills {
+        let folder = folder();
+        let board = Board::new(&folder, "--fast");
+        let mut child = drives(&folder, "run job.ngc --machine machine.toml", &board.port);
+        moving(&folder, &mut child, &board.port);
+        // Blocks of the loop, none twice before all of them.
+        let wanted = &moves[3 + (kill * 7 % 20) as usize];
+        let block = reaches(&folder, &board, wanted["number"].as_u64().unwrap());
+        std::thread::sleep(Duration::from_micros(kill * 3919 % 20_000));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let found = loop {
+            let found = status(&folder, &board);
+            if found["halted"] == true {
+                break found;
+            }
+            assert_ne!(positions(&found), END, "it was too late for kill {kill}");
+        };
+        assert_eq!(found["cause"], "watchdog", "kill {kill}");
+        let listed = &blocks[block as usize - 1];
+        let ran = run(&folder, &board, &format!("--from-block {block} --yes --json"));
+        passed(&ran);
+        let told = schemas::check(&ran.stdout);
+        // It has begun where the ramp has ended, without a step lost.
+        let begun: Vec<_> = told["axes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|axis| axis["before"].as_i64().unwrap())
+            .collect();
+        assert_eq!(begun, positions(&found), "kill {kill}");
+        assert!(
+            ran.stderr.contains(&format!("entry at block {block}, job.ngc:{}", listed["line"])),
+            "{}",
+            ran.stderr
+        );
+        assert!(board.end().contains(PLACES), "kill {kill}, block {block}");
+    }
+}
+
+#[test]
+fn program_that_was_ended_names_its_block_and_goes_on_there() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast");
+    let mut child = drives(&folder, "run job.ngc --machine machine.toml", &board.port);
+    reaches(&folder, &board, 12);
+    passed(&folder.run(&format!("hold --port {}", board.port)));
+    waits(&folder, &board, &mut child);
+    let held = status(&folder, &board);
+    passed(&folder.run(&format!("stop --port {} --machine machine.toml", board.port)));
+    let told = document(child);
+    let block = &told["program"]["block"];
+    assert_eq!((block, &told["ended"]), (&held["block"], &"stopped".into()));
+    let (number, began_at) = (block["number"].as_u64().unwrap(), &told["program"]["began_at"]);
+    assert_eq!(began_at, "x=0,y=0,z=0");
+    // The tool is between the places where this block and the next one that moves begin.
+    let blocks = blocks(&folder);
+    let begins = &blocks[number as usize - 1];
+    assert_eq!((&begins["line"], begins["begins_s"].is_null()), (&block["line"], false));
+    let options = format!("--from-block {number} --began-at x=0,y=0,z=0 --yes");
+    let ran = run(&folder, &board, &options);
+    passed(&ran);
+    assert!(
+        ran.stdout.ends_with("DONE\n") && !ran.stdout.contains("it ended in"),
+        "{}",
+        ran.stdout
+    );
+    assert!(board.end().contains(PLACES));
+}
+
+#[test]
+fn entry_reaches_the_pins_as_it_was_planned() {
+    let folder = folder();
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
+    passed(&run(&folder, &board, "--from-block 20 --yes"));
+    assert!(board.end().contains(PLACES));
+    passed(&folder.run("check a.vcd job.ngc --machine machine.toml --from-block 20"));
+    assert_eq!(folder.run("check a.vcd job.ngc --machine machine.toml").status, 1);
+    let ran = folder
+        .run("simulate job.ngc --machine machine.toml --from-block 20 --at x=3,y=-1,z=0.5 --json");
+    passed(&ran);
+    let told = schemas::check(&ran.stdout);
+    let entry = &told["plan"]["entry"];
+    assert_eq!(
+        (&entry["block"], &entry["spindle"], &entry["dwell_s"]),
+        (&20.into(), &"M3".into(), &0.2.into())
+    );
+    assert_eq!((&entry["height_mm"], &entry["from"][1]["at"]), (&3.0.into(), &(-1.0).into()));
+}
+
+#[test]
+fn nobody_confirms_without_a_terminal() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast");
+    let ran = run(&folder, &board, "--from-block 20");
+    assert_eq!(ran.status, 2);
+    let shown = "entry at block 20, job.ngc:13: G1 X0 Y[#1/4]\n";
+    assert!(ran.stderr.contains(shown) && ran.stderr.contains("add --yes"), "{}", ran.stderr);
+    for (options, why) in [
+        ("--from-block 0 --yes", "0 is not in 1.."),
+        ("--from-block 99 --yes", "no block 99: the program has 54"),
+        ("--from-block 20 --yes --safe-z -9", "z = -9 mm is below"),
+        ("--from-block 3 --yes", "depends on where the program began"),
+        ("--yes", "--from-block"),
+        ("--safe-z 3", "--from-block"),
+    ] {
+        let ran = run(&folder, &board, options);
+        assert_eq!(ran.status, 2, "{options}");
+        assert!(ran.stderr.contains(why), "{options}: {}", ran.stderr);
+    }
+    assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
+    for refused in ["plan job.ngc --list-blocks --from-block 2", "plan machine.toml --list-blocks"]
+    {
+        assert_eq!(folder.run(&format!("{refused} --machine machine.toml")).status, 2, "{refused}");
+    }
+}
+
+#[test]
+fn somebody_confirms_in_a_terminal() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast");
+    for (answer, begins) in [("\r", false), ("no\r", false), ("y\r", true)] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+        command.args(["run", "job.ngc", "--machine", "machine.toml", "--from-block", "20"]);
+        command.args(["--port", &board.port]).current_dir(folder.path(""));
+        let mut screen = Screen::start(&mut command);
+        screen.waits_for("entry at block 20");
+        screen.waits_for("is this right?");
+        // Other commands get an answer meanwhile.
+        assert_eq!(status(&folder, &board)["moving"], false);
+        screen.types(answer);
+        screen.waits_for(if begins { "DONE" } else { "not confirmed" });
+    }
+    assert!(board.end().contains(PLACES));
+}
+
+#[test]
+fn blocks_are_listed_with_their_lines_and_times() {
+    let folder = folder();
+    let ran = folder.run("plan job.ngc --machine machine.toml --list-blocks");
+    passed(&ran);
+    assert!(
+        ran.stdout.starts_with(
+            "   block      line    begins [s]  text\n       1         1             -  G21"
+        ),
+        "{}",
+        ran.stdout
+    );
+    assert_eq!(ran.stdout.lines().count(), 1 + blocks(&folder).len());
+    // A mistake ends the list, and nothing of it is printed.
+    folder.write("job.ngc", JOB.replace("G0 X2.5", "G0 Q2.5"));
+    let ran = folder.run("plan job.ngc --machine machine.toml --list-blocks");
+    assert_eq!((ran.status, &*ran.stdout), (2, ""));
+}
