@@ -17,8 +17,8 @@ pub use machine::{MachineArguments, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{
-    HomeArguments, Jog, PeerArguments, PortArguments, ProgramPortArguments, RunArguments,
-    StatusArguments, Stop,
+    HomeArguments, Jog, OffsetArguments, PeerArguments, PortArguments, ProgramPortArguments,
+    RunArguments, StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
@@ -74,6 +74,9 @@ pub enum Subcommand {
     Resume(ProgramPortArguments),
     /// Move one axis of a board.
     Jog(Jog),
+    /// Show the work offsets of a board, or set them: the place where the machine is gets these
+    /// coordinates. Programs on the board begin with them.
+    Offset(OffsetArguments),
     /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.
     /// If one wire serves both ends of an axis, or all axes, a switch that is still closed after
     /// moving off is not detected (docs/homing.md).

@@ -10,6 +10,7 @@ pub mod doctor;
 pub mod hold;
 pub mod home;
 pub mod machine;
+pub mod offset;
 pub mod plan;
 pub mod plan_program;
 pub mod profile;

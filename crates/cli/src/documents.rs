@@ -6,8 +6,8 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, check_program, doctor, home, machine, plan, plan_program, profile, sweep,
-    table, verilog,
+    boards, build, check, check_program, doctor, home, machine, offset, plan, plan_program,
+    profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job, program_run};
@@ -37,6 +37,7 @@ documents! {
     "failure", 1: ending::FailedRun;
     "home", 1: home::HomeReport;
     "machine-new", 1: machine::WrittenMachine<'_>;
+    "offset", 1: offset::ShownOffsets;
     "plan", 1: plan::Planned<'_>;
     "plan-end", 1: plan::PlanEnd;
     "plan-move", 1: plan::PlannedLine<'_>;

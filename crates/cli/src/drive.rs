@@ -80,15 +80,26 @@ pub fn drive(
     let (mut line, mut keys) = (Line::new(&axes, plan.seconds), Keys::listening());
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
+    // If the file cannot be written, a command that is killed leaves one that does not match.
+    let _ = memory.drives(&mut board);
     if plan.program.is_some() {
         control.runs_program();
     }
+    let mut changed = Ok(());
     let mut follow = || -> Result<Ended, ConnectedBoardError> {
         let mut ends = false;
         'stretches: while let Some(waits) = itinerary.begin() {
             for at in waits {
                 line.rests();
                 plan.program.iter_mut().for_each(|program| program.waits += 1);
+                match itinerary.waits(at) {
+                    Ok(offsets) => {
+                        offsets.into_iter().for_each(|offsets| memory.set_work(offsets));
+                        // At the end the file is written again.
+                        let _ = memory.drives(&mut board);
+                    }
+                    Err(failure) => changed = Err(failure),
+                }
                 match wait::wait(&mut board, &mut control, (&mut keys, &line), at)? {
                     Waited::GoesOn => {}
                     Waited::Ends => {
@@ -136,6 +147,9 @@ pub fn drive(
     };
     let end = *board.status();
     ways.see(&end);
+    if ended == How::Done {
+        itinerary.offsets().into_iter().for_each(|offsets| memory.set_work(offsets));
+    }
     let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
         // The stop was requested, so it is cleared here and the next run does not report it.
@@ -161,6 +175,7 @@ pub fn drive(
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     itinerary.whole()?;
+    changed?;
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],

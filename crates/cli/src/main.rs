@@ -41,6 +41,7 @@ mod spool;
 mod switches;
 mod table;
 mod wanted;
+mod work;
 
 use arguments::{Arguments, Subcommand};
 use clap::Parser;
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
         Subcommand::Hold(port) => commands::hold::hold(port),
         Subcommand::Resume(port) => commands::hold::resume(port),
         Subcommand::Jog(jog) => commands::run::jog(jog),
+        Subcommand::Offset(offset) => commands::offset::run(offset),
         Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::stop::stop(stop),

@@ -17,6 +17,7 @@
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
 //!            offsets  coordinate systems and stored places
 //!            tool_length offsets of tools; tools: the tool table
+//!            kept     what a machine keeps of them from one program to the next
 //!            switches spindle, coolant, tool; inputs_outputs
 //! ```
 //!
@@ -40,6 +41,7 @@ mod frame;
 mod grammar;
 mod inputs_outputs;
 mod interpreter;
+mod kept;
 mod memory;
 mod motion;
 mod offsets;
@@ -63,5 +65,6 @@ pub use canon::{
 };
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
+pub use kept::Offsets;
 pub use options::{DEFAULT_BLOCKS, Options};
 pub use tools::{Tool, ToolTable};

@@ -9,7 +9,7 @@ use crate::outputs::{Effect, ProgramOutputs};
 use crate::switch::Switch;
 use carrystep_core::OutputChange;
 use carrystep_gcode::{
-    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step,
+    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Offsets, Options, Pace, PathMode, Point, Step,
 };
 use carrystep_job::Tolerance;
 use std::collections::VecDeque;
@@ -122,8 +122,12 @@ impl Events {
     pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
         file.same()?;
         let settings = file.settings();
-        let options =
-            Options { start: settings.start, blocks: settings.blocks, ..Options::default() };
+        let options = Options {
+            start: settings.start,
+            blocks: settings.blocks,
+            offsets: settings.offsets.clone(),
+            ..Options::default()
+        };
         let steps = Interpreter::open(file.path(), &options)
             .map_err(|error| ProgramError::of_gcode(file.path(), error))?;
         Ok(Self {
@@ -143,6 +147,11 @@ impl Events {
     /// Whether all lines so far were of the program itself, and not of files beside it.
     pub fn one_file(&self) -> bool {
         self.one_file
+    }
+
+    /// The offsets that the machine keeps, behind the last line that was read.
+    pub fn offsets(&self) -> Offsets {
+        self.steps.offsets()
     }
 
     /// The tolerance in force.

@@ -6,7 +6,7 @@ use crate::letters::Letters;
 use bigdecimal::BigDecimal;
 use carrystep_files::unit::digits;
 use carrystep_files::{InputError, Machine, decimal};
-use carrystep_gcode::{DEFAULT_BLOCKS, Point};
+use carrystep_gcode::{DEFAULT_BLOCKS, Offsets, Point};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -28,12 +28,19 @@ pub struct Settings {
     pub tolerance_mm: Option<f64>,
     /// Lines that loops and subroutines may run again.
     pub blocks: u64,
+    /// Work offsets and tool length at the beginning.
+    pub offsets: Offsets,
 }
 
 impl Default for Settings {
-    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`].
+    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`], no offsets.
     fn default() -> Self {
-        Self { start: Point::default(), tolerance_mm: None, blocks: DEFAULT_BLOCKS }
+        Self {
+            start: Point::default(),
+            tolerance_mm: None,
+            blocks: DEFAULT_BLOCKS,
+            offsets: Offsets::default(),
+        }
     }
 }
 

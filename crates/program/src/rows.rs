@@ -7,7 +7,7 @@ use crate::file::ProgramFile;
 use crate::letters::Letters;
 use crate::sync::SyncPoint;
 use carrystep_files::Machine;
-use carrystep_gcode::Point;
+use carrystep_gcode::{Offsets, Point};
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
 use std::path::PathBuf;
 
@@ -72,6 +72,11 @@ impl Rows {
     /// Whether all lines so far were of the program itself, and not of files beside it.
     pub fn one_file(&self) -> bool {
         self.events.one_file()
+    }
+
+    /// The offsets that the machine keeps, behind what has been read.
+    pub fn offsets(&self) -> Offsets {
+        self.events.offsets()
     }
 
     /// The place where the last move that was read ends, exactly as programmed.

@@ -1,7 +1,8 @@
 //! The arguments of the commands that talk to a board. The docstrings of the fields are the
 //! command's help.
 
-use super::program::{HEADING, PlannerArguments};
+use super::program::{HEADING, PlannerArguments, place};
+use crate::work::Target;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -99,6 +100,30 @@ pub struct Jog {
     #[command(flatten)]
     pub port: PortArguments,
     /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The arguments of `carrystep offset`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct OffsetArguments {
+    /// The coordinate system in which the machine place gets the values: G54 to G59, G59.1 to
+    /// G59.3; G92 for all of them; or G43.1, the length of the tool.
+    #[arg(long, value_name = "SYSTEM")]
+    pub set: Option<Target>,
+    /// Coordinates in mm or degrees: x=0,z=1.5.
+    #[arg(value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = place, requires = "set")]
+    pub values: Vec<(usize, f64)>,
+    /// Set all work offsets, stored places and the tool length to zero.
+    #[arg(long, conflicts_with = "set")]
+    pub clear: bool,
+    /// The machine.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: PathBuf,
+    #[command(flatten)]
+    pub port: PortArguments,
+    /// One JSON document instead of the text.
     #[arg(long)]
     pub json: bool,
 }

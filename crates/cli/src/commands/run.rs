@@ -55,6 +55,7 @@ fn moved(
     let moves = Moves::new(source)?;
     let mut connection = connection::to_machine(port, &machine, name, command)?;
     let memory = BoardMemory::recall(&mut connection);
+    memory.usable()?;
     drive(connection, memory, moves.plan(), &moves.itinerary(), into_limit)
 }
 

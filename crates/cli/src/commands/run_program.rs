@@ -5,8 +5,8 @@ use crate::arguments::RunArguments;
 use crate::drive::{Driven, Place, PlannedProgram, drive};
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
-use crate::{connection, program};
-use carrystep_program::{Letters, ProgramError, ProgramFile, Settings};
+use crate::{connection, program, work};
+use carrystep_program::{Letters, Offsets, ProgramError, ProgramFile, Settings};
 use std::io::{self, Write as _};
 
 /// Runs a program. Nothing moves before it has been planned to its end.
@@ -20,6 +20,7 @@ pub fn run(arguments: &RunArguments) -> Result<Driven, Failure> {
     let _ = carrystep_files::open(path).map_err(|error| Failure::input(error.to_string()))?;
     let mut connection = connection::to_machine(&arguments.port, &machine, machine_path, "run")?;
     let memory = BoardMemory::recall(&mut connection);
+    memory.usable()?;
     let status = *connection.board.status();
     if !status.answer.idle && !status.answer.fault {
         let message = "axes move or segments wait, of another host: the program begins where the \
@@ -27,9 +28,14 @@ pub fn run(arguments: &RunArguments) -> Result<Driven, Failure> {
         return Err(Failure::input(message));
     }
     let place = Place::find(&machine, &letters, &memory, &status.positions, arguments.unhomed)?;
-    let settings = Settings { start: place.start, ..program::settings(planner) };
+    // Without a machine zero, nobody knows where the offsets are.
+    let offsets = if arguments.unhomed { Offsets::default() } else { memory.work()?.clone() };
+    work::tell(&offsets);
+    let settings = Settings { start: place.start, offsets, ..program::settings(planner) };
     let file = ProgramFile::open(path, place.bounded(&machine), machine_path, settings)?;
-    let planned = PlannedProgram::new(&file, &place, || connection.control.wish(&status))?;
+    let planned = PlannedProgram::new(&file, &place, !arguments.unhomed, || {
+        connection.control.wish(&status)
+    })?;
     for warning in planned.unswitched().chain(planned.warning()) {
         // If this write fails, there is no channel left to report it.
         let _ = writeln!(io::stderr(), "warning: {warning}");

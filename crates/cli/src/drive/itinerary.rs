@@ -4,6 +4,7 @@ use super::outcome::ProgramDriven;
 use crate::failure::Failure;
 use carrystep_files::Machine;
 use carrystep_link::SegmentSource;
+use carrystep_program::Offsets;
 use carrystep_runner::Wait;
 
 /// The figures of a plan that has been planned to its end.
@@ -36,6 +37,20 @@ pub trait Itinerary {
 
     /// Drops what is left, except that all outputs go off in a last stretch.
     fn end(&self) {}
+
+    /// Notes that the board rests at one of the places before the stretch, and waits. Returns the
+    /// work offsets that are in force there; `None` if they are not kept.
+    ///
+    /// # Errors
+    /// The file has changed.
+    fn waits(&self, _at: Wait) -> Result<Option<Offsets>, Failure> {
+        Ok(None)
+    }
+
+    /// The work offsets behind the whole way; `None` if they stay as they were before.
+    fn offsets(&self) -> Option<Offsets> {
+        None
+    }
 
     /// Checks that nothing was missing.
     ///

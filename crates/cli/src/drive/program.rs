@@ -14,10 +14,10 @@ use carrystep_job::Hold;
 use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
-use carrystep_program::{AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount};
+use carrystep_program::{AxisSurvey, Offsets, ProgramFile, Row, Rows, Survey, Switch, SwitchCount};
 use carrystep_report::Detail;
 use carrystep_runner::{Horizon, Stretches, Wait};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// The row in which the outputs of a program that is ended go off, seconds.
 const LAST_ROW: f64 = 0.004;
@@ -39,17 +39,20 @@ pub struct PlannedProgram<'a> {
     first: Vec<i8>,
     horizon: Horizon,
     soft_limits: Vec<String>,
+    /// Whether the work offsets behind the program are kept.
+    keeps: bool,
 }
 
 impl<'a> PlannedProgram<'a> {
-    /// Plans a program to its end. `wish` is called now and then; the planner ends when it is a
-    /// stop.
+    /// Plans a program to its end. `keeps` says whether its work offsets are kept. `wish` is called
+    /// now and then; the planner ends when it is a stop.
     ///
     /// # Errors
     /// A mistake in the program, a line that is too slow to keep the queues full, or a stop.
     pub fn new(
         file: &'a ProgramFile,
         place: &Place,
+        keeps: bool,
         mut wish: impl FnMut() -> Wish,
     ) -> Result<Self, Failure> {
         let machine = file.machine();
@@ -96,7 +99,7 @@ impl<'a> PlannedProgram<'a> {
         let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
         let horizon = Horizon::of_queue(machine.queue as u64);
         let seconds = survey.ticks as f64 * machine.timebase.tick_seconds();
-        Ok(Self { file, survey, seconds, first, horizon, soft_limits })
+        Ok(Self { file, survey, seconds, first, horizon, soft_limits, keeps })
     }
 
     /// What the program switches and the machine does not, each with its first line.
@@ -152,7 +155,9 @@ impl<'a> PlannedProgram<'a> {
         let rows = kept.until_an_error(rows);
         let hold = Hold::new(machine).map_err(|error| Failure::input(error.to_string()))?;
         let stretches = RefCell::new(Stretches::new(rows, &file.start_steps(), hold));
-        drive(&ProgramStretches { file, kept: &kept, stretches })
+        let offsets = self.keeps.then(|| self.survey.offsets.clone());
+        let passed = Cell::new(0);
+        drive(&ProgramStretches { file, kept: &kept, stretches, offsets, passed })
     }
 }
 
@@ -161,11 +166,29 @@ struct ProgramStretches<'a, I: Iterator<Item = Row>> {
     file: &'a ProgramFile,
     kept: &'a Kept,
     stretches: RefCell<Stretches<I>>,
+    /// The work offsets behind the program, if they are kept.
+    offsets: Option<Offsets>,
+    /// Number of places of the program at which it has waited, that of now included.
+    passed: Cell<u64>,
 }
 
 impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
     fn begin(&self) -> Option<Vec<Wait>> {
         self.stretches.borrow_mut().begin()
+    }
+
+    fn waits(&self, at: Wait) -> Result<Option<Offsets>, Failure> {
+        if let Wait::SyncPoint(_) = at {
+            self.passed.set(self.passed.get() + 1);
+        }
+        if self.offsets.is_none() {
+            return Ok(None);
+        }
+        Ok(Some(carrystep_program::offsets_at(self.file, self.passed.get())?))
+    }
+
+    fn offsets(&self) -> Option<Offsets> {
+        self.offsets.clone()
     }
 
     fn source(&self) -> Box<dyn SegmentSource + '_> {

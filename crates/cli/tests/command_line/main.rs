@@ -66,3 +66,5 @@ mod terminal;
 #[cfg(unix)]
 mod virtual_boards;
 mod windows;
+#[cfg(unix)]
+mod work_offsets;

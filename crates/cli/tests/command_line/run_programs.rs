@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Three axes, of which x can be homed. The watchdog is long, because the computer that runs these
 /// tests may be busy.
-const MACHINE: &str = r#"[machine]
+pub const MACHINE: &str = r#"[machine]
 clock_hz = 48_000_000
 tick_ns = 2000
 
@@ -57,30 +57,30 @@ home = { toward = "min", seek_speed = 20, slow_speed = 2, max_travel = 30, pull_
 const JOB: &str = "G21 G90 F1500\nM3 S1000\nG1 X4 Y2\nG3 X2 Y4 I-2\nG0 Z1\nG1 X0 Y0 Z0\nM2\n";
 const PAUSES: &str = "G21 G90 F1500\nG1 X4\nM0\nG1 Y3\nM6 T2\nG1 Z-1\nM2\n";
 
-fn folder(job: &str) -> Folder {
+pub fn folder(job: &str) -> Folder {
     let folder = Folder::new();
     folder.write("machine.toml", MACHINE);
     folder.write("job.ngc", job);
     folder
 }
 
-fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
+pub fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
     let options = format!("--machine machine.toml --port {} {options}", board.port);
     folder.run(&format!("run job.ngc {}", options.trim_end()))
 }
 
 /// Starts the program in the background.
-fn begins(folder: &Folder, board: &Board) -> Child {
+pub fn begins(folder: &Folder, board: &Board) -> Child {
     drives(folder, "run job.ngc --machine machine.toml", &board.port)
 }
 
-fn status(folder: &Folder, board: &Board) -> Value {
+pub fn status(folder: &Folder, board: &Board) -> Value {
     let ran = folder.run(&format!("status --port {} --machine machine.toml --json", board.port));
     serde_json::from_str(&ran.stdout).unwrap_or_default()
 }
 
 /// Waits until the program waits, and returns what for.
-fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
+pub fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
     loop {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         if let Some(waits) = status(folder, board)["waits"].as_str() {
@@ -90,12 +90,12 @@ fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
     }
 }
 
-fn resume(folder: &Folder, board: &Board) -> Ran {
+pub fn resume(folder: &Folder, board: &Board) -> Ran {
     folder.run(&format!("resume --port {}", board.port))
 }
 
 /// The document of a run that has passed.
-fn done(child: Child) -> Value {
+pub fn done(child: Child) -> Value {
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -265,7 +265,7 @@ fn signal(child: &Child) {
     assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
 }
 
-fn positions(found: &Value) -> Vec<i64> {
+pub fn positions(found: &Value) -> Vec<i64> {
     let axes = found["axes"].as_array().unwrap();
     axes.iter().map(|axis| axis["position"].as_i64().unwrap()).collect()
 }
