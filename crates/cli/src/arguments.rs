@@ -72,7 +72,7 @@ pub enum Subcommand {
     Hold(ProgramPortArguments),
     /// Let a program go on that is held, or that waits at M0, M1 or M6.
     Resume(ProgramPortArguments),
-    /// Move one axis of a board.
+    /// Move axes of a board, also while the program of a `run` waits at M0, M1 or M6.
     Jog(Jog),
     /// Show the work offsets of a board, or set them: the place where the machine is gets these
     /// coordinates. Programs on the board begin with them.

@@ -10,7 +10,7 @@ use crate::commands::{
     profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
-use crate::{drive, ending, found, job, program_run};
+use crate::{drive, ending, found, job, pause, program_run};
 use schemars::Schema;
 
 macro_rules! documents {
@@ -38,6 +38,7 @@ documents! {
     "home", 1: home::HomeReport;
     "machine-new", 1: machine::WrittenMachine<'_>;
     "offset", 1: offset::ShownOffsets;
+    "pause", 1: pause::PauseResult;
     "plan", 1: plan::Planned<'_>;
     "plan-end", 1: plan::PlanEnd;
     "plan-move", 1: plan::PlannedLine<'_>;

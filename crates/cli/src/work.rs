@@ -56,7 +56,7 @@ impl From<&Offsets> for WorkRecord {
 }
 
 /// An offset that is not zero.
-#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct NamedOffset {
     /// A coordinate system (`G54`), `G92`, `G92 (suspended)`, or `tool length`.
     pub name: String,
@@ -116,7 +116,7 @@ fn shown(value: f64) -> String {
 }
 
 /// What gets coordinates or a length: a coordinate system, G92 or the tool.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Target {
     /// G54 to G59.3: its number, from 1.
     System(u8),

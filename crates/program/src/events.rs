@@ -2,7 +2,7 @@
 //! force, rests, and what is switched.
 
 use crate::error::{Fault, ProgramError};
-use crate::file::ProgramFile;
+use crate::file::{ProgramFile, Resumed};
 use crate::letter::LINEAR;
 use crate::letters::Letters;
 use crate::outputs::{Effect, ProgramOutputs};
@@ -109,6 +109,9 @@ pub struct Events {
     outputs: ProgramOutputs,
     tolerance_mm: Option<f64>,
     at: Point,
+    /// Number of places to wait at so far, and what was changed at some of them.
+    waits: u64,
+    resumed: Vec<Resumed>,
     mode: PathMode,
     /// What the last canonical move gives and has not been taken yet.
     waiting: VecDeque<Event>,
@@ -139,6 +142,8 @@ impl Events {
             outputs: ProgramOutputs::new(file.machine()),
             tolerance_mm: settings.tolerance_mm,
             at: settings.start,
+            waits: 0,
+            resumed: settings.resumed.clone(),
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
             waiting: VecDeque::new(),
         })
@@ -203,8 +208,8 @@ impl Events {
                 self.change(effect, with_motion, Switch::Output, line);
             }
             Canon::ReadInput { .. } => self.switch(Switch::Input, line),
-            Canon::ChangeTool { .. } => self.switch(Switch::ToolChange, line),
-            Canon::Pause { .. } => self.switch(Switch::Pause, line),
+            Canon::ChangeTool { .. } => self.wait(Switch::ToolChange, line)?,
+            Canon::Pause { .. } => self.wait(Switch::Pause, line)?,
             Canon::End => self.waiting.push_back(Event::End { line }),
             // Nothing overrides a feed in a plan, and the rest is for the operator.
             Canon::Overrides { .. }
@@ -228,6 +233,22 @@ impl Events {
 
     fn switch(&mut self, switch: Switch, line: u64) {
         self.waiting.push_back(Event::Switch { switch, line });
+    }
+
+    /// A place to wait at. What was changed there is in force for the next line.
+    fn wait(&mut self, switch: Switch, line: u64) -> Result<(), Fault> {
+        self.switch(switch, line);
+        self.waits += 1;
+        let Some(resumed) = self.resumed.iter().find(|resumed| resumed.number == self.waits) else {
+            return Ok(());
+        };
+        if self.steps.is_amid_line() {
+            return Err(Fault::ResumedAmidLine);
+        }
+        self.steps.set_offsets(&resumed.offsets);
+        self.steps.set_place(resumed.at);
+        self.at = resumed.at;
+        Ok(())
     }
 
     fn go(

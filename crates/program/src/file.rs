@@ -30,6 +30,22 @@ pub struct Settings {
     pub blocks: u64,
     /// Work offsets and tool length at the beginning.
     pub offsets: Offsets,
+    /// What was changed where the program has waited, in the order of these places. The program is
+    /// planned from the last of them on.
+    pub resumed: Vec<Resumed>,
+}
+
+/// What was changed while a program waited, so that the rest of it begins at another place or with
+/// other offsets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resumed {
+    /// The number of the place at which it has waited, counted from 1 in the order in which they
+    /// are executed.
+    pub number: u64,
+    /// The machine place: x, y, z in mm, then a, b, c in degrees.
+    pub at: Point,
+    /// Work offsets and tool length.
+    pub offsets: Offsets,
 }
 
 impl Default for Settings {
@@ -40,6 +56,7 @@ impl Default for Settings {
             tolerance_mm: None,
             blocks: DEFAULT_BLOCKS,
             offsets: Offsets::default(),
+            resumed: Vec::new(),
         }
     }
 }
@@ -143,9 +160,21 @@ impl ProgramFile {
         .collect()
     }
 
-    /// The steps of each axis at the place where the program begins.
+    /// The machine place where the program begins, or where it was resumed last.
+    pub fn begins(&self) -> &Point {
+        self.settings.resumed.last().map_or(&self.settings.start, |resumed| &resumed.at)
+    }
+
+    /// The steps of each axis at the place where the program begins, or where it was resumed last.
     pub fn start_steps(&self) -> Vec<i64> {
-        self.steps(&self.settings.start)
+        self.steps(self.begins())
+    }
+
+    /// The same program, resumed at a place where it has waited.
+    pub fn resumed(&self, change: Resumed) -> Self {
+        let mut this = self.clone();
+        this.settings.resumed.push(change);
+        this
     }
 
     /// Checks that the file is still the one that was opened.

@@ -33,7 +33,7 @@ pub use carrystep_job::Row;
 pub use counts::{Counts, SwitchCount};
 pub use error::{Fault, ProgramError};
 pub use events::{DEFAULT_TOLERANCE, Event, Events, ProgrammedMove};
-pub use file::{ProgramFile, Settings, is_program};
+pub use file::{ProgramFile, Resumed, Settings, is_program};
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;

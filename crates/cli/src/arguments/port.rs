@@ -82,11 +82,18 @@ pub struct HomeArguments {
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its name.
-    #[arg(value_name = "AXIS")]
-    pub axis: String,
+    #[arg(value_name = "AXIS", requires = "distance", required_unless_present = "axes")]
+    pub axis: Option<String>,
     /// Distance in units of the axis; negative is backward.
     #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
-    pub distance: f64,
+    pub distance: Option<f64>,
+    /// Several axes at once, on a straight line, by their names: x=1.5,z=-0.2.
+    #[arg(long = "axis", value_name = "AXIS=DISTANCE", value_delimiter = ',', value_parser = distance, conflicts_with = "axis")]
+    pub axes: Vec<(String, f64)>,
+    /// Greatest speed along the line, units of the axes per minute; default: as fast as the axes'
+    /// limits allow.
+    #[arg(long, value_name = "UNITS", value_parser = feed, conflicts_with = "time")]
+    pub feed: Option<f64>,
     /// The machine.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
@@ -102,6 +109,25 @@ pub struct Jog {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads the distance of an axis.
+fn distance(text: &str) -> Result<(String, f64), String> {
+    let read = text.split_once('=').and_then(|(name, value)| {
+        let value = value.parse::<f64>().ok().filter(|value| value.is_finite())?;
+        (!name.is_empty()).then(|| (name.to_owned(), value))
+    });
+    read.ok_or_else(|| "expected an axis and a distance: x=1.5".to_owned())
+}
+
+/// Reads a feed, units per minute.
+fn feed(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected units per minute".to_owned())?;
+    if (1e-6..=1e9).contains(&value) {
+        Ok(value)
+    } else {
+        Err("expected a feed from 0.000001 to 1000000000 units per minute".to_owned())
+    }
 }
 
 /// The arguments of `carrystep offset`.

@@ -6,6 +6,7 @@ use crate::drive::Place;
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use crate::output;
+use crate::pause::{self, PauseWish};
 use crate::work::{self, NamedOffset};
 use carrystep_files::Machine;
 use carrystep_gcode::{AXIS_LETTERS, Offsets};
@@ -40,6 +41,14 @@ pub fn run(arguments: &OffsetArguments) -> Result<(), Failure> {
     let fault = |fault| ProgramError::new(&arguments.machine, 0, fault);
     let letters = Letters::new(&machine).map_err(fault)?;
     check(arguments, &machine, &letters)?;
+    let wish = match arguments.set {
+        None if arguments.clear => PauseWish::Clear,
+        None => PauseWish::Show,
+        Some(target) => PauseWish::Set(target, arguments.values.clone()),
+    };
+    if pause::ask(&arguments.port.name, &wish, arguments.json)? {
+        return Ok(());
+    }
     let mut connection =
         connection::to_machine(&arguments.port, &machine, &arguments.machine, "offset")?;
     let mut memory = BoardMemory::recall(&mut connection);

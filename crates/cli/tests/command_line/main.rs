@@ -42,6 +42,8 @@ mod long_moves;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
+#[cfg(unix)]
+mod pauses;
 #[cfg(target_os = "linux")]
 #[path = "../support/peak.rs"]
 mod peak;
