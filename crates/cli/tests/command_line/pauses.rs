@@ -165,9 +165,32 @@ fn nothing_is_changed_in_a_hold_or_in_motion() {
     assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
 }
 
+/// The rising edges of the step pins of a capture in their order: time and pin.
+fn pulses(folder: &Folder, name: &str) -> Vec<(u64, String)> {
+    let vcd = std::fs::read_to_string(folder.path(name)).unwrap();
+    let (mut pins, mut now, mut pulses) = (Vec::new(), 0, Vec::new());
+    for line in vcd.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let ["$var", _, _, code, "step", ..] = words[..] {
+            pins.push(code.to_owned());
+        } else if let Some(time) = line.strip_prefix('#') {
+            now = time.parse().unwrap();
+        } else if let Some(code) = line.strip_prefix('1')
+            && pins.iter().any(|pin| pin == code)
+        {
+            pulses.push((now, code.to_owned()));
+        }
+    }
+    pulses.sort();
+    pulses
+}
+
 #[test]
-fn pause_in_which_nothing_was_changed_leaves_the_plan_as_it_is() {
-    let folder = folder(PAUSES);
+fn pause_in_which_nothing_was_changed_moves_pulses_in_time_only() {
+    let folder = folder(
+        "G21 G90 F1500\nM3 S1000\nG1 X4.003 Y1.01\nM5\nM0\nG1 Y3 Z0.7\nM6 T2\n\
+         G3 X2 Y5 I-2\nG1 Z-1 X0\nM2\n",
+    );
     let board = Board::new(&folder, "--fast --vcd a.vcd");
     let mut child = begins(&folder, &board);
     let first = waits(&folder, &board, &mut child);
@@ -179,6 +202,17 @@ fn pause_in_which_nothing_was_changed_leaves_the_plan_as_it_is() {
     done(child);
     board.end();
     passed(&folder.run("check a.vcd job.ngc --machine machine.toml --path-only"));
+    passed(&folder.run("simulate job.ngc --machine machine.toml --vcd b.vcd"));
+    // Each of the three stretches is later by a time of its own.
+    let (ran, planned) = (pulses(&folder, "a.vcd"), pulses(&folder, "b.vcd"));
+    assert_eq!((ran.len(), planned.len()), (2008, 2008));
+    let mut shifts: Vec<i128> = Vec::new();
+    for ((at, pin), (time, of)) in ran.iter().zip(&planned) {
+        assert_eq!(pin, of);
+        shifts.push(i128::from(*at) - i128::from(*time));
+    }
+    shifts.dedup();
+    assert_eq!(shifts.len(), 3, "{shifts:?}");
 }
 
 #[test]
