@@ -17,8 +17,8 @@ pub use machine::{MachineArguments, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{
-    HomeArguments, Jog, PeerArguments, PortArguments, ProgramPortArguments, RunArguments,
-    StatusArguments, Stop,
+    HomeArguments, Jog, OffsetArguments, PeerArguments, PortArguments, ProgramPortArguments,
+    RunArguments, StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
@@ -72,8 +72,11 @@ pub enum Subcommand {
     Hold(ProgramPortArguments),
     /// Let a program go on that is held, or that waits at M0, M1 or M6.
     Resume(ProgramPortArguments),
-    /// Move one axis of a board.
+    /// Move axes of a board, also while the program of a `run` waits at M0, M1 or M6.
     Jog(Jog),
+    /// Show the work offsets of a board, or set them: the place where the machine is gets these
+    /// coordinates. Programs on the board begin with them.
+    Offset(OffsetArguments),
     /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.
     /// If one wire serves both ends of an axis, or all axes, a switch that is still closed after
     /// moving off is not detected (docs/homing.md).

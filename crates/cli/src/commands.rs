@@ -11,6 +11,7 @@ pub mod hold;
 pub mod home;
 pub mod list_blocks;
 pub mod machine;
+pub mod offset;
 pub mod plan;
 pub mod plan_program;
 pub mod profile;

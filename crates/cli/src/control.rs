@@ -61,6 +61,11 @@ pub enum SocketRequest {
     Hold,
     /// Let a program go on that waits.
     Resume,
+    /// Do what the text behind the word says (a [`PauseWish`](crate::pause::PauseWish)) while a
+    /// program waits.
+    Pause,
+    /// Tell how that has ended: an empty line while it goes on.
+    Result,
 }
 
 /// The answer to a request that was noted.
@@ -70,6 +75,9 @@ pub const NOTHING_MOVES: &str = "nothing moves";
 
 /// The answer to [`SocketRequest::Resume`] if nothing waits.
 pub const NOTHING_WAITS: &str = "nothing waits";
+
+/// The answer to [`SocketRequest::Pause`] if another one is not done.
+pub const BUSY: &str = "busy";
 
 impl SocketRequest {
     /// The word that is sent for the request, without the end of the line.
@@ -131,7 +139,7 @@ impl Control {
         if let Some(control_socket) = &mut self.control_socket {
             let (known, holder) = (&self.known, self.claim.holder());
             let program = &mut self.program;
-            let stop = control_socket.poll(&mut |request| match request {
+            let stop = control_socket.poll(&mut |request, text| match request {
                 SocketRequest::Stop => TAKEN.to_owned(),
                 SocketRequest::Hold => {
                     let noted = program.as_mut().is_some_and(ProgramControl::hold);
@@ -140,6 +148,18 @@ impl Control {
                 SocketRequest::Resume => {
                     let noted = program.as_mut().is_some_and(ProgramControl::resume);
                     if noted { TAKEN } else { NOTHING_WAITS }.to_owned()
+                }
+                SocketRequest::Pause => {
+                    let noted = program.as_mut().map(|program| program.pauses(text));
+                    match noted {
+                        Some(Some(true)) => TAKEN,
+                        Some(Some(false)) => BUSY,
+                        _ => NOTHING_WAITS,
+                    }
+                    .to_owned()
+                }
+                SocketRequest::Result => {
+                    program.as_ref().and_then(|program| program.result.clone()).unwrap_or_default()
                 }
                 SocketRequest::Status => known.as_ref().map_or_else(String::new, |known| {
                     let found = FoundBoard {

@@ -6,11 +6,11 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, check_program, doctor, home, list_blocks, machine, plan, plan_program,
-    profile, sweep, table, verilog,
+    boards, build, check, check_program, doctor, home, list_blocks, machine, offset, plan,
+    plan_program, profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
-use crate::{drive, ending, found, job, program_run};
+use crate::{drive, ending, found, job, pause, program_run};
 use schemars::Schema;
 
 macro_rules! documents {
@@ -37,6 +37,8 @@ documents! {
     "failure", 1: ending::FailedRun;
     "home", 1: home::HomeReport;
     "machine-new", 1: machine::WrittenMachine<'_>;
+    "offset", 1: offset::ShownOffsets;
+    "pause", 1: pause::PauseResult;
     "plan", 1: plan::Planned<'_>;
     "plan-block", 1: list_blocks::ListedBlock<'_>;
     "plan-end", 1: plan::PlanEnd;

@@ -9,10 +9,12 @@ use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
 use carrystep_core::engine::Cause;
 use carrystep_link::{Ended, HostError, Status, Wish};
+use carrystep_program::ProgramFile;
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
 pub use moves::Moves;
 pub use outcome::{AxisDriven, Culprit, Driven, How};
+use pause::Pause;
 pub use place::Place;
 pub use program::PlannedProgram;
 use std::time::{Duration, Instant};
@@ -22,6 +24,7 @@ mod itinerary;
 mod line;
 mod moves;
 mod outcome;
+mod pause;
 mod place;
 mod program;
 mod shared;
@@ -80,6 +83,8 @@ pub fn drive(
     let (mut line, mut keys) = (Line::new(&axes, plan.seconds), Keys::listening());
     let mut ways = Ways::default();
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
+    // If the file cannot be written, a command that is killed leaves one that does not match.
+    let _ = memory.drives(&mut board);
     if plan.program.is_some() {
         control.runs_program();
     }
@@ -90,14 +95,38 @@ pub fn drive(
             .collect();
         Some(&moved).filter(|_| !status.answer.fault).and_then(|moved| itinerary.block(moved))
     };
+    // Where the positions of the registers are zero, steps from machine zero.
+    let places = itinerary.program().map(ProgramFile::start_steps).unwrap_or_default();
+    let zero: Vec<i64> =
+        places.iter().zip(start.positions).map(|(at, position)| at - i64::from(position)).collect();
+    let mut changed = Ok(());
     let mut follow = || -> Result<Ended, ConnectedBoardError> {
         let mut ends = false;
         'stretches: while let Some(waits) = itinerary.begin() {
             for at in waits {
                 line.rests();
                 plan.program.iter_mut().for_each(|program| program.waits += 1);
-                match wait::wait(&mut board, &mut control, (&mut keys, &line), at)? {
-                    Waited::GoesOn => {}
+                let offsets = itinerary.waits(at).unwrap_or_else(|failure| {
+                    changed = Err(failure);
+                    None
+                });
+                if let Some(offsets) = offsets.clone().filter(|_| itinerary.keeps()) {
+                    memory.set_work(offsets);
+                    // At the end the file is written again.
+                    let _ = memory.drives(&mut board);
+                }
+                let mut pause = Pause::new(itinerary, &mut memory, (&axes, &zero), offsets);
+                let keys = (&mut keys, &line);
+                match wait::wait(&mut board, &mut control, keys, (at, &mut pause))? {
+                    Waited::GoesOn(None) => {}
+                    Waited::GoesOn(Some(rest)) => {
+                        let now = board.status().positions;
+                        let gone = now.iter().zip(start.positions);
+                        let gone = gone.map(|(now, from)| i64::from(now.wrapping_sub(from)));
+                        plan.steps = gone.zip(rest.steps).map(|(gone, left)| gone + left).collect();
+                        plan.seconds = line.plans(rest.seconds);
+                        continue 'stretches;
+                    }
                     Waited::Ends => {
                         // The outputs go off in a stretch of their own.
                         itinerary.end();
@@ -152,6 +181,9 @@ pub fn drive(
     };
     let end = *board.status();
     ways.see(&end);
+    if ended == How::Done && itinerary.keeps() {
+        itinerary.offsets().into_iter().for_each(|offsets| memory.set_work(offsets));
+    }
     let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
         // The stop was requested, so it is cleared here and the next run does not report it.
@@ -182,6 +214,7 @@ pub fn drive(
     {
         program.block = control.program().and_then(|program| program.block);
     }
+    changed?;
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],

@@ -23,6 +23,7 @@ mod holder;
 mod homing;
 mod interrupt;
 mod job;
+mod jog;
 mod junit;
 mod limits;
 mod memory;
@@ -31,6 +32,7 @@ mod one_pass;
 mod operated;
 mod output;
 mod pass;
+mod pause;
 mod program;
 mod program_run;
 mod program_table;
@@ -43,6 +45,7 @@ mod spool;
 mod switches;
 mod table;
 mod wanted;
+mod work;
 
 use arguments::{Arguments, Subcommand};
 use clap::Parser;
@@ -67,6 +70,7 @@ fn main() -> ExitCode {
         Subcommand::Hold(port) => commands::hold::hold(port),
         Subcommand::Resume(port) => commands::hold::resume(port),
         Subcommand::Jog(jog) => commands::run::jog(jog),
+        Subcommand::Offset(offset) => commands::offset::run(offset),
         Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::stop::stop(stop),

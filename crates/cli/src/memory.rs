@@ -1,5 +1,5 @@
-//! The command's memory of a board between two calls: the machine zero of each axis, and the limits
-//! that the axes have met.
+//! The command's memory of a board between two calls: the machine zero of each axis, the limits that
+//! the axes have met, and work offsets.
 //!
 //! The position register counts from the configuration of the board and cannot be written.
 //! Therefore a file, named after the port and the build id, holds the machine coordinate of the
@@ -15,10 +15,20 @@
 //!
 //! If one of them differs from the stored value, the content is discarded. The board does not tell
 //! the number of its session; it only tells whether a number that it is asked about is the one.
+//! While a command drives the board, the file says so, and any positions are right: if the command
+//! is killed, its session is still that of the board.
+//!
+//! A file that cannot be read is never replaced: commands that move something refuse it. Work
+//! offsets that do not belong to the present session are dropped, and the file says so until the
+//! user has set or cleared them.
 
-use crate::connection::{ConnectedBoard, Connection};
+use crate::connection::{self, ConnectedBoard, Connection};
+use crate::failure::Failure;
 use crate::limits::ClosedLimits;
+use crate::work::WorkRecord;
 use carrystep_core::engine::{Cause, Guard};
+use carrystep_files::Machine;
+use carrystep_gcode::Offsets;
 use carrystep_link::Status;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write as _};
@@ -26,7 +36,7 @@ use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
-const SCHEMA: u32 = 2;
+const SCHEMA: u32 = 3;
 /// The environment variable that overrides the folder.
 const FOLDER: &str = "CARRYSTEP_STATE";
 
@@ -38,7 +48,58 @@ struct Record {
     build: String,
     session: Option<NonZeroU16>,
     ready: bool,
+    /// A command drives the board, or was killed while it did.
+    driving: bool,
     axes: Vec<AxisRecord>,
+    work: WorkRecord,
+    /// Work offsets were dropped, and the user has not set others since.
+    work_lost: bool,
+}
+
+impl Record {
+    /// A record of a board about which nothing is known.
+    fn blank(port: String, build: String, ready: bool, axes: usize) -> Self {
+        Self {
+            schema: SCHEMA,
+            port,
+            build,
+            session: None,
+            ready,
+            driving: false,
+            axes: vec![AxisRecord::default(); axes],
+            work: WorkRecord::default(),
+            work_lost: false,
+        }
+    }
+
+    /// Reads the file of this port and build; `None` if there is none, or one of an older version,
+    /// which had no work offsets.
+    fn read(path: &Path, port: &str, build: &str) -> Result<Option<(Self, Offsets)>, String> {
+        let text = match std::fs::read(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            text => text.map_err(|error| error.to_string())?,
+        };
+        let value: serde_json::Value =
+            serde_json::from_slice(&text).map_err(|error| format!("it is not whole: {error}"))?;
+        let schema = value.get("schema").and_then(serde_json::Value::as_u64);
+        let schema = schema.ok_or_else(|| "it has no schema".to_owned())?;
+        if schema < u64::from(SCHEMA) {
+            return Ok(None);
+        }
+        if schema > u64::from(SCHEMA) {
+            return Err(format!("its schema is {schema}, and this carrystep knows {SCHEMA}"));
+        }
+        let record: Self = serde_json::from_value(value).map_err(|error| error.to_string())?;
+        if record.port != port {
+            return Err(format!("it is that of the board at {}", record.port));
+        }
+        if record.build != build {
+            return Err(format!("it is that of a board of build {}", record.build));
+        }
+        let offsets = record.work.offsets();
+        let offsets = offsets.ok_or_else(|| "its work offsets are impossible".to_owned())?;
+        Ok(Some((record, offsets)))
+    }
 }
 
 /// The entry of one axis.
@@ -58,6 +119,62 @@ struct AxisRecord {
 pub struct BoardMemory {
     path: Option<PathBuf>,
     record: Record,
+    /// The work offsets of the record.
+    work: Offsets,
+    /// Why the file cannot be used.
+    refused: Option<String>,
+}
+
+/// The port's canonical path, so that every link to it gives the same name, and the file.
+fn file_of(port: &str, build: &str) -> (String, Option<PathBuf>) {
+    let canonical = Path::new(port).canonicalize();
+    let port = canonical.map_or_else(|_| port.to_owned(), |path| path.display().to_string());
+    let name: String =
+        port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
+    (port, path)
+}
+
+/// What a user does about a file that cannot be used.
+fn unusable(path: &Path, why: &str) -> Failure {
+    Failure::input(format!(
+        "{}: the state of the board cannot be used: {why}. Delete the file, home the machine, and \
+         set the work offsets again with `carrystep offset`",
+        path.display()
+    ))
+}
+
+/// What a user does about work offsets that were dropped.
+fn dropped(port: &str) -> Failure {
+    Failure::input(format!(
+        "the board at {port} was restarted, or another host has driven it, so its work offsets are \
+         gone: set them again with `carrystep offset --set`, or take none with `carrystep offset \
+         --clear`"
+    ))
+}
+
+/// The work offsets that are kept of the board of a machine at a port, without a look at the board.
+/// `name` is the path of the machine file.
+///
+/// # Errors
+/// Nothing is kept of it, its file cannot be used, or its work offsets were dropped.
+pub fn kept_offsets(port: &str, machine: &Machine, name: &Path) -> Result<Offsets, Failure> {
+    let (_, id) = connection::wanted(machine, name)?;
+    let build = format!("{:016x}", id.0);
+    let (port, path) = file_of(port, &build);
+    let nothing = || {
+        Failure::input(format!(
+            "nothing is known of a board at {port} with the gateware of {}: `carrystep offset` \
+             shows and sets its work offsets",
+            name.display()
+        ))
+    };
+    let path = path.ok_or_else(nothing)?;
+    let read = Record::read(&path, &port, &build).map_err(|why| unusable(&path, &why))?;
+    match read.ok_or_else(nothing)? {
+        (Record { work_lost: true, .. }, _) => Err(dropped(&port)),
+        (_, offsets) => Ok(offsets),
+    }
 }
 
 impl BoardMemory {
@@ -65,32 +182,40 @@ impl BoardMemory {
     /// discarded. No session may be open; an error of the line counts as a change.
     pub fn recall(connection: &mut Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
-        // The canonical path, so that every link to the port gives the same name.
-        let port = Path::new(port)
-            .canonicalize()
-            .map_or_else(|_| port.clone(), |path| path.display().to_string());
         let build = format!("{:016x}", board.facts().build);
-        let name: String =
-            port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-        let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
-        let blank = vec![AxisRecord::default(); axes.len()];
+        let (port, path) = file_of(port, &build);
         let Status { answer, positions } = *board.status();
-        let mut record =
-            Record { schema: SCHEMA, port, build, session: None, ready: answer.ready, axes: blank };
-        let stored = path.as_ref().and_then(|path| std::fs::read(path).ok());
-        if let Some(stored) = stored.and_then(|text| serde_json::from_slice::<Record>(&text).ok())
-            && (stored.schema, &stored.port, &stored.build) == (SCHEMA, &record.port, &record.build)
-            && (stored.ready, stored.axes.len()) == (record.ready, record.axes.len())
-            && stored.axes.iter().zip(positions).all(|(axis, position)| axis.position == position)
-            // A read of the owner would restart the watchdog of axes that move.
-            && (answer.idle || answer.halted)
-            && stored.session.is_some_and(|number| board.keeps(number).unwrap_or(false))
-        {
-            record.session = stored.session;
-            record.axes = stored.axes;
-            if let Ok(closed) = ClosedLimits::read(board) {
-                for (number, axis) in record.axes.iter_mut().enumerate() {
-                    axis.limit = axis.limit.filter(|_| closed.any(number));
+        let read = match &path {
+            Some(path) => Record::read(path, &port, &build).map_err(|why| unusable(path, &why)),
+            None => Ok(None),
+        };
+        let mut record = Record::blank(port, build, answer.ready, axes.len());
+        let (stored, refused) = match read {
+            Ok(stored) => (stored, None),
+            Err(failure) => (None, Some(failure.message())),
+        };
+        let mut work = Offsets::default();
+        if let Some((stored, offsets)) = stored {
+            let stands = |(axis, position): (&AxisRecord, i32)| axis.position == position;
+            // A stop by a limit may have been a freeze: only the machine file tells.
+            let froze = answer.fault && freezes_somewhere(answer.cause);
+            let is_same = (stored.ready, stored.axes.len()) == (record.ready, record.axes.len())
+                && match stored.driving {
+                    true => !froze,
+                    false => stored.axes.iter().zip(positions).all(stands),
+                }
+                // A read of the owner would restart the watchdog of axes that move.
+                && (answer.idle || answer.halted)
+                && stored.session.is_some_and(|number| keeps(board, number));
+            record.work_lost = stored.work_lost || !is_same && !offsets.is_zero();
+            if is_same {
+                work = offsets;
+                record.session = stored.session;
+                record.axes = stored.axes;
+                if let Ok(closed) = ClosedLimits::read(board) {
+                    for (number, axis) in record.axes.iter_mut().enumerate() {
+                        axis.limit = axis.limit.filter(|_| closed.any(number));
+                    }
                 }
             }
         }
@@ -100,7 +225,40 @@ impl BoardMemory {
                 *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
             }
         }
-        Self { path, record }
+        Self { path, record, work, refused }
+    }
+
+    /// Refuses a file that cannot be used.
+    ///
+    /// # Errors
+    /// The file is not whole, or that of another board.
+    pub fn usable(&self) -> Result<(), Failure> {
+        self.refused.clone().map_or(Ok(()), |message| Err(Failure::input(message)))
+    }
+
+    /// The work offsets.
+    ///
+    /// # Errors
+    /// As [`BoardMemory::usable`], and if they were dropped.
+    pub fn work(&self) -> Result<&Offsets, Failure> {
+        self.usable()?;
+        if self.record.work_lost { Err(dropped(&self.record.port)) } else { Ok(&self.work) }
+    }
+
+    /// Sets the work offsets.
+    pub fn set_work(&mut self, offsets: Offsets) {
+        self.record.work_lost = false;
+        self.work = offsets;
+    }
+
+    /// Says in the file that this command drives the board from now on, in the session that is
+    /// open. After [`BoardMemory::keep`] it does not any more.
+    ///
+    /// # Errors
+    /// As [`BoardMemory::keep`].
+    pub fn drives(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
+        self.record.driving = true;
+        self.write(board)
     }
 
     /// The machine coordinate of an axis' register zero, in steps; `None` if the axis is not homed.
@@ -147,9 +305,18 @@ impl BoardMemory {
     /// The board does not answer, or the system refuses the file. The old file then no
     /// longer matches the board and is ignored.
     pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
+        self.record.driving = false;
+        self.write(board)
+    }
+
+    fn write(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
+        if let Some(why) = &self.refused {
+            return Err(io::Error::other(why.clone()));
+        }
         let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;
         self.record.ready = answer.ready;
         self.record.session = board.session().or(self.record.session);
+        self.record.work = WorkRecord::from(&self.work);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
             // A motor without power does not keep its position.
@@ -163,13 +330,25 @@ impl BoardMemory {
         std::fs::create_dir_all(folder)?;
         let mut file = tempfile::NamedTempFile::new_in(folder)?;
         file.write_all(&serde_json::to_vec_pretty(&self.record)?)?;
+        file.as_file().sync_all()?;
         file.persist(path).map(drop).map_err(|error| error.error)
     }
+}
+
+/// Whether the board keeps this session. A command that was killed may have left a request or an
+/// answer on the line, which the first try takes away.
+fn keeps(board: &mut ConnectedBoard, session: NonZeroU16) -> bool {
+    (0..3).find_map(|_| board.keeps(session).ok()).unwrap_or(false)
 }
 
 /// True if a cause stops the axes at once on this machine, so that their motors may lose steps.
 pub fn freezes(cause: u8, guard: &Guard) -> bool {
     Cause::from_number(cause).is_none_or(|cause| cause.freezes(guard.limit_freezes))
+}
+
+/// True if a cause stops the axes at once on some machine.
+fn freezes_somewhere(cause: u8) -> bool {
+    Cause::from_number(cause).is_none_or(|cause| cause.freezes(true))
 }
 
 /// True if a cause stops the axes at once on every machine, whatever its setting for limits.

@@ -2,9 +2,9 @@
 
 use crate::arguments::{PlannerArguments, ProgramArguments};
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::progress::PlanProgress;
 use crate::recorded::{Recorded, RecordedRows};
+use crate::{interrupt, memory, work};
 use carrystep_files::{InputError, Machine};
 use carrystep_program::{ProgramFile, Row, Settings, Survey};
 use carrystep_report::Detail;
@@ -17,6 +17,10 @@ pub fn load(path: &Path, arguments: &ProgramArguments) -> Result<ProgramFile, Fa
     settings.from = arguments.from.from();
     for &(letter, at) in &arguments.at {
         settings.start[letter] = at;
+    }
+    if let Some(port) = &arguments.offsets_of {
+        settings.offsets = memory::kept_offsets(port, &machine, machine_path)?;
+        work::tell(&settings.offsets);
     }
     Ok(ProgramFile::open(path, machine, machine_path, settings)?)
 }

@@ -10,6 +10,7 @@ use crate::execute;
 use crate::files::{Files, Folder};
 use crate::flow::Flow;
 use crate::grammar::{self, LineKind};
+use crate::kept::Offsets;
 use crate::motion::record_probe;
 use crate::options::Options;
 use crate::outcome::Outcome;
@@ -107,6 +108,7 @@ impl<R: Read + Seek> Interpreter<R> {
 
     fn with_files(files: Files<R>, options: &Options) -> Self {
         let mut state = State::new(options.start, options.tools.clone());
+        options.offsets.give(&mut state);
         for &(number, value) in &options.parameters {
             if (1..=LAST_PARAMETER).contains(&usize::from(number)) && value.is_finite() {
                 state.memory.set(number.into(), value);
@@ -142,6 +144,25 @@ impl<R: Read + Seek> Interpreter<R> {
     /// without a parameter.
     pub fn parameter(&self, number: u16) -> f64 {
         self.state.numbered(number.into())
+    }
+
+    /// The offsets that the machine keeps, as the program has changed them.
+    pub fn offsets(&self) -> Offsets {
+        Offsets::of(&self.state)
+    }
+
+    /// Replaces these offsets, after a stop ([`Canon::Pause`] or [`Canon::ChangeTool`]) and before
+    /// the next step is asked for. The values must be finite.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        offsets.give(&mut self.state);
+    }
+
+    /// Whether the line of the last step has further steps: these were computed with the place and
+    /// the offsets that were in force at its beginning.
+    pub fn is_amid_line(&self) -> bool {
+        let is_more = |canon: &Canon| !matches!(canon, Canon::Comment(_) | Canon::Message(_));
+        let Outcome { before, cycle, after, .. } = &self.outcome;
+        cycle.is_some() || before.iter().chain(after).any(is_more)
     }
 
     /// The tool table as the program has changed it by G10, if there is one.

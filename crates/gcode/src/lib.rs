@@ -17,6 +17,7 @@
 //!            motion   lines, arcs (circle), probes; drill: cycles (cycle); polar
 //!            offsets  coordinate systems and stored places
 //!            tool_length offsets of tools; tools: the tool table
+//!            kept     what a machine keeps of them from one program to the next
 //!            switches spindle, coolant, tool; inputs_outputs
 //! blocks   block      lines as they are executed; modes: the modes between two of them
 //! ```
@@ -42,6 +43,7 @@ mod frame;
 mod grammar;
 mod inputs_outputs;
 mod interpreter;
+mod kept;
 mod memory;
 mod modes;
 mod motion;
@@ -67,6 +69,7 @@ pub use canon::{
 };
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
+pub use kept::Offsets;
 pub use modes::Modes;
 pub use options::{DEFAULT_BLOCKS, Options};
 pub use tools::{Tool, ToolTable};

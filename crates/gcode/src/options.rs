@@ -1,6 +1,7 @@
 //! How a program is read: where the machine is, what it has kept, and when a loop has no end.
 
 use crate::canon::Point;
+use crate::kept::Offsets;
 use crate::tools::ToolTable;
 
 /// Lines that loops and subroutines may run by default.
@@ -16,6 +17,8 @@ pub struct Options {
     /// How many lines may run again, in loops and subroutines, before the program is taken for one
     /// that does not end. Each stage of a drilling cycle counts as a line.
     pub blocks: u64,
+    /// Offsets that the machine has kept. [`Options::parameters`] come behind them.
+    pub offsets: Offsets,
     /// Values of numbered parameters at the beginning, such as offsets that the machine has kept
     /// (`#5221` is X of G54, in mm). Numbers without a parameter are ignored.
     pub parameters: Vec<(u16, f64)>,
@@ -31,6 +34,7 @@ impl Default for Options {
             start: Point::default(),
             block_delete: true,
             blocks: DEFAULT_BLOCKS,
+            offsets: Offsets::default(),
             parameters: Vec::new(),
             tools: None,
         }

@@ -135,6 +135,12 @@ pub enum Fault {
     /// The file is not the one that was read first.
     #[error("the file has changed while it was used")]
     Changed,
+    /// Something was changed while the program waited, and the line of the wait goes on with a move
+    /// that was computed before.
+    #[error(
+        "the line in which the program waits has a move of its own, which knows nothing of what was changed in the pause"
+    )]
+    ResumedAmidLine,
 }
 
 impl Fault {
@@ -194,6 +200,9 @@ impl Fault {
             }
             Self::SafeHeight { .. } => "give a greater --safe-z, or none".into(),
             Self::NoHeight => "leave out --safe-z".into(),
+            Self::ResumedAmidLine => {
+                "end the program, and write the move in a line of its own behind the wait".into()
+            }
             Self::Changed => "leave the file alone until the command has ended".into(),
         })
     }

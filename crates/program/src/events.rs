@@ -3,14 +3,15 @@
 
 use crate::entry::{Entry, Skipped};
 use crate::error::{Fault, ProgramError};
-use crate::file::ProgramFile;
+use crate::file::{ProgramFile, Resumed};
 use crate::letter::LINEAR;
 use crate::letters::Letters;
 use crate::outputs::{Effect, ProgramOutputs};
 use crate::switch::Switch;
 use carrystep_core::OutputChange;
 use carrystep_gcode::{
-    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Options, Pace, PathMode, Point, Step, Turn,
+    AXES, AXIS_LETTERS, Arc, Canon, Interpreter, Offsets, Options, Pace, PathMode, Point, Step,
+    Turn,
 };
 use carrystep_job::Tolerance;
 use std::collections::VecDeque;
@@ -116,6 +117,9 @@ pub struct Events {
     block: u64,
     /// The axes of which it is not known where the program began. They must not move.
     unknown: [bool; AXES],
+    /// Number of places to wait at so far, and what was changed at some of them.
+    waits: u64,
+    resumed: Vec<Resumed>,
     mode: PathMode,
     /// What the last canonical move gives and has not been taken yet.
     waiting: VecDeque<Event>,
@@ -140,7 +144,8 @@ impl Events {
     /// Reads a program that begins at this place from its beginning.
     pub(crate) fn begin(file: &ProgramFile, start: Point) -> Result<Self, ProgramError> {
         let settings = file.settings();
-        let options = Options { start, blocks: settings.blocks, ..Options::default() };
+        let offsets = settings.offsets.clone();
+        let options = Options { start, blocks: settings.blocks, offsets, ..Options::default() };
         let steps = Interpreter::open(file.path(), &options)
             .map_err(|error| ProgramError::of_gcode(file.path(), error))?;
         Ok(Self {
@@ -154,6 +159,8 @@ impl Events {
             at: start,
             block: 0,
             unknown: [false; AXES],
+            waits: 0,
+            resumed: settings.resumed.clone(),
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
             waiting: VecDeque::new(),
         })
@@ -162,6 +169,11 @@ impl Events {
     /// Whether all lines so far were of the program itself, and not of files beside it.
     pub fn one_file(&self) -> bool {
         self.one_file
+    }
+
+    /// The offsets that the machine keeps, behind the last line that was read.
+    pub fn offsets(&self) -> Offsets {
+        self.steps.offsets()
     }
 
     /// The tolerance in force.
@@ -185,6 +197,8 @@ impl Events {
     /// Executes the blocks before this one without their motion.
     pub(crate) fn pass_over(&mut self, block: u64) -> Result<Skipped, ProgramError> {
         let mut skipped = Skipped::default();
+        // Places to wait at are counted from the block on.
+        let resumed = std::mem::take(&mut self.resumed);
         while let Some(step) = self.steps.step_before(block) {
             let step = step.map_err(|error| ProgramError::of_gcode(&self.path, error))?;
             let line = step.line;
@@ -193,6 +207,7 @@ impl Events {
             self.add(step).map_err(|fault| ProgramError::new(&self.path, line, fault))?;
             self.waiting.drain(..).for_each(|event| skipped.event(&event));
         }
+        (self.waits, self.resumed) = (0, resumed);
         Ok(skipped)
     }
 
@@ -279,8 +294,8 @@ impl Events {
                 self.change(effect, with_motion, Switch::Output, line);
             }
             Canon::ReadInput { .. } => self.switch(Switch::Input, line),
-            Canon::ChangeTool { .. } => self.switch(Switch::ToolChange, line),
-            Canon::Pause { .. } => self.switch(Switch::Pause, line),
+            Canon::ChangeTool { .. } => self.wait(Switch::ToolChange, line)?,
+            Canon::Pause { .. } => self.wait(Switch::Pause, line)?,
             Canon::End => self.waiting.push_back(Event::End { line }),
             // Nothing overrides a feed in a plan, and the rest is for the operator.
             Canon::Overrides { .. }
@@ -304,6 +319,22 @@ impl Events {
 
     fn switch(&mut self, switch: Switch, line: u64) {
         self.waiting.push_back(Event::Switch { switch, line });
+    }
+
+    /// A place to wait at. What was changed there is in force for the next line.
+    fn wait(&mut self, switch: Switch, line: u64) -> Result<(), Fault> {
+        self.switch(switch, line);
+        self.waits += 1;
+        let Some(resumed) = self.resumed.iter().find(|resumed| resumed.number == self.waits) else {
+            return Ok(());
+        };
+        if self.steps.is_amid_line() {
+            return Err(Fault::ResumedAmidLine);
+        }
+        self.steps.set_offsets(&resumed.offsets);
+        self.steps.set_place(resumed.at);
+        self.at = resumed.at;
+        Ok(())
     }
 
     fn go(

@@ -7,7 +7,7 @@ use crate::letters::Letters;
 use bigdecimal::BigDecimal;
 use carrystep_files::unit::digits;
 use carrystep_files::{InputError, Machine, decimal};
-use carrystep_gcode::{DEFAULT_BLOCKS, Point};
+use carrystep_gcode::{DEFAULT_BLOCKS, Offsets, Point};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -32,12 +32,37 @@ pub struct Settings {
     pub blocks: u64,
     /// The block with which the program begins, instead of its first one.
     pub from: Option<FromBlock>,
+    /// Work offsets and tool length at the beginning.
+    pub offsets: Offsets,
+    /// What was changed where the program has waited, in the order of these places. The program is
+    /// planned from the last of them on.
+    pub resumed: Vec<Resumed>,
+}
+
+/// What was changed while a program waited, so that the rest of it begins at another place or with
+/// other offsets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resumed {
+    /// The number of the place at which it has waited, counted from 1 in the order in which they
+    /// are executed.
+    pub number: u64,
+    /// The machine place: x, y, z in mm, then a, b, c in degrees.
+    pub at: Point,
+    /// Work offsets and tool length.
+    pub offsets: Offsets,
 }
 
 impl Default for Settings {
-    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`], the whole program.
+    /// Machine zero, the tolerances of the program, [`DEFAULT_BLOCKS`], no offsets, the whole program.
     fn default() -> Self {
-        Self { start: Point::default(), tolerance_mm: None, blocks: DEFAULT_BLOCKS, from: None }
+        Self {
+            start: Point::default(),
+            tolerance_mm: None,
+            blocks: DEFAULT_BLOCKS,
+            offsets: Offsets::default(),
+            resumed: Vec::new(),
+            from: None,
+        }
     }
 }
 
@@ -150,9 +175,21 @@ impl ProgramFile {
         .collect()
     }
 
-    /// The steps of each axis at the place where the program begins.
+    /// The machine place where the program begins, or where it was resumed last.
+    pub fn begins(&self) -> &Point {
+        self.settings.resumed.last().map_or(&self.settings.start, |resumed| &resumed.at)
+    }
+
+    /// The steps of each axis at the place where the program begins, or where it was resumed last.
     pub fn start_steps(&self) -> Vec<i64> {
-        self.steps(&self.settings.start)
+        self.steps(self.begins())
+    }
+
+    /// The same program, resumed at a place where it has waited.
+    pub fn resumed(&self, change: Resumed) -> Self {
+        let mut this = self.clone();
+        this.settings.resumed.push(change);
+        this
     }
 
     /// Checks that the file is still the one that was opened.

@@ -4,6 +4,7 @@ use crate::error::ProgramError;
 use crate::events::{Event, Events};
 use crate::file::ProgramFile;
 use crate::legs::chords;
+use crate::rows::is_wait;
 use carrystep_check::OutputMark;
 
 /// The changes of outputs of a program, in order.
@@ -53,6 +54,9 @@ impl Iterator for Marks {
                 Some(Ok(Event::Rest { seconds, .. })) => {
                     let dwells = (seconds / self.tick_seconds).round() >= 1.0;
                     self.last.iter_mut().for_each(|last| last.dwells |= dwells);
+                }
+                Some(Ok(event)) if is_wait(&event) => {
+                    self.last.iter_mut().for_each(|last| last.dwells = true);
                 }
                 Some(Ok(_)) => {}
             }

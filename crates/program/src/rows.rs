@@ -7,9 +7,13 @@ use crate::file::ProgramFile;
 use crate::letters::Letters;
 use crate::sync::SyncPoint;
 use carrystep_files::Machine;
-use carrystep_gcode::Point;
+use carrystep_gcode::{Offsets, Point};
 use carrystep_job::{Arc, Cartesian, Element, Item, JobError, Planner, Row};
 use std::path::PathBuf;
+
+/// Time in s for which the tool rests where outputs change before a wait, so that a row has the
+/// change.
+pub(crate) const SWITCHING: f64 = 0.004;
 
 /// The rows of a program. After an error there are no more. A program without any row is an error,
 /// because nothing would be tried.
@@ -22,6 +26,10 @@ pub struct Rows {
     end: Point,
     /// The places to wait at since the last motion, change of outputs or dwell.
     waits: Vec<SyncPoint>,
+    /// Whether outputs have changed since then, so that no row has the change yet.
+    is_marked: bool,
+    /// Number of places to wait at that are still to be passed before anything is planned.
+    skips: u64,
     state: State,
     /// Whether no row has been given yet.
     is_empty: bool,
@@ -47,17 +55,21 @@ impl Rows {
     /// As [`Events::new`]; the planner refuses the machine.
     pub fn new(file: &ProgramFile) -> Result<Self, ProgramError> {
         let (machine, letters) = (file.machine().clone(), file.letters().clone());
-        let start = letters.coordinates(&file.settings().start);
+        let start = letters.coordinates(file.begins());
+        let skips = file.settings().resumed.last().map_or(0, |resumed| resumed.number);
         let planner = Planner::new(&machine, &Cartesian, letters.linear(), &start)
             .map_err(|error| ProgramError::of_planner(file.path(), &machine, error))?;
         Ok(Self {
             events: Events::new(file)?,
             planner,
             counts: Counts::default(),
-            end: file.settings().start,
+            end: *file.begins(),
             waits: Vec::new(),
+            is_marked: false,
+            skips,
             state: State::Reads,
-            is_empty: true,
+            // Behind a place where it was resumed, nothing may be left.
+            is_empty: skips == 0,
             path: file.path().to_owned(),
             machine,
             letters,
@@ -72,6 +84,11 @@ impl Rows {
     /// Whether all lines so far were of the program itself, and not of files beside it.
     pub fn one_file(&self) -> bool {
         self.events.one_file()
+    }
+
+    /// The offsets that the machine keeps, behind what has been read.
+    pub fn offsets(&self) -> Offsets {
+        self.events.offsets()
     }
 
     /// The place where the last move that was read ends, exactly as programmed.
@@ -91,6 +108,10 @@ impl Rows {
                 continue;
             };
             self.counts.add(&event);
+            if self.skips > 0 {
+                self.skips -= u64::from(is_wait(&event));
+                continue;
+            }
             for item in self.items(&event) {
                 self.planner.push(&item).map_err(|error| self.refused(error))?;
             }
@@ -108,17 +129,26 @@ impl Rows {
         let (first, then) = match *event {
             Event::Move(ref one) => {
                 self.end = one.to;
+                self.is_marked &= one.length() == 0.0;
                 (None, Some(Item::Move(self.element(one))))
             }
-            Event::Rest { seconds, line } if seconds > 0.0 => (None, Some(rest(seconds, line))),
+            Event::Rest { seconds, line } if seconds > 0.0 => {
+                self.is_marked = false;
+                (None, Some(rest(seconds, line)))
+            }
             Event::Rest { line, .. } => (Some(rest(0.0, line)), None),
             Event::Outputs { change, with_motion, line } => {
                 let mark = Item::Mark(change.word().into());
+                self.is_marked = true;
                 (Some(rest(0.0, line)).filter(|_| !with_motion), Some(mark))
             }
             Event::Switch { switch, line } => {
                 self.waits.extend(SyncPoint::of(switch, line));
-                (Some(rest(0.0, line)), None)
+                // What was switched before a wait is switched when the wait begins: the spindle
+                // does not turn in a tool change.
+                let dwell = if is_wait(event) && self.is_marked { SWITCHING } else { 0.0 };
+                self.is_marked &= dwell == 0.0;
+                (Some(rest(dwell, line)), None)
             }
             Event::End { .. } => (None, None),
         };
@@ -146,6 +176,11 @@ impl Rows {
             block: one.block,
         }
     }
+}
+
+/// Whether whoever runs the program waits there.
+pub(crate) fn is_wait(event: &Event) -> bool {
+    matches!(*event, Event::Switch { switch, line } if SyncPoint::of(switch, line).is_some())
 }
 
 impl Iterator for Rows {

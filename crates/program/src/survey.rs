@@ -5,6 +5,7 @@ use crate::error::ProgramError;
 use crate::file::ProgramFile;
 use crate::rows::Rows;
 use carrystep_core::Segment;
+use carrystep_gcode::Offsets;
 use carrystep_job::Row;
 use carrystep_plan::Peaks;
 use carrystep_plan::exact::{speeds, travel};
@@ -20,6 +21,8 @@ pub struct Survey {
     pub ticks: u64,
     /// Number of rows: segments of each axis.
     pub rows: u64,
+    /// The offsets that the machine keeps behind the program.
+    pub offsets: Offsets,
     /// Each axis, in the order of the machine file.
     pub axes: Vec<AxisSurvey>,
 }
@@ -102,7 +105,8 @@ impl SurveyedRows {
             axis.end_steps = end_steps;
         }
         let (counts, one_file) = (rows.counts().clone(), rows.one_file());
-        Survey { counts, one_file, ticks, rows: count, axes }
+        let offsets = rows.offsets();
+        Survey { counts, one_file, ticks, rows: count, offsets, axes }
     }
 }
 

@@ -47,6 +47,9 @@ impl fmt::Display for Wait {
     }
 }
 
+/// Half a step in units of 2^-64 step.
+const HALF_STEP: i128 = 1 << 63;
+
 /// The rows of a program, stretch by stretch: as a [`SegmentSource`], it gives the segments of the
 /// stretch that was begun last. Memory holds only the rows of which an axis has not taken its
 /// segment yet, those that may wait in the board's queues, and those that a hold looks at.
@@ -175,6 +178,33 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let kept = self.kept?.checked_shl(self.refused)?;
         let may = !self.is_held() && self.uncut.is_none() && queues.begun > 0;
         self.now.behind(queues.begun, kept).filter(|&keep| may && keep < queues.sent)
+    }
+
+    /// What brings P of each axis to its start value where the program waits: the segments of each
+    /// axis, `ticks` in all. No axis makes a step, because each stays within half a step of the whole
+    /// number that its position register shows.
+    pub fn settling(&self, ticks: u32) -> Vec<Vec<Segment>> {
+        let ticks = ticks.max(1);
+        let axis = |&at: &i128| {
+            let whole = (at + HALF_STEP) >> 64 << 64;
+            let (left, count) = (whole - at, i128::from(ticks));
+            let (v, more) = (left.div_euclid(count), left.rem_euclid(count));
+            // `more` ticks with one unit more, and then the others.
+            let parts = [(more, v + 1), (count - more, v)];
+            let parts = parts.into_iter().filter(|(ticks, _)| *ticks > 0);
+            let mut segments: Vec<Segment> = parts
+                .map(|(ticks, v)| Segment {
+                    ticks: ticks as u32,
+                    v: v as i64,
+                    a: 0,
+                    j: 0,
+                    last: false,
+                })
+                .collect();
+            segments.iter_mut().last().into_iter().for_each(|segment| segment.last = true);
+            segments
+        };
+        self.now.at().iter().map(axis).collect()
     }
 
     /// Drops what is left of the program, and ends it with this change of outputs, at rest. The
@@ -486,6 +516,27 @@ mod tests {
         assert_eq!(taken(&mut all, 1), [(4000, 0, true)]);
         assert!(all.segment(0).is_some());
         assert_eq!((all.outputs(), all.begin()), (off, None));
+    }
+
+    #[test]
+    fn settling_makes_no_step_and_ends_at_a_whole_one() {
+        // P of each axis in 2^-64 step from its start value, at a place of 7 or -7 steps.
+        for at in [-HALF_STEP, -HALF_STEP + 1, -12_345, -1, 0, 1, 99_999_999, HALF_STEP - 1] {
+            let rows = [row(5, 1, &[])];
+            let mut all = stretches(&rows);
+            all.at = vec![(7 << 64) + at, -(7 << 64) + at];
+            for segments in all.settling(4000) {
+                assert_eq!(segments.iter().map(|segment| segment.ticks).sum::<u32>(), 4000);
+                assert!(segments.iter().rev().skip(1).all(|segment| !segment.last));
+                assert!(segments.last().is_some_and(|segment| segment.last));
+                let mut p = HALF_STEP + at;
+                for segment in segments {
+                    p += travel(&segment, segment.ticks.into());
+                    assert!((0..1 << 64).contains(&p), "a carry is a step: {at}, {p}");
+                }
+                assert_eq!(p, HALF_STEP);
+            }
+        }
     }
 
     /// As if the file had changed: the queues have to run dry, which ramps the axes down.

@@ -53,6 +53,10 @@ pub struct ProgramArguments {
     /// With --from-block, the machine goes from there to the place of the block.
     #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
     pub at: Vec<(usize, f64)>,
+    /// Begin with the work offsets and the tool length that are kept of the board at this port. The
+    /// board is not asked. Default: none.
+    #[arg(long, help_heading = HEADING, value_name = "PORT")]
+    pub offsets_of: Option<String>,
 }
 
 /// Reads a tolerance, mm.
@@ -66,7 +70,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// Reads the place of a letter, as the letter's number and mm or degrees.
-fn place(text: &str) -> Result<(usize, f64), String> {
+pub fn place(text: &str) -> Result<(usize, f64), String> {
     let read = text.split_once('=').and_then(|(name, value)| {
         let mut letters = AXIS_LETTERS.iter();
         let letter = letters.position(|letter| name.eq_ignore_ascii_case(&letter.to_string()))?;
@@ -122,6 +126,7 @@ impl ProgramArguments {
         self.planner.refuse_for_moves(&[
             ("--at", !self.at.is_empty()),
             ("--from-block", self.from.from_block.is_some()),
+            ("--offsets-of", self.offsets_of.is_some()),
         ])
     }
 }

@@ -101,6 +101,7 @@ pub fn run(arguments: &HomeArguments) -> Result<(), Failure> {
     let mut connection =
         connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
     let mut memory = BoardMemory::recall(&mut connection);
+    memory.usable()?;
     connection::open(&mut connection)?;
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
     let report = drive(connection, &machine, &homing, &mut memory)?;

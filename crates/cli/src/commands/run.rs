@@ -6,9 +6,11 @@ use crate::commands::run_program;
 use crate::connection;
 use crate::drive::{Driven, Moves, drive};
 use crate::failure::Failure;
+use crate::jog::{self, JogWish};
 use crate::memory::BoardMemory;
+use crate::pause::{self, PauseWish};
 use crate::{job, output};
-use carrystep_files::{Machine, MoveFile, MoveSource, SourceText, decimal};
+use carrystep_files::{Machine, MoveSource};
 use carrystep_program::is_program;
 use std::path::Path;
 
@@ -23,26 +25,34 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     ])?;
     let source = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
-    told(&moved(source, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
-}
-
-/// Moves one axis.
-pub fn jog(arguments: &Jog) -> Result<(), Failure> {
-    let machine = Machine::load(&arguments.machine)?;
-    let Jog { axis, distance, time, .. } = arguments;
-    // Quoted as a TOML key, so that the name cannot contain TOML syntax.
-    let axis = serde_json::to_string(axis).map_err(|error| Failure::Run(error.to_string()))?;
-    let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
-    let text =
-        format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
-    let file = MoveFile::of_moves(machine, SourceText { path: "jog".into(), text: text.into() })?;
-    if let Some(failure) = nothing_to_do(&file, arguments) {
-        return Err(failure);
-    }
     told(
-        &moved(file.into(), &arguments.machine, &arguments.port, "jog", arguments.into_limit)?,
+        &moved(source, name, &arguments.port, "run", arguments.into_limit, |_, _| Ok(()))?,
         arguments.json,
     )
+}
+
+/// Moves one axis or several: by itself, or through the command whose program waits.
+pub fn jog(arguments: &Jog) -> Result<(), Failure> {
+    let machine = Machine::load(&arguments.machine)?;
+    let Jog { axis, distance, axes, feed, time, into_limit, .. } = arguments;
+    let one = axis.clone().zip(*distance);
+    let distances = one.into_iter().chain(axes.iter().cloned()).collect();
+    let wish = JogWish { distances, feed: *feed, time: *time, into_limit: *into_limit };
+    let file = wish.file(&machine)?;
+    let port = &arguments.port;
+    if pause::ask(&port.name, &PauseWish::Jog(wish), arguments.json)? {
+        return Ok(());
+    }
+    let check = |memory: &BoardMemory, positions: &[i32]| {
+        let place = |(number, &position): (usize, &i32)| {
+            memory.offset(number).map(|offset| i64::from(position) + offset)
+        };
+        let places: Vec<Option<i64>> = positions.iter().enumerate().map(place).collect();
+        jog::within_travel(&file, &places)
+    };
+    let source = file.clone().into();
+    let name = arguments.machine.as_path();
+    told(&moved(source, name, port, "jog", *into_limit, check)?, arguments.json)
 }
 
 /// Plans and executes the moves. Everything is planned before the port is opened, and nothing moves
@@ -53,26 +63,15 @@ fn moved(
     port: &PortArguments,
     command: &'static str,
     into_limit: bool,
+    check: impl FnOnce(&BoardMemory, &[i32]) -> Result<(), Failure>,
 ) -> Result<Driven, Failure> {
     let machine = source.machine.clone();
     let moves = Moves::new(source)?;
     let mut connection = connection::to_machine(port, &machine, name, command)?;
     let memory = BoardMemory::recall(&mut connection);
+    memory.usable()?;
+    check(&memory, &connection.board.status().positions)?;
     drive(connection, memory, moves.plan(), &moves.itinerary(), into_limit)
-}
-
-/// The failure for a jog of less than half a step, which states the size of a step.
-fn nothing_to_do(file: &MoveFile, arguments: &Jog) -> Option<Failure> {
-    let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
-    let (number, axis) =
-        (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == arguments.axis)?;
-    let part = first.rounding.get(number).copied().unwrap_or_default().abs();
-    let step = 1.0 / decimal::to_f64(&axis.steps_per_unit);
-    let Jog { axis, distance, .. } = arguments;
-    Some(Failure::input(format!(
-        "jog {axis} {distance} is {part:.3} step, which rounds to no step at all: nothing would move. One step of {axis} \
-         is {step} of its units"
-    )))
 }
 
 fn told(driven: &Driven, json: bool) -> Result<(), Failure> {

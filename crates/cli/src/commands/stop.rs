@@ -21,12 +21,14 @@ const BUSY: Duration = Duration::from_secs(2);
 /// Stops all axes; then clears the stop and switches the drivers off, if the arguments say so.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let (mut connection, stopped) = reach(arguments)?;
+    if !connection.board.status().answer.idle {
+        let Connection { board, axes, .. } = &mut connection;
+        board.stop().map_err(|error| connection::broken(&error, axes))?;
+    }
+    // Of axes that move, the memory cannot tell whether it is right. A stop needs no session.
     let mut memory = BoardMemory::recall(&mut connection);
     let Connection { board, axes, .. } = &mut connection;
     let failed = |error| connection::broken(&error, axes);
-    if !board.status().answer.idle {
-        board.stop().map_err(failed)?;
-    }
     if arguments.clear || arguments.off {
         board.open(random_session()).map_err(failed)?;
     }

@@ -37,6 +37,14 @@ pub fn call(port: &str) -> Option<Caller> {
 }
 
 impl Caller {
+    /// As [`Caller::ask`], with a text of one line behind the word.
+    pub fn ask_with(&mut self, request: SocketRequest, text: &str, wait: Duration) -> Reply {
+        match writeln!(self.stream.get_mut(), "{} {text}", request.word()) {
+            Ok(()) => self.line(wait),
+            Err(_) => Reply::Ended,
+        }
+    }
+
     /// Sends a request and waits up to `wait` for the answer.
     pub fn ask(&mut self, request: SocketRequest, wait: Duration) -> Reply {
         match writeln!(self.stream.get_mut(), "{}", request.word()) {

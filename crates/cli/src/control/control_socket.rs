@@ -12,7 +12,7 @@ const CALLERS: usize = 16;
 /// The greatest number of callers accepted in one poll, which is what the system queues.
 const QUEUE: usize = 128;
 /// The greatest length of a request in bytes.
-const LONGEST: usize = 64;
+const LONGEST: usize = 1024;
 
 /// The socket and its callers.
 pub struct ControlSocket {
@@ -41,7 +41,7 @@ impl ControlSocket {
 
     /// Answers the requests since the last poll. Returns true if one of them was a stop. It takes
     /// microseconds.
-    pub fn poll(&mut self, answer: &mut dyn FnMut(SocketRequest) -> String) -> bool {
+    pub fn poll(&mut self, answer: &mut dyn FnMut(SocketRequest, &str) -> String) -> bool {
         for _ in 0..QUEUE {
             let Ok((stream, _)) = self.listener.accept() else { break };
             if stream.set_nonblocking(true).is_ok() {
@@ -51,10 +51,10 @@ impl ControlSocket {
         let mut stop = false;
         self.callers.retain_mut(|caller| {
             let (requests, stays) = caller.take();
-            for request in requests {
+            for (request, text) in requests {
                 stop |= request == SocketRequest::Stop;
                 // A caller that does not read its answer loses it.
-                let _ = caller.stream.write_all(format!("{}\n", answer(request)).as_bytes());
+                let _ = caller.stream.write_all(format!("{}\n", answer(request, &text)).as_bytes());
             }
             stays
         });
@@ -65,8 +65,8 @@ impl ControlSocket {
 }
 
 impl Caller {
-    /// The complete requests of this caller, and whether its connection stays open.
-    fn take(&mut self) -> (Vec<SocketRequest>, bool) {
+    /// The complete requests of this caller with the text behind their words, and whether its connection stays open.
+    fn take(&mut self) -> (Vec<(SocketRequest, String)>, bool) {
         let mut bytes = [0; LONGEST];
         let stays = match self.stream.read(&mut bytes) {
             Ok(0) => false,
@@ -82,7 +82,9 @@ impl Caller {
         while let Some(end) = self.line.iter().position(|&byte| byte == b'\n') {
             let line: Vec<u8> = self.line.drain(..=end).collect();
             let word = std::str::from_utf8(&line).ok().and_then(|line| line.strip_suffix('\n'));
-            requests.extend(word.and_then(|word| word.parse::<SocketRequest>().ok()));
+            let (word, text) =
+                word.map_or(("", ""), |line| line.split_once(' ').unwrap_or((line, "")));
+            requests.extend(word.parse::<SocketRequest>().ok().map(|word| (word, text.to_owned())));
         }
         (requests, stays && self.line.len() < LONGEST)
     }
@@ -104,7 +106,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("door");
         let mut control_socket = ControlSocket::open(path.clone()).unwrap();
-        let mut answer = |_: SocketRequest| "yes".to_owned();
+        let mut answer = |_: SocketRequest, _: &str| "yes".to_owned();
         let idle: Vec<UnixStream> =
             (0..3 * CALLERS).map(|_| UnixStream::connect(&path).unwrap()).collect();
         assert!(!control_socket.poll(&mut answer));

@@ -51,7 +51,7 @@ pub enum ControlSocket {}
 
 impl ControlSocket {
     /// Never called.
-    pub fn poll(&mut self, _: &mut dyn FnMut(SocketRequest) -> String) -> bool {
+    pub fn poll(&mut self, _: &mut dyn FnMut(SocketRequest, &str) -> String) -> bool {
         match *self {}
     }
 }
@@ -80,6 +80,11 @@ pub fn call(_: &str) -> Option<Caller> {
 impl Caller {
     /// Never called.
     pub fn ask(&mut self, _: SocketRequest, _: Duration) -> Reply {
+        Reply::Ended
+    }
+
+    /// Never called.
+    pub fn ask_with(&mut self, _: SocketRequest, _: &str, _: Duration) -> Reply {
         Reply::Ended
     }
 

@@ -15,6 +15,9 @@ pub struct ProgramControl {
     pub(super) waits: Option<String>,
     /// The block in which the tool was last seen before anything stopped it.
     pub block: Option<BlockFound>,
+    /// What is to be done while it waits, and how the last of it has ended.
+    wish: Option<String>,
+    pub(super) result: Option<String>,
     holds: bool,
     resumed: bool,
     /// The number of signals before the present motion.
@@ -31,13 +34,41 @@ impl ProgramControl {
 
     /// The program moves on.
     pub fn moves(&mut self) {
-        *self = Self { before: interrupt::count(), block: self.block, ..Self::default() };
+        // A command may still ask for the result of what it wanted.
+        let (result, block) = (self.result.take(), self.block);
+        *self = Self { before: interrupt::count(), result, block, ..Self::default() };
     }
 
     /// Notes a request for a hold; false if the program rests.
     pub(super) fn hold(&mut self) -> bool {
         self.holds |= self.waits.is_none();
         self.waits.is_none()
+    }
+
+    /// Notes what is to be done while it waits; `None` if it moves, and false if something else is
+    /// not done yet.
+    pub(super) fn pauses(&mut self, text: &str) -> Option<bool> {
+        self.waits.as_ref()?;
+        let is_free = self.wish.is_none();
+        if is_free {
+            (self.wish, self.result) = (Some(text.to_owned()), None);
+        }
+        Some(is_free)
+    }
+
+    /// What is to be done while it waits, until [`ProgramControl::did`].
+    pub fn wish(&self) -> Option<&str> {
+        self.wish.as_deref()
+    }
+
+    /// It was done, with this result.
+    pub fn did(&mut self, result: String) {
+        (self.wish, self.result) = (None, Some(result));
+    }
+
+    /// The program cannot go on for this reason: it waits again.
+    pub fn stays(&mut self, waits: String) {
+        (self.waits, self.resumed) = (Some(waits), false);
     }
 
     /// Notes that the program may go on; false if it moves.

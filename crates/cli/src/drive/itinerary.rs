@@ -2,8 +2,10 @@
 
 use super::outcome::ProgramDriven;
 use crate::failure::Failure;
+use carrystep_core::Segment;
 use carrystep_files::Machine;
-use carrystep_link::{Queues, SegmentSource};
+use carrystep_link::{Queues, SegmentSource, Wish};
+use carrystep_program::{Offsets, Point, ProgramFile};
 use carrystep_runner::{BlockAt, Wait};
 
 /// The figures of a plan that has been planned to its end.
@@ -18,6 +20,15 @@ pub struct Plan<'a> {
     pub steps: Vec<i64>,
     /// What is reported of a G-code program.
     pub program: Option<ProgramDriven>,
+}
+
+/// The rest of a program that was planned again.
+#[derive(Debug)]
+pub struct Rest {
+    /// Steps of each axis to the end.
+    pub steps: Vec<i64>,
+    /// How long the motion lasts, s.
+    pub seconds: f64,
 }
 
 /// The segments of a plan, stretch by stretch.
@@ -48,6 +59,51 @@ pub trait Itinerary {
 
     /// Drops what is left, except that all outputs go off in a last stretch.
     fn end(&self) {}
+
+    /// Notes that the board rests at one of the places before the stretch, and waits. Returns the
+    /// work offsets that are in force there; `None` in a hold.
+    ///
+    /// # Errors
+    /// The file has changed.
+    fn waits(&self, _at: Wait) -> Result<Option<Offsets>, Failure> {
+        Ok(None)
+    }
+
+    /// The work offsets behind the whole way; `None` if they stay as they were before.
+    fn offsets(&self) -> Option<Offsets> {
+        None
+    }
+
+    /// Whether the work offsets are kept behind the run.
+    fn keeps(&self) -> bool {
+        false
+    }
+
+    /// The program, as it began, if it is one.
+    fn program(&self) -> Option<&ProgramFile> {
+        None
+    }
+
+    /// Where the board waits: the segments of each axis that bring P to its start value in these
+    /// ticks, without a step.
+    fn settling(&self, _ticks: u32) -> Vec<Vec<Segment>> {
+        Vec::new()
+    }
+
+    /// Plans the rest of a program that waits from this machine place, in mm and degrees, and with
+    /// these offsets. Then [`Itinerary::begin`] begins it. `wish` is called now and then; a stop ends
+    /// the planning.
+    ///
+    /// # Errors
+    /// The rest cannot be executed from there; then nothing has changed.
+    fn resume(
+        &self,
+        _at: Point,
+        _offsets: Offsets,
+        _wish: &mut dyn FnMut() -> Wish,
+    ) -> Result<Rest, Failure> {
+        Err(Failure::Run("only programs go on from another place".into()))
+    }
 
     /// Checks that nothing was missing.
     ///

@@ -53,6 +53,14 @@ impl<'a> Line<'a> {
         self.begun = None;
     }
 
+    /// From now on, the motion that is left lasts this long. Returns the time of all motion, s.
+    pub(super) fn plans(&mut self, seconds: f64) -> f64 {
+        let left = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        self.planned = self.moved().saturating_add(left);
+        self.bar.set_length(milliseconds(self.planned));
+        self.planned.as_secs_f64()
+    }
+
     /// Writes something that stays above the line.
     pub(super) fn above(&self, write: impl FnOnce()) {
         self.bar.suspend(write);

@@ -15,6 +15,9 @@ use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+/// What sees each planned move.
+type See<'a> = dyn FnMut(&PlannedMove) -> Result<(), Failure> + 'a;
+
 /// The moves of a file, which the link can send.
 pub struct Moves {
     survey: Survey,
@@ -29,13 +32,28 @@ impl Moves {
     /// # Errors
     /// A move cannot be made, or the machine's line is too slow to keep the queues full.
     pub fn new(source: MoveSource) -> Result<Self, Failure> {
+        Self::planned(source, |source, see| job::survey(source, see))
+    }
+
+    /// The same while a program waits, whatever signals have come before.
+    ///
+    /// # Errors
+    /// As [`Moves::new`].
+    pub fn in_a_pause(source: MoveSource) -> Result<Self, Failure> {
+        Self::planned(source, |source, see| Survey::new(source, see))
+    }
+
+    fn planned(
+        source: MoveSource,
+        survey: impl FnOnce(MoveSource, &mut See<'_>) -> Result<Survey, Failure>,
+    ) -> Result<Self, Failure> {
         let (machine, path) = (&source.machine, source.path.display().to_string());
         let axes = machine.axes.len() as u8;
         let mut supply =
             Some(Supply::new(axes, machine.timebase.tick_ns(), machine.queue, machine.baud));
         // A move that cannot be made is told before a line that is too slow.
         let mut starved = None;
-        let survey = job::survey(source, |planned| {
+        let survey = survey(source, &mut |planned: &PlannedMove| {
             for command in planned.commands().iter().filter_map(Command::of) {
                 if let Some(Err(error)) = supply.as_mut().map(|supply| supply.add(&command)) {
                     starved = Some(error);

@@ -1,6 +1,6 @@
 //! A G-code program as a board is driven through it.
 
-use super::itinerary::{Itinerary, Plan};
+use super::itinerary::{Itinerary, Plan, Rest};
 use super::outcome::ProgramDriven;
 use super::place::Place;
 use super::shared::Shared;
@@ -8,18 +8,19 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::pass::{Kept, RowsAhead};
 use crate::program;
-use carrystep_core::OutputChange;
+use carrystep_core::{OutputChange, Segment};
 use carrystep_files::Axis;
 use carrystep_job::Hold;
 use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, Queues, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
 use carrystep_program::{
-    AXIS_LETTERS, AxisSurvey, ProgramFile, Row, Rows, Survey, Switch, SwitchCount,
+    AXIS_LETTERS, AxisSurvey, Offsets, Point, ProgramFile, Resumed, Row, Rows, Survey, Switch,
+    SwitchCount,
 };
 use carrystep_report::Detail;
 use carrystep_runner::{BlockAt, Horizon, Stretches, Wait, kept_ticks};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// The row in which the outputs of a program that is ended go off, seconds.
 const LAST_ROW: f64 = 0.004;
@@ -41,64 +42,36 @@ pub struct PlannedProgram<'a> {
     first: Vec<i8>,
     horizon: Horizon,
     soft_limits: Vec<String>,
+    /// Whether the work offsets behind the program are kept.
+    keeps: bool,
 }
 
 impl<'a> PlannedProgram<'a> {
-    /// Plans a program to its end. `wish` is called now and then; the planner ends when it is a
-    /// stop.
+    /// Plans a program to its end. `keeps` says whether its work offsets are kept. `wish` is called
+    /// now and then; the planner ends when it is a stop.
     ///
     /// # Errors
     /// A mistake in the program, a line that is too slow to keep the queues full, or a stop.
     pub fn new(
         file: &'a ProgramFile,
         place: &Place,
+        keeps: bool,
         mut wish: impl FnMut() -> Wish,
     ) -> Result<Self, Failure> {
         let machine = file.machine();
-        let axes = machine.axes.len();
-        let name = file.path().display();
-        let starved = |Starved { axis, at_ms, late_us, baud }: Starved| {
-            Failure::input(format!(
-                "{name}: {baud} baud are too slow for this program: axis {axis} would run dry \
-                 {at_ms} ms after the start, its next segment {late_us} us late; give [machine.link] a higher baud rate"
-            ))
-        };
-        let mut supply =
-            Supply::new(axes as u8, machine.timebase.tick_ns(), machine.queue, machine.baud);
-        let (mut gone, mut first, mut rows) = (vec![0_i128; axes], vec![0; axes], 0_u64);
-        let planned = program::survey(file, Detail::Figures, |row| {
-            let motors = gone.iter_mut().zip(&mut first).zip(&row.segments);
-            for (number, ((gone, way), &segment)) in (0..).zip(motors) {
-                *gone += travel(&segment, segment.ticks.into());
-                if *way == 0 && gone.abs() >= HALF_STEP {
-                    *way = gone.signum() as i8;
-                }
-                supply.add(&Command::Segment { axis: number, segment }).map_err(starved)?;
-            }
-            rows += 1;
-            if rows.is_multiple_of(ROWS_OF_A_LOOK) && wish() == Wish::Stop {
-                return Err(Failure::Run(STOPPED.to_owned()));
-            }
-            Ok(())
-        });
+        let mut look = RowsLook::new(file);
+        let planned = program::survey(file, Detail::Figures, |row| look.see(row, &mut wish));
         // A signal ends the planning, too.
         let stopped = || Failure::Run(STOPPED.to_owned());
         let (survey, _) =
             planned.map_err(|error| if interrupt::is_asked() { stopped() } else { error })?;
-        supply.finish().map_err(starved)?;
-        let switches = &survey.counts.switches;
-        let blind = switches.iter().find(|one| matches!(one.switch, Switch::Probe | Switch::Input));
-        if let Some(SwitchCount { switch, line, .. }) = blind {
-            return Err(Failure::input(format!(
-                "{name}: line {line}: `run` cannot do this yet: {switch} ({})",
-                switch.instead()
-            )));
-        }
+        let first = look.finish()?;
+        refuse_blind(file, &survey)?;
         let named = |(axis, soft): (&Axis, &bool)| soft.then(|| axis.name.clone());
         let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
         let horizon = Horizon::of_queue(machine.queue as u64);
         let seconds = survey.ticks as f64 * machine.timebase.tick_seconds();
-        Ok(Self { file, survey, seconds, first, horizon, soft_limits })
+        Ok(Self { file, survey, seconds, first, horizon, soft_limits, keeps })
     }
 
     /// What the program switches and the machine does not, each with its first line.
@@ -150,19 +123,18 @@ impl<'a> PlannedProgram<'a> {
         &self,
         drive: impl FnOnce(&dyn Itinerary) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        let (file, kept) = (self.file, Kept::default());
-        let machine = file.machine();
-        // Signals hold the program. What stops it ends the reading of these rows.
-        let rows = RowsAhead::until(Rows::new(file)?, || false);
-        let rows = kept.until_an_error(rows);
-        let hold = Hold::new(machine).map_err(|error| Failure::input(error.to_string()))?;
-        let start_steps = file.start_steps();
-        let mut stretches = Stretches::new(rows, &start_steps, hold, machine.queue);
-        if machine.cuts {
-            stretches = stretches.with_cuts(kept_ticks(machine.timebase.tick_ns()));
-        }
-        let stretches = RefCell::new(stretches);
-        drive(&ProgramStretches { file, kept: &kept, stretches, start_steps })
+        let kept = Kept::default();
+        let stretches = RefCell::new(way(self.file, &kept)?);
+        drive(&ProgramStretches {
+            first: self.file,
+            start_steps: self.file.start_steps(),
+            now: RefCell::new(self.file.clone()),
+            kept: &kept,
+            stretches,
+            offsets: RefCell::new(self.survey.offsets.clone()),
+            keeps: self.keeps,
+            passed: Cell::new(0),
+        })
     }
 }
 
@@ -173,18 +145,160 @@ fn began_at(file: &ProgramFile) -> String {
     file.letters().of_axes().iter().map(axis).collect::<Vec<_>>().join(",")
 }
 
-/// The stretches of a program.
-struct ProgramStretches<'a, I: Iterator<Item = Row>> {
+/// What looks at the rows of a program before anything is sent.
+struct RowsLook<'a> {
     file: &'a ProgramFile,
-    kept: &'a Kept,
-    stretches: RefCell<Stretches<I>>,
-    /// Where the program begins, steps from machine zero.
-    start_steps: Vec<i64>,
+    supply: Supply,
+    gone: Vec<i128>,
+    first: Vec<i8>,
+    rows: u64,
 }
 
-impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
+impl<'a> RowsLook<'a> {
+    fn new(file: &'a ProgramFile) -> Self {
+        let machine = file.machine();
+        let axes = machine.axes.len();
+        let supply =
+            Supply::new(axes as u8, machine.timebase.tick_ns(), machine.queue, machine.baud);
+        Self { file, supply, gone: vec![0; axes], first: vec![0; axes], rows: 0 }
+    }
+
+    /// Looks at the next row.
+    ///
+    /// # Errors
+    /// The line is too slow, or `wish` wants a stop.
+    fn see(&mut self, row: &Row, wish: &mut dyn FnMut() -> Wish) -> Result<(), Failure> {
+        let motors = self.gone.iter_mut().zip(&mut self.first).zip(&row.segments);
+        for (number, ((gone, way), &segment)) in (0..).zip(motors) {
+            *gone += travel(&segment, segment.ticks.into());
+            if *way == 0 && gone.abs() >= HALF_STEP {
+                *way = gone.signum() as i8;
+            }
+            let sent = self.supply.add(&Command::Segment { axis: number, segment });
+            sent.map_err(|error| starved(self.file, error))?;
+        }
+        self.rows += 1;
+        if self.rows.is_multiple_of(ROWS_OF_A_LOOK) && wish() == Wish::Stop {
+            return Err(Failure::Run(STOPPED.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// The direction of the first motion of each axis.
+    ///
+    /// # Errors
+    /// The line is too slow.
+    fn finish(self) -> Result<Vec<i8>, Failure> {
+        self.supply.finish().map_err(|error| starved(self.file, error))?;
+        Ok(self.first)
+    }
+}
+
+fn starved(file: &ProgramFile, Starved { axis, at_ms, late_us, baud }: Starved) -> Failure {
+    let name = file.path().display();
+    Failure::input(format!(
+        "{name}: {baud} baud are too slow for this program: axis {axis} would run dry {at_ms} ms \
+         after the start, its next segment {late_us} us late; give [machine.link] a higher baud rate"
+    ))
+}
+
+/// Refuses what `run` cannot do.
+fn refuse_blind(file: &ProgramFile, survey: &Survey) -> Result<(), Failure> {
+    let switches = &survey.counts.switches;
+    let blind = switches.iter().find(|one| matches!(one.switch, Switch::Probe | Switch::Input));
+    blind.map_or(Ok(()), |SwitchCount { switch, line, .. }| {
+        Err(Failure::input(format!(
+            "{}: line {line}: `run` cannot do this yet: {switch} ({})",
+            file.path().display(),
+            switch.instead()
+        )))
+    })
+}
+
+/// Rows, wherever they come from.
+type Way<'a> = Stretches<Box<dyn Iterator<Item = Row> + 'a>>;
+
+/// The way of a program, which is planned in a thread of its own.
+fn way<'a>(file: &ProgramFile, kept: &'a Kept) -> Result<Way<'a>, Failure> {
+    // Signals hold the program. What stops it ends the reading of these rows.
+    let rows = RowsAhead::until(Rows::new(file)?, || false);
+    let rows: Box<dyn Iterator<Item = Row> + 'a> = Box::new(kept.until_an_error(rows));
+    let hold = Hold::new(file.machine()).map_err(|error| Failure::input(error.to_string()))?;
+    let machine = file.machine();
+    let stretches = Stretches::new(rows, &file.start_steps(), hold, machine.queue);
+    if !machine.cuts {
+        return Ok(stretches);
+    }
+    Ok(stretches.with_cuts(kept_ticks(machine.timebase.tick_ns())))
+}
+
+/// The stretches of a program.
+struct ProgramStretches<'a> {
+    /// The program as it began.
+    first: &'a ProgramFile,
+    /// Where it began, steps from machine zero.
+    start_steps: Vec<i64>,
+    /// The program with what was changed where it has waited.
+    now: RefCell<ProgramFile>,
+    kept: &'a Kept,
+    stretches: RefCell<Way<'a>>,
+    /// The work offsets behind the program.
+    offsets: RefCell<Offsets>,
+    /// Whether they are kept.
+    keeps: bool,
+    /// Number of places of the program at which it has waited, that of now included.
+    passed: Cell<u64>,
+}
+
+impl Itinerary for ProgramStretches<'_> {
     fn begin(&self) -> Option<Vec<Wait>> {
         self.stretches.borrow_mut().begin()
+    }
+
+    fn waits(&self, at: Wait) -> Result<Option<Offsets>, Failure> {
+        if let Wait::SyncPoint(_) = at {
+            self.passed.set(self.passed.get() + 1);
+        }
+        if let Wait::Hold(_) = at {
+            return Ok(None);
+        }
+        Ok(Some(carrystep_program::offsets_at(&self.now.borrow(), self.passed.get())?))
+    }
+
+    fn offsets(&self) -> Option<Offsets> {
+        Some(self.offsets.borrow().clone())
+    }
+
+    fn keeps(&self) -> bool {
+        self.keeps
+    }
+
+    fn program(&self) -> Option<&ProgramFile> {
+        Some(self.first)
+    }
+
+    fn settling(&self, ticks: u32) -> Vec<Vec<Segment>> {
+        self.stretches.borrow().settling(ticks)
+    }
+
+    fn resume(
+        &self,
+        at: Point,
+        offsets: Offsets,
+        wish: &mut dyn FnMut() -> Wish,
+    ) -> Result<Rest, Failure> {
+        let change = Resumed { number: self.passed.get(), at, offsets };
+        let file = self.now.borrow().resumed(change);
+        let mut look = RowsLook::new(&file);
+        let survey = Survey::new(&file, |row| look.see(row, &mut *wish))?;
+        look.finish()?;
+        refuse_blind(&file, &survey)?;
+        let stretches = way(&file, self.kept)?;
+        *self.stretches.borrow_mut() = stretches;
+        *self.offsets.borrow_mut() = survey.offsets.clone();
+        let seconds = survey.ticks as f64 * file.machine().timebase.tick_seconds();
+        self.now.replace(file);
+        Ok(Rest { steps: survey.axes.iter().map(AxisSurvey::steps).collect(), seconds })
     }
 
     fn source(&self) -> Box<dyn SegmentSource + '_> {
@@ -214,7 +328,7 @@ impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
     }
 
     fn end(&self) {
-        let machine = self.file.machine();
+        let machine = self.first.machine();
         let duty = (machine.outputs.pwm_divider != 0).then_some(0);
         let off = OutputChange { mask: machine.outputs.exist, levels: 0, duty };
         let ticks = (LAST_ROW / machine.timebase.tick_seconds()).ceil() as u32;
@@ -223,6 +337,6 @@ impl<I: Iterator<Item = Row>> Itinerary for ProgramStretches<'_, I> {
 
     fn whole(&self) -> Result<(), Failure> {
         self.kept.error()?;
-        Ok(self.file.same()?)
+        Ok(self.first.same()?)
     }
 }

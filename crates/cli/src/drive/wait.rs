@@ -3,6 +3,8 @@
 //! board meanwhile, so that it notices a stop and answers other commands.
 
 use super::Line;
+use super::itinerary::Rest;
+use super::pause::Pause;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::{Control, ProgramControl};
 use carrystep_link::{HostError, Wish};
@@ -63,10 +65,10 @@ fn is_foreground() -> bool {
 }
 
 /// How a wait ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) enum Waited {
-    /// The program goes on.
-    GoesOn,
+    /// The program goes on; with its rest if that was planned again.
+    GoesOn(Option<Rest>),
     /// The program is to end here, at rest.
     Ends,
 }
@@ -76,7 +78,7 @@ pub(super) fn wait(
     board: &mut ConnectedBoard,
     control: &mut Control,
     (keys, line): (&mut Keys, &Line<'_>),
-    at: Wait,
+    (at, pause): (Wait, &mut Pause<'_>),
 ) -> Result<Waited, ConnectedBoardError> {
     let enter = if keys.forget() { "Enter, or " } else { "" };
     line.above(|| {
@@ -87,8 +89,10 @@ pub(super) fn wait(
              and Ctrl-C ends it"
         );
     });
-    control.program().into_iter().for_each(|program| program.rests(at.to_string()));
+    let place = at.to_string();
+    control.program().into_iter().for_each(|program| program.rests(place.clone()));
     loop {
+        pause.look(board, control, &place)?;
         let status = board.read_status()?;
         let answer = status.answer;
         if answer.fault {
@@ -105,8 +109,25 @@ pub(super) fn wait(
             return Ok(Waited::Ends);
         }
         if resumed || keys.entered() {
-            control.program().into_iter().for_each(ProgramControl::moves);
-            return Ok(Waited::GoesOn);
+            let mut wish = || {
+                let ends = control.program().is_some_and(|program| program.ends());
+                if ends { Wish::Stop } else { control.wish(&status) }
+            };
+            match pause.go_on(&status, &mut wish) {
+                Ok(rest) => {
+                    control.program().into_iter().for_each(ProgramControl::moves);
+                    return Ok(Waited::GoesOn(rest));
+                }
+                Err(failure) => {
+                    let why = failure.message();
+                    let waits = format!("{at}; it cannot go on: {why}");
+                    line.above(|| {
+                        // If this write fails, there is no channel left to report it.
+                        let _ = writeln!(io::stderr(), "{waits}");
+                    });
+                    control.program().into_iter().for_each(|program| program.stays(waits.clone()));
+                }
+            }
         }
         std::thread::sleep(LOOK);
     }

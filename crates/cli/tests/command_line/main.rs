@@ -44,6 +44,8 @@ mod long_moves;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
+#[cfg(unix)]
+mod pauses;
 #[cfg(target_os = "linux")]
 #[path = "../support/peak.rs"]
 mod peak;
@@ -68,3 +70,5 @@ mod terminal;
 #[cfg(unix)]
 mod virtual_boards;
 mod windows;
+#[cfg(unix)]
+mod work_offsets;

@@ -50,27 +50,27 @@ driver = "tmc2209"
 "#;
 
 /// The table of x with which it can be homed, on a machine with switches.
-const HOME: &str = r#"travel = [-9, 20]
+pub const HOME: &str = r#"travel = [-9, 20]
 home = { toward = "min", seek_speed = 20, slow_speed = 2, max_travel = 30, pull_off = 1, position = 0 }
 "#;
 
 const JOB: &str = "G21 G90 F1500\nM3 S1000\nG1 X4 Y2\nG3 X2 Y4 I-2\nG0 Z1\nG1 X0 Y0 Z0\nM2\n";
-const PAUSES: &str = "G21 G90 F1500\nG1 X4\nM0\nG1 Y3\nM6 T2\nG1 Z-1\nM2\n";
+pub const PAUSES: &str = "G21 G90 F1500\nG1 X4\nM0\nG1 Y3\nM6 T2\nG1 Z-1\nM2\n";
 
-fn folder(job: &str) -> Folder {
+pub fn folder(job: &str) -> Folder {
     let folder = Folder::new();
     folder.write("machine.toml", MACHINE);
     folder.write("job.ngc", job);
     folder
 }
 
-fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
+pub fn run(folder: &Folder, board: &Board, options: &str) -> Ran {
     let options = format!("--machine machine.toml --port {} {options}", board.port);
     folder.run(&format!("run job.ngc {}", options.trim_end()))
 }
 
 /// Starts the program in the background.
-fn begins(folder: &Folder, board: &Board) -> Child {
+pub fn begins(folder: &Folder, board: &Board) -> Child {
     drives(folder, "run job.ngc --machine machine.toml", &board.port)
 }
 
@@ -90,12 +90,12 @@ pub fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
     }
 }
 
-fn resume(folder: &Folder, board: &Board) -> Ran {
+pub fn resume(folder: &Folder, board: &Board) -> Ran {
     folder.run(&format!("resume --port {}", board.port))
 }
 
 /// The document of a run that has passed.
-fn done(child: Child) -> Value {
+pub fn done(child: Child) -> Value {
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -253,10 +253,10 @@ fn mistakes_are_found_before_anything_moves() {
 }
 
 /// A path of some 20 seconds, without a rest.
-const LONG: &str = "G21 G90 G64 P0.02 F1800\nM3 S1000\no1 repeat [6]\nG1 X4 Y4\n\
+pub const LONG: &str = "G21 G90 G64 P0.02 F1800\nM3 S1000\no1 repeat [6]\nG1 X4 Y4\n\
     G3 X4 Y4 I-3 J1\nG1 X-4 Z0.4\nG1 X0 Y0 Z0\no1 endrepeat\nM2\n";
 
-fn hold(folder: &Folder, board: &Board) -> Ran {
+pub fn hold(folder: &Folder, board: &Board) -> Ran {
     folder.run(&format!("hold --port {}", board.port))
 }
 
@@ -271,7 +271,7 @@ pub fn positions(found: &Value) -> Vec<i64> {
 }
 
 /// Ends the board, and returns the levels of the spindle's output in its capture.
-fn spindle(folder: &Folder, board: Board) -> Vec<String> {
+pub fn spindle(folder: &Folder, board: Board) -> Vec<String> {
     board.end();
     let vcd = std::fs::read_to_string(folder.path("a.vcd")).unwrap();
     let declared = vcd.lines().find(|line| line.contains(" output_0 ")).unwrap();

@@ -13,6 +13,7 @@ pub fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
     command
         .args(arguments.split(' '))
         .args(["--port", port, "--json"])
+        .env("CARRYSTEP_STATE", folder.state())
         .current_dir(folder.path(""));
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
