@@ -23,7 +23,11 @@ const PLACES: &str = "\nx at 200\ny at -100\nz at 1200\n";
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.write("machine.toml", MACHINE);
+    // Deep queues, because the computer that runs these tests may be busy.
+    folder.write(
+        "machine.toml",
+        MACHINE.replace("tick_ns = 2000", "tick_ns = 2000\nqueue_depth = 31"),
+    );
     folder.write("job.ngc", JOB);
     folder
 }
@@ -73,7 +77,10 @@ fn host_that_is_killed_is_followed_by_another_one() {
             }
             assert_ne!(positions(&found), END, "it was too late for kill {kill}");
         };
-        assert_eq!(found["cause"], "watchdog", "kill {kill}");
+        // Whichever comes first: the queues hold 124 ms, and the watchdog waits for 4 s.
+        let cause = found["cause"].as_str().unwrap();
+        assert!(["underrun", "watchdog"].contains(&cause), "kill {kill}: {cause}");
+        passed(&folder.run(&format!("stop --clear --port {} --machine machine.toml", board.port)));
         let listed = &blocks[block as usize - 1];
         let ran = run(&folder, &board, &format!("--from-block {block} --yes --json"));
         passed(&ran);
@@ -129,18 +136,18 @@ fn program_that_was_ended_names_its_block_and_goes_on_there() {
 fn entry_reaches_the_pins_as_it_was_planned() {
     let folder = folder();
     let board = Board::new(&folder, "--vcd a.vcd --fast");
-    passed(&run(&folder, &board, "--from-block 20 --yes"));
+    passed(&run(&folder, &board, "--from-block 19 --yes"));
     assert!(board.end().contains(PLACES));
-    passed(&folder.run("check a.vcd job.ngc --machine machine.toml --from-block 20"));
+    passed(&folder.run("check a.vcd job.ngc --machine machine.toml --from-block 19"));
     assert_eq!(folder.run("check a.vcd job.ngc --machine machine.toml").status, 1);
     let ran = folder
-        .run("simulate job.ngc --machine machine.toml --from-block 20 --at x=3,y=-1,z=0.5 --json");
+        .run("simulate job.ngc --machine machine.toml --from-block 19 --at x=3,y=-1,z=0.5 --json");
     passed(&ran);
     let told = schemas::check(&ran.stdout);
     let entry = &told["plan"]["entry"];
     assert_eq!(
         (&entry["block"], &entry["spindle"], &entry["dwell_s"]),
-        (&20.into(), &"M3".into(), &0.2.into())
+        (&19.into(), &"M3".into(), &0.2.into())
     );
     assert_eq!((&entry["height_mm"], &entry["from"][1]["at"]), (&3.0.into(), &(-1.0).into()));
 }
@@ -149,14 +156,14 @@ fn entry_reaches_the_pins_as_it_was_planned() {
 fn nobody_confirms_without_a_terminal() {
     let folder = folder();
     let board = Board::new(&folder, "--fast");
-    let ran = run(&folder, &board, "--from-block 20");
+    let ran = run(&folder, &board, "--from-block 19");
     assert_eq!(ran.status, 2);
-    let shown = "entry at block 20, job.ngc:13: G1 X0 Y[#1/4]\n";
+    let shown = "entry at block 19, job.ngc:13: G1 X0 Y[#1/4]\n";
     assert!(ran.stderr.contains(shown) && ran.stderr.contains("add --yes"), "{}", ran.stderr);
     for (options, why) in [
         ("--from-block 0 --yes", "0 is not in 1.."),
-        ("--from-block 99 --yes", "no block 99: the program has 54"),
-        ("--from-block 20 --yes --safe-z -9", "z = -9 mm is below"),
+        ("--from-block 99 --yes", "no block 99: the program has 47"),
+        ("--from-block 19 --yes --safe-z -9", "z = -9 mm is below"),
         ("--from-block 3 --yes", "depends on where the program began"),
         ("--yes", "--from-block"),
         ("--safe-z 3", "--from-block"),
@@ -176,12 +183,12 @@ fn nobody_confirms_without_a_terminal() {
 fn somebody_confirms_in_a_terminal() {
     let folder = folder();
     let board = Board::new(&folder, "--fast");
-    for (answer, begins) in [("\r", false), ("no\r", false), ("y\r", true)] {
+    for (answer, begins) in [("\n", false), ("no\n", false), ("y\n", true)] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-        command.args(["run", "job.ngc", "--machine", "machine.toml", "--from-block", "20"]);
+        command.args(["run", "job.ngc", "--machine", "machine.toml", "--from-block", "19"]);
         command.args(["--port", &board.port]).current_dir(folder.path(""));
         let mut screen = Screen::start(&mut command);
-        screen.waits_for("entry at block 20");
+        screen.waits_for("entry at block 19");
         screen.waits_for("is this right?");
         // Other commands get an answer meanwhile.
         assert_eq!(status(&folder, &board)["moving"], false);
