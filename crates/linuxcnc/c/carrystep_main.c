@@ -52,8 +52,10 @@ typedef struct {
     hal_bit_t *fault;
     hal_u32_t *fault_code;
     hal_float_t *lead;
-    hal_float_t *lead_min;
+    hal_float_t *reserve;
+    hal_float_t *reserve_min;
     hal_float_t *trim;
+    hal_u32_t *end_ticks;
     hal_bit_t *inputs[INPUT_ROWS][ROW_INPUTS];
 } component;
 
@@ -64,14 +66,14 @@ static carrystep_servo servo;
 static carrystep_port thread;
 static uint32_t told;
 
-static void say(uint32_t fault)
+/* One message for each fault that begins. */
+static void say(const carrystep_servo_out *out)
 {
-    if (fault != told) {
-        told = fault;
-        if (fault != 0) {
-            rtapi_print_msg(RTAPI_MSG_ERR, "carrystep: fault %u: %s\n", fault, carrystep_fault_text(fault));
-        }
+    if (out->fault_code != told && out->fault_code != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "carrystep: fault %u: %s (joints 0x%x; 0: all)\n", out->fault_code,
+                        carrystep_fault_text(out->fault_code), out->culprits);
     }
+    told = out->fault_code;
 }
 
 static void show(const carrystep_servo_out *out)
@@ -81,11 +83,15 @@ static void show(const carrystep_servo_out *out)
     bool known = out->running && report->stream == servo.stream;
     *pins->running = out->running;
     *pins->connected = report->state != CARRYSTEP_AWAY;
-    *pins->fault = out->fault_code != 0;
+    *pins->fault = out->fault;
     *pins->fault_code = out->fault_code;
     *pins->trim = (double)report->trim * 1e-3;
+    *pins->end_ticks = known ? (hal_u32_t)(servo.blocks.ticks + report->rest) : 0;
     if (known) {
-        *pins->lead_min = *pins->lead_min == 0 || lead < *pins->lead_min ? lead : *pins->lead_min;
+        double reserve = (double)report->reserve_ns * 1e-6;
+        bool first = *pins->lead == 0;
+        *pins->reserve_min = first || reserve < *pins->reserve_min ? reserve : *pins->reserve_min;
+        *pins->reserve = reserve;
         *pins->lead = lead;
     }
     for (int row = 0; row < INPUT_ROWS; row++) {
@@ -95,12 +101,12 @@ static void show(const carrystep_servo_out *out)
     }
     for (int joint = 0; joint < joints; joint++) {
         *pins->joints[joint].position_fb = out->feedback[joint];
-        *pins->joints[joint].fault = out->fault[joint];
+        *pins->joints[joint].fault = out->fault;
         *pins->joints[joint].error = known ? report->error[joint] : 0.0;
         *pins->joints[joint].limit_min = (report->inputs >> joint & 1u) != 0;
         *pins->joints[joint].limit_max = (report->inputs >> (8 + joint) & 1u) != 0;
     }
-    say(out->fault_code);
+    say(out);
 }
 
 static void update(void *context, long period)
@@ -151,8 +157,10 @@ static int export_all(void)
     bad |= hal_pin_bit_newf(HAL_OUT, &pins->fault, component_id, "carrystep.0.fault");
     bad |= hal_pin_u32_newf(HAL_OUT, &pins->fault_code, component_id, "carrystep.0.fault-code");
     bad |= hal_pin_float_newf(HAL_OUT, &pins->lead, component_id, "carrystep.0.lead-ms");
-    bad |= hal_pin_float_newf(HAL_OUT, &pins->lead_min, component_id, "carrystep.0.lead-min-ms");
+    bad |= hal_pin_float_newf(HAL_OUT, &pins->reserve, component_id, "carrystep.0.reserve-ms");
+    bad |= hal_pin_float_newf(HAL_OUT, &pins->reserve_min, component_id, "carrystep.0.reserve-min-ms");
     bad |= hal_pin_float_newf(HAL_OUT, &pins->trim, component_id, "carrystep.0.trim-ppm");
+    bad |= hal_pin_u32_newf(HAL_OUT, &pins->end_ticks, component_id, "carrystep.0.end-ticks");
     for (int row = 0; row < INPUT_ROWS; row++) {
         for (int input = 0; input < ROW_INPUTS; input++) {
             static const char *const FIRST[INPUT_ROWS] = {"probe", "interlock"};

@@ -8,7 +8,7 @@
 #define PAUSE_MS 2u
 #define SILENCE (2000u * MS) /* without an answer for this time, the board is gone */
 #define SILENCE_IN_MOTION (200u * MS)
-#define LOOK (5u * MS)       /* between snapshots */
+#define LOOK (10u * MS)      /* between snapshots */
 #define POLL (5u * MS)       /* between reads while something is waited for */
 #define CLEAR (20u * MS)     /* between tries to clear a stop */
 #define LOST_SNAPSHOT (100u * MS)
@@ -174,7 +174,10 @@ static void finish_snapshot(carrystep_pump *pump)
         }
     }
     if (all) {
+        const carrystep_block *last = &pump->sent.blocks[(pump->snapshot.count - 1u) % CARRYSTEP_REMEMBERED];
+        uint64_t reserve = last->before + last->axes[0].ticks - gone_by;
         pump->report.stream = pump->stream;
+        pump->report.reserve_ns = (int64_t)(reserve * pump->report.tick_ns);
         trim(pump, (int64_t)(pump->snapshot.made + pump->rest) - (int64_t)gone_by);
     }
     if (pump->state == CARRYSTEP_PUMP_LOOKING) {
@@ -352,6 +355,7 @@ static void powering(carrystep_pump *pump)
     uint64_t made = __atomic_load_n(&pump->shared->made, __ATOMIC_ACQUIRE);
     uint64_t horizon = (uint64_t)pump->trim.horizon;
     pump->rest = horizon > made + 1u ? horizon - made : 1u;
+    pump->report.rest = pump->rest;
     memset(&rest, 0, sizeof rest);
     for (uint8_t axis = 0; axis < pump->how.axes; axis++) {
         rest.at[axis] = first.at[axis];

@@ -185,10 +185,10 @@ void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep
     uint32_t code = servo->fault != 0 ? servo->fault : servo->report.fault;
     bool away = servo->stream == 0 && servo->report.state != CARRYSTEP_READY;
     out->fault_code = code;
+    out->fault = code != 0 || away;
+    out->culprits = servo->fault != 0 ? servo->culprits : servo->report.culprits;
     out->running = servo->stream != 0;
     for (uint8_t axis = 0; axis < servo->axes; axis++) {
-        bool mine = servo->culprits == 0 || ((unsigned)servo->culprits >> axis & 1u) != 0;
-        out->fault[axis] = code != 0 ? mine : away;
         if (servo->stream != 0) {
             bool known = servo->report.stream == servo->stream;
             out->feedback[axis] = in->command[axis] + (known ? servo->report.error[axis] / servo->scale[axis] : 0.0);

@@ -54,8 +54,10 @@ typedef struct {
     carrystep_place at[CARRYSTEP_MOST_AXES]; /* of the latest snapshot */
     double error[CARRYSTEP_MOST_AXES];       /* steps: place less command at the latest snapshot */
     uint32_t inputs;      /* register INPUTS */
-    int64_t lead_ns;      /* latest lead */
+    int64_t lead_ns;      /* from the engine's tick to the end of the last block made */
+    int64_t reserve_ns;   /* from the engine's tick to the end of the last block that it has */
     int32_t trim;
+    uint64_t rest;        /* ticks of rest before the first block of the stream */
 } carrystep_report;
 
 /* What both threads share. */
@@ -97,7 +99,8 @@ typedef struct {
 
 typedef struct {
     double feedback[CARRYSTEP_MOST_AXES]; /* units */
-    bool fault[CARRYSTEP_MOST_AXES];
+    bool fault; /* of all joints: none may move without the others */
+    uint8_t culprits; /* the joints that caused it, one bit each; 0: none of them alone */
     uint32_t fault_code;
     bool running;
 } carrystep_servo_out;

@@ -13,6 +13,10 @@
 //!
 //! [`component`] lists these files with those of the C library of `carrystep-link` that they need.
 
+mod configuration;
+
+pub use configuration::{Configuration, Joint};
+
 use carrystep_link::C_LIBRARY;
 
 /// Name and text of each file that belongs to the component alone.

@@ -35,14 +35,13 @@ static void begin(void)
     printf("ok\n");
 }
 
-/* "servo period_ns enable command ...": "fault running faults lead inputs feedback ..." */
+/* "servo period_ns enable command ...": "code running fault culprits lead reserve feedback ..." */
 static void run_servo(void)
 {
     carrystep_servo_in in;
     carrystep_servo_out out;
     long period;
     int enable;
-    unsigned faults = 0;
     memset(&in, 0, sizeof in);
     memset(&out, 0, sizeof out);
     if (scanf("%ld %d", &period, &enable) != 2) {
@@ -57,11 +56,8 @@ static void run_servo(void)
         in.most[axis] = most[axis];
     }
     carrystep_servo_run(&servo, period, &in, &out);
-    for (unsigned axis = 0; axis < servo.axes; axis++) {
-        faults |= (out.fault[axis] ? 1u : 0u) << axis;
-    }
-    printf("%" PRIu32 " %d %u %" PRId64 " %" PRIu32, out.fault_code, out.running, faults, servo.report.lead_ns,
-           servo.report.inputs);
+    printf("%" PRIu32 " %d %d %u %" PRId64 " %" PRId64, out.fault_code, out.running, out.fault, out.culprits,
+           servo.report.lead_ns, servo.report.reserve_ns);
     for (unsigned axis = 0; axis < servo.axes; axis++) {
         printf(" %.17g", out.feedback[axis]);
     }
