@@ -56,6 +56,8 @@ typedef struct {
     hal_float_t *reserve_min;
     hal_float_t *trim;
     hal_u32_t *end_ticks;
+    hal_float_t *thread_pause;
+    hal_float_t *servo_pause;
     hal_bit_t *inputs[INPUT_ROWS][ROW_INPUTS];
 } component;
 
@@ -65,6 +67,7 @@ static carrystep_shared shared;
 static carrystep_servo servo;
 static carrystep_port thread;
 static uint32_t told;
+static long long called; /* time of the latest call, ns */
 
 /* One message for each fault that begins. */
 static void say(const carrystep_servo_out *out)
@@ -86,6 +89,7 @@ static void show(const carrystep_servo_out *out)
     *pins->fault = out->fault;
     *pins->fault_code = out->fault_code;
     *pins->trim = (double)report->trim * 1e-3;
+    *pins->thread_pause = (double)__atomic_load_n(&shared.pause_us, __ATOMIC_RELAXED) * 1e-3;
     *pins->end_ticks = known ? (hal_u32_t)(servo.blocks.ticks + report->rest) : 0;
     if (known) {
         double reserve = (double)report->reserve_ns * 1e-6;
@@ -116,6 +120,12 @@ static void update(void *context, long period)
     (void)context;
     memset(&in, 0, sizeof in);
     memset(&out, 0, sizeof out);
+    long long now = rtapi_get_time();
+    double pause = (double)(now - called) * 1e-6;
+    if (called != 0 && pause > *pins->servo_pause) {
+        *pins->servo_pause = pause;
+    }
+    called = now;
     in.enable = true;
     for (int joint = 0; joint < joints; joint++) {
         in.enable = in.enable && *pins->joints[joint].enable;
@@ -161,6 +171,8 @@ static int export_all(void)
     bad |= hal_pin_float_newf(HAL_OUT, &pins->reserve_min, component_id, "carrystep.0.reserve-min-ms");
     bad |= hal_pin_float_newf(HAL_OUT, &pins->trim, component_id, "carrystep.0.trim-ppm");
     bad |= hal_pin_u32_newf(HAL_OUT, &pins->end_ticks, component_id, "carrystep.0.end-ticks");
+    bad |= hal_pin_float_newf(HAL_OUT, &pins->thread_pause, component_id, "carrystep.0.thread-pause-ms");
+    bad |= hal_pin_float_newf(HAL_OUT, &pins->servo_pause, component_id, "carrystep.0.servo-pause-ms");
     for (int row = 0; row < INPUT_ROWS; row++) {
         for (int input = 0; input < ROW_INPUTS; input++) {
             static const char *const FIRST[INPUT_ROWS] = {"probe", "interlock"};

@@ -122,13 +122,24 @@ static bool transmit(carrystep_pump *pump, int port, uint8_t *line, size_t *leng
     }
 }
 
+/* Keeps the longest time between two rounds, for the pin thread-pause-ms. */
+static void measure(carrystep_shared *shared, uint64_t *round)
+{
+    uint64_t now = now_us();
+    uint64_t pause = now - *round < UINT32_MAX ? now - *round : UINT32_MAX;
+    if (pause > __atomic_load_n(&shared->pause_us, __ATOMIC_RELAXED)) {
+        __atomic_store_n(&shared->pause_us, (uint32_t)pause, __ATOMIC_RELAXED);
+    }
+    *round = now;
+}
+
 /* One connection, until the board or the port has gone or the component ends. */
 static void connect_board(carrystep_port *port, int line_port)
 {
     carrystep_pump *pump = &port->pump;
     uint8_t line[CARRYSTEP_LINE_BYTES];
     size_t length = 0, sent = 0;
-    uint64_t end = 0;
+    uint64_t end = 0, round = now_us();
     carrystep_pump_how how = port->how;
     how.number = (uint16_t)(1u + (now_us() ^ (uint64_t)getpid() * 40503u) % 65535u);
     carrystep_pump_begin(pump, port->shared, &how, now_us());
@@ -138,6 +149,7 @@ static void connect_board(carrystep_port *port, int line_port)
             wait.events |= POLLOUT;
         }
         poll(&wait, 1, 1);
+        measure(port->shared, &round);
         bool there = (wait.revents & (POLLERR | POLLHUP | POLLNVAL)) == 0 && receive(pump, line_port);
         carrystep_pump_run(pump, now_us());
         if (!there || !transmit(pump, line_port, line, &length, &sent)) {

@@ -7,11 +7,10 @@
 #define RESEND_MS 40u
 #define PAUSE_MS 2u
 #define SILENCE (2000u * MS) /* without an answer for this time, the board is gone */
-#define SILENCE_IN_MOTION (200u * MS)
+#define SILENCE_IN_MOTION (500u * MS)
 #define LOOK (10u * MS)      /* between snapshots */
 #define POLL (5u * MS)       /* between reads while something is waited for */
 #define CLEAR (20u * MS)     /* between tries to clear a stop */
-#define LOST_SNAPSHOT (100u * MS)
 #define A_STEP ((carrystep_place)1 << 64)
 
 void carrystep_pump_away(carrystep_shared *shared, uint32_t fault)
@@ -111,17 +110,28 @@ static uint32_t registers(const carrystep_pump *pump)
     return ALONE + 4u * pump->how.axes;
 }
 
+/* Begins a snapshot, but never before the last one is complete: its reads and those of the next
+ * have the same addresses, and a mixture of both would be a place where no axis ever was. */
 static void begin_snapshot(carrystep_pump *pump)
 {
-    if (pump->snapshot.stage != 0 && pump->now - pump->snapshot.before < LOST_SNAPSHOT) {
-        return;
-    }
-    if (pump->now - pump->looked >= LOOK && carrystep_write(&pump->session, CARRYSTEP_SNAPSHOT, 1)) {
+    if (pump->snapshot.stage == 0 && pump->now - pump->looked >= LOOK && carrystep_write(&pump->session, CARRYSTEP_SNAPSHOT, 1)) {
         pump->snapshot.stage = 1;
         pump->snapshot.count = pump->sent.sent;
         pump->snapshot.before = pump->now;
         pump->looked = pump->now;
     }
+}
+
+/* Whether the write of SNAPSHOT is acknowledged. Any answer may do that, if its own was lost. */
+static bool snapshot_is_taken(const carrystep_session *session)
+{
+    for (unsigned index = 0; index < session->length; index++) {
+        unsigned slot = (session->at + index) % CARRYSTEP_SLOTS;
+        if (session->slots[slot].address == (CARRYSTEP_WRITE | CARRYSTEP_SNAPSHOT)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static void read_snapshot(carrystep_pump *pump)
@@ -191,8 +201,7 @@ static void finish_snapshot(carrystep_pump *pump)
 
 static void take_snapshot(carrystep_pump *pump, const carrystep_answer *answer)
 {
-    if (pump->snapshot.stage == 1 && answer->written && answer->reason == 0 &&
-        answer->address == (CARRYSTEP_WRITE | CARRYSTEP_SNAPSHOT)) {
+    if (pump->snapshot.stage == 1 && snapshot_is_taken(&pump->session)) {
         pump->snapshot.stage = 2;
         pump->snapshot.after = pump->now;
         pump->snapshot.made = __atomic_load_n(&pump->shared->made, __ATOMIC_ACQUIRE);

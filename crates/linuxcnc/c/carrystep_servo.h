@@ -68,6 +68,7 @@ typedef struct {
     uint64_t made;          /* ticks of the blocks of this stream; atomic */
     int32_t trim;           /* parts per 10^9; atomic */
     uint32_t end;           /* the thread shall end; atomic */
+    uint32_t pause_us;      /* longest time between two rounds of the thread; atomic */
     carrystep_block block_cells[CARRYSTEP_BLOCK_CELLS];
     carrystep_report report_cells[CARRYSTEP_REPORT_CELLS];
 } carrystep_shared;

@@ -408,7 +408,7 @@ fn cable_that_is_pulled_disables_the_joints() {
     world.cable = false;
     // Nothing comes any more: the board stops by its watchdog or by an empty queue, and the
     // component says so when it has waited for an answer.
-    world.fails(fault::NO_ANSWER, 250);
+    world.fails(fault::NO_ANSWER, 550);
     world.off(100);
     assert!(world.board.rests());
     assert_eq!((world.says.fault, world.says.disabled), (fault::NO_ANSWER, true));

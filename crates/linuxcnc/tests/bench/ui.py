@@ -147,6 +147,8 @@ except Exception as error:
 finally:
     result["fault"] = int(pin("fault-code"))
     result.setdefault("reserve_min_ms", float(pin("reserve-min-ms")))
+    result["servo_pause_ms"] = float(pin("servo-pause-ms"))
+    result["thread_pause_ms"] = float(pin("thread-pause-ms"))
     sampler.terminate()
     sampler.wait()
     with open("result.json", "w") as file:
