@@ -13,7 +13,7 @@ use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_linuxcnc::{Configuration, Joint, component};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{Edges, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
-use rustix::process::setpriority_process;
+use rustix::thread::gettid;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -38,10 +38,9 @@ const STOP: u64 = 1 << 41;
 /// The greatest distance between pulses and commands: half a step by which pulses are whole, and the
 /// cubics' own error.
 const BOUND: f64 = 1.0;
-/// Priority of LinuxCNC's real-time process under SCHED_FIFO, and niceness of the board, where the
-/// user may set them: both run in real time, beside whatever else this computer does.
-const PRIORITY: &str = "10";
-const NICENESS: &str = "-12";
+/// Priorities under SCHED_FIFO of the board and of LinuxCNC's real-time process, where the user may
+/// set them: both run in real time, beside whatever else this computer does.
+const PRIORITIES: [&str; 2] = ["10", "11"];
 /// Where LinuxCNC looks for modules.
 const MODULES: &str = "/usr/lib/linuxcnc/modules";
 
@@ -82,7 +81,7 @@ fn board(end: Arc<AtomicBool>) -> (String, JoinHandle<Done>) {
     let mut board = RealTimeBoard::new(model, terminal, Pace::real(CLOCK_HZ), CLOCK_HZ);
     let thread = thread::spawn(move || {
         // Of this thread alone. Without the right to it, the board runs as it is.
-        let _ = setpriority_process(None, NICENESS.parse().unwrap());
+        prefer(&[], PRIORITIES[0], &gettid().as_raw_nonzero().to_string());
         let mut pulses = Pulses::default();
         let (mut round, mut pause) = (Instant::now(), Duration::ZERO);
         while !end.load(Ordering::Relaxed) {
@@ -132,9 +131,10 @@ fn run(command: &mut Command) {
     assert!(output.status.success(), "{command:?}: {said}");
 }
 
-/// Gives all threads of a process a priority under SCHED_FIFO; without the right to it, nothing changes.
-fn prefer(priority: &str, id: &str) {
-    let _ = Command::new("chrt").args(["-a", "-f", "-p", priority, id]).output();
+/// Gives a thread, or with `-a` all threads of a process, a priority under SCHED_FIFO. Without the
+/// right to it, nothing changes.
+fn prefer(which: &[&str], priority: &str, id: &str) {
+    let _ = Command::new("chrt").args(which).args(["-f", "-p", priority, id]).output();
 }
 
 /// Gives LinuxCNC's real-time process its priority, from when it appears until `end` is set.
@@ -143,7 +143,7 @@ fn raise_real_time(end: Arc<AtomicBool>) -> JoinHandle<()> {
         while !end.load(Ordering::Relaxed) {
             let found = Command::new("pgrep").args(["-x", "rtapi_app"]).output().unwrap();
             let text = String::from_utf8_lossy(&found.stdout).into_owned();
-            text.split_whitespace().for_each(|id| prefer(PRIORITY, id));
+            text.split_whitespace().for_each(|id| prefer(&["-a"], PRIORITIES[1], id));
             thread::sleep(Duration::from_millis(300));
         }
     })
