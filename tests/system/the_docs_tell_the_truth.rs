@@ -302,7 +302,8 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "verilog-board",
             "resources",
             "boards",
-            "equivalence"
+            "equivalence",
+            "linuxcnc"
         ]
     );
     for row in rows {

@@ -26,7 +26,7 @@ pub(crate) struct Reading {
     /// Number of rows of the stretch that were read.
     count: u32,
     /// P of each axis where the next row begins.
-    at: Vec<i128>,
+    pub at: Vec<i128>,
     /// Rows of the stretch that are still to be read, if a hold has shortened it.
     pub left: Option<usize>,
     /// The line in which a hold brings the motion to rest at the end of the stretch.
@@ -81,11 +81,6 @@ impl Reading {
     /// The rows that were read last, at most so many, with P of each axis where each begins.
     pub fn recent(&self, most: usize) -> impl Iterator<Item = &(Row, Vec<i128>)> {
         self.read.iter().skip(self.read.len().saturating_sub(most))
-    }
-
-    /// P of each axis where the next row begins.
-    pub fn at(&self) -> &[i128] {
-        &self.at
     }
 
     /// Reads a row, of which `ends` says whether the motion rests behind it though the planner's

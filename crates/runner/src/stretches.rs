@@ -125,7 +125,7 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             return;
         }
         let before = self.now.last().cloned();
-        let base = before.as_ref().map_or_else(|| self.now.at().to_vec(), |(_, at)| at.clone());
+        let base = before.as_ref().map_or_else(|| self.now.at.clone(), |(_, at)| at.clone());
         let mut rows: Vec<Row> = before.into_iter().map(|(row, _)| row).collect();
         let known = rows.len();
         let within = |rows: &[Row], row: &Row| rows.is_empty() || !waits(row);
@@ -204,7 +204,7 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             segments.iter_mut().last().into_iter().for_each(|segment| segment.last = true);
             segments
         };
-        self.now.at().iter().map(axis).collect()
+        self.now.at.iter().map(axis).collect()
     }
 
     /// Drops what is left of the program, and ends it with this change of outputs, at rest. The
@@ -524,7 +524,7 @@ mod tests {
         for at in [-HALF_STEP, -HALF_STEP + 1, -12_345, -1, 0, 1, 99_999_999, HALF_STEP - 1] {
             let rows = [row(5, 1, &[])];
             let mut all = stretches(&rows);
-            all.at = vec![(7 << 64) + at, -(7 << 64) + at];
+            all.now.at = vec![(7 << 64) + at, -(7 << 64) + at];
             for segments in all.settling(4000) {
                 assert_eq!(segments.iter().map(|segment| segment.ticks).sum::<u32>(), 4000);
                 assert!(segments.iter().rev().skip(1).all(|segment| !segment.last));

@@ -33,7 +33,7 @@ struct Run {
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its
 /// `FIGURES`.
-const RUNS: [Run; 12] = [
+const RUNS: [Run; 13] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -122,7 +122,16 @@ const RUNS: [Run; 12] = [
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_is_its_verilog"],
     },
+    Run {
+        name: "linuxcnc",
+        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; pulses against the motor-pos-cmd of every servo period",
+        asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],
+        cargo: &["--test", "real_linuxcnc"],
+    },
 ];
+
+/// Programs that come with LinuxCNC, beside our own.
+const PROGRAMS_OF_LINUXCNC: &str = "square_and_arc:3dtest:arcspiral:cds:comp:daisy:hole-circle:polar:spiral:tort:flowsnake:3D_Chips";
 
 /// What stands for a run that has not been made.
 const NOT_YET: &str = "| not run yet | | | | |";

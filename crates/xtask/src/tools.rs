@@ -5,7 +5,7 @@ use crate::shell::{self, TaskResult};
 use std::path::Path;
 
 /// Each program, and the Debian package that contains it.
-const NEEDED: [(&str, &str); 22] = [
+const NEEDED: [(&str, &str); 23] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -27,6 +27,7 @@ const NEEDED: [(&str, &str); 22] = [
     ("parallel", "parallel"),
     ("hostname", "hostname"),
     ("rs274", "linuxcnc-uspace"),
+    ("halcompile", "linuxcnc-uspace-dev"),
     ("chromium", "chromium"),
 ];
 

@@ -39,7 +39,7 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 12] = [
+pub const INPUTS: [Inputs; 13] = [
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
     (
@@ -118,6 +118,17 @@ pub const INPUTS: [Inputs; 12] = [
             "tests/support/board_session.rs",
         ],
     ),
+    (
+        "linuxcnc",
+        &[
+            "crates/core/",
+            "crates/model/",
+            "crates/link/",
+            "crates/linuxcnc/",
+            "crates/virtual-board/",
+            "sim/jobs/square_and_arc.ngc",
+        ],
+    ),
 ];
 
 /// The runs that a change since a commit can break. All, where git does not know the commit: a
@@ -157,7 +168,7 @@ mod tests {
         assert!(runs_of(&["README.md", "crates/cli/src/main.rs"]).is_empty());
         assert_eq!(
             runs_of(&["crates/link/src/lib.rs"]),
-            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board"]
+            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board", "linuxcnc"]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
         assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""The user of a headless LinuxCNC: LinuxCNC starts it as its user interface (DISPLAY).
+
+It records every servo period by halsampler to samples.txt, runs the programs of its environment
+variable PROGRAMS, jogs, pauses, aborts and stops, and writes what came of it to result.json."""
+
+import json
+import os
+import subprocess
+import time
+
+import linuxcnc
+
+command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
+result = {"errors": [], "programs": [], "steps": []}
+
+
+def look():
+    stat.poll()
+    message = errors.poll()
+    while message:
+        result["errors"].append(message[1].strip())
+        message = errors.poll()
+
+
+def until(condition, seconds, what):
+    end = time.time() + seconds
+    while True:
+        look()
+        if condition():
+            return
+        if time.time() > end:
+            raise RuntimeError(f"not within {seconds} s: {what}")
+        time.sleep(0.005)
+
+
+def pin(name):
+    words = ["halcmd", "getp", "carrystep.0." + name]
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def ready():
+    return pin("connected") == "TRUE" and pin("fault") == "FALSE" and pin("joint.0.fault") == "FALSE"
+
+
+def switch_on():
+    command.state(linuxcnc.STATE_ESTOP_RESET)
+    until(lambda: stat.task_state != linuxcnc.STATE_ESTOP, 5, "e-stop reset")
+    until(ready, 5, "the board is ready")
+    command.state(linuxcnc.STATE_ON)
+    until(lambda: stat.task_state == linuxcnc.STATE_ON, 5, "machine on")
+
+
+def mode(wanted):
+    command.mode(wanted)
+    command.wait_complete()
+
+
+def begin(program):
+    mode(linuxcnc.MODE_AUTO)
+    command.program_open(program)
+    command.auto(linuxcnc.AUTO_RUN, 0)
+    until(lambda: stat.interp_state != linuxcnc.INTERP_IDLE, 5, program + " begins")
+
+
+def moving():
+    return max(abs(joint["velocity"]) for joint in stat.joint[:3]) > 5
+
+
+def idle():
+    return stat.interp_state == linuxcnc.INTERP_IDLE and stat.inpos
+
+
+def finish(program, seconds):
+    until(lambda: idle() or stat.task_state != linuxcnc.STATE_ON, seconds, program + " ends")
+    if stat.task_state != linuxcnc.STATE_ON:
+        raise RuntimeError(program + ": the machine is off, fault " + pin("fault-code"))
+
+
+def work():
+    until(ready, 10, "the board is ready")
+    switch_on()
+    mode(linuxcnc.MODE_MANUAL)
+    command.home(-1)
+    until(lambda: all(stat.homed[:3]), 10, "homed")
+    programs = os.environ["PROGRAMS"].split(":")
+    for program in programs:
+        begin(program)
+        finish(program, 300)
+        result["programs"].append(os.path.basename(program))
+    first = programs[0]
+
+    begin(first)
+    until(moving, 5, "motion")
+    command.auto(linuxcnc.AUTO_PAUSE)
+    until(lambda: stat.current_vel == 0, 5, "a pause rests")
+    time.sleep(0.3)
+    command.auto(linuxcnc.AUTO_RESUME)
+    finish(first, 60)
+    result["steps"].append("feed hold")
+
+    begin(first)
+    until(moving, 5, "motion")
+    command.abort()
+    until(idle, 5, "an abort rests")
+    result["steps"].append("abort")
+
+    mode(linuxcnc.MODE_MANUAL)
+    command.teleop_enable(1)
+    command.wait_complete()
+    command.jog(linuxcnc.JOG_CONTINUOUS, False, 1, 20)
+    time.sleep(0.4)
+    command.jog(linuxcnc.JOG_STOP, False, 1)
+    time.sleep(0.4)
+    command.jog(linuxcnc.JOG_INCREMENT, False, 0, -30, 3)
+    time.sleep(0.6)
+    result["steps"].append("jog")
+
+    begin(first)
+    until(moving, 5, "motion")
+    command.state(linuxcnc.STATE_ESTOP)
+    until(lambda: stat.task_state == linuxcnc.STATE_ESTOP, 5, "e-stop")
+    until(ready, 5, "the board rests")
+    time.sleep(0.2)
+    result["steps"].append("e-stop in motion")
+
+    switch_on()
+    begin(first)
+    finish(first, 60)
+    time.sleep(0.3)
+    result["reserve_min_ms"] = float(pin("reserve-min-ms"))
+    result["trim_ppm"] = float(pin("trim-ppm"))
+    command.state(linuxcnc.STATE_OFF)
+    time.sleep(0.3)
+    result["feedback"] = [float(pin(f"joint.{joint}.position-fb")) for joint in range(3)]
+
+
+samples = open("samples.txt", "w")
+sampler = subprocess.Popen(["stdbuf", "-oL", "halsampler", "-t"], stdout=samples)
+try:
+    work()
+    result["whole"] = True
+except Exception as error:
+    look()
+    result["whole"] = False
+    result["failed"] = str(error)
+finally:
+    result["fault"] = int(pin("fault-code"))
+    result.setdefault("reserve_min_ms", float(pin("reserve-min-ms")))
+    result["servo_pause_ms"] = float(pin("servo-pause-ms"))
+    result["thread_pause_ms"] = float(pin("thread-pause-ms"))
+    sampler.terminate()
+    sampler.wait()
+    with open("result.json", "w") as file:
+        json.dump(result, file, indent=1)
