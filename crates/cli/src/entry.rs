@@ -186,7 +186,7 @@ impl fmt::Display for EntryFigures {
                 writeln!(f, "            Z down at {down} mm/min to {to}")?;
             }
             None => {
-                writeln!(f, "            straight at {} mm/min to {to}", digits(self.down_mm_min))?
+                writeln!(f, "            straight at {} mm/min to {to}", digits(self.down_mm_min))?;
             }
         }
         for PassedBlocks { what, count, line } in &self.passed {
