@@ -2,18 +2,7 @@
 
 use crate::events::{Event, ProgrammedMove};
 use crate::letter::LINEAR;
-use crate::switch::Switch;
-
-/// How often a program does something.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SwitchCount {
-    /// What it does.
-    pub switch: Switch,
-    /// How often.
-    pub count: u64,
-    /// The first line that does it.
-    pub line: u64,
-}
+use crate::switch::SwitchCount;
 
 /// Figures of a program.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,7 +25,7 @@ pub struct Counts {
     pub dwell_s: f64,
     /// The least and the greatest tolerance in force at a move, mm.
     pub tolerance_mm: Option<[f64; 2]>,
-    /// What is switched, in the order of [`Switch::ALL`].
+    /// What is switched, in the order of [`Switch::ALL`](crate::Switch::ALL).
     pub switches: Vec<SwitchCount>,
     moves_now: bool,
 }

@@ -1,7 +1,7 @@
 //! Canonical moves as events for a machine: each move with its start, its feed and the tolerance in
 //! force, rests, and what is switched.
 
-use crate::entry::{Entry, Skipped};
+use crate::entry::Entry;
 use crate::error::{Fault, ProgramError};
 use crate::file::{ProgramFile, Resumed};
 use crate::letter::LINEAR;
@@ -134,7 +134,7 @@ impl Events {
         file.same()?;
         let Some(entry) = file.entry() else { return Self::begin(file, file.settings().start) };
         let mut events = Self::begin(file, entry.program_start())?;
-        events.pass_over(entry.block.number)?;
+        events.pass_over(entry.block.number, |_, _, _| ())?;
         let machine = file.settings().start;
         let error = |fault| ProgramError::new(file.path(), entry.block.line, fault);
         events.enter(entry, machine).map_err(error)?;
@@ -194,21 +194,25 @@ impl Events {
         }
     }
 
-    /// Executes the blocks before this one without their motion.
-    pub(crate) fn pass_over(&mut self, block: u64) -> Result<Skipped, ProgramError> {
-        let mut skipped = Skipped::default();
+    /// Executes the blocks before this one without their motion. `watch` sees each step and what it
+    /// would give.
+    pub(crate) fn pass_over(
+        &mut self,
+        block: u64,
+        mut watch: impl FnMut(&Canon, &ProgramOutputs, &VecDeque<Event>),
+    ) -> Result<(), ProgramError> {
         // Places to wait at are counted from the block on.
         let resumed = std::mem::take(&mut self.resumed);
         while let Some(step) = self.steps.step_before(block) {
             let step = step.map_err(|error| ProgramError::of_gcode(&self.path, error))?;
-            let line = step.line;
+            let (line, canon) = (step.line, step.canon.clone());
             self.one_file &= *step.file == *self.name;
-            skipped.step(&step.canon, &self.outputs);
             self.add(step).map_err(|fault| ProgramError::new(&self.path, line, fault))?;
-            self.waiting.drain(..).for_each(|event| skipped.event(&event));
+            watch(&canon, &self.outputs, &self.waiting);
+            self.waiting.clear();
         }
         (self.waits, self.resumed) = (0, resumed);
-        Ok(skipped)
+        Ok(())
     }
 
     /// The interpreter.

@@ -81,13 +81,8 @@ pub struct ProgramFile {
 }
 
 impl ProgramFile {
-    /// Opens a program for a machine, and registers it as an input, so that no later output of this
-    /// process replaces it. `machine_path` is the machine's file, for errors.
-    ///
-    /// # Errors
-    /// The file cannot be read, the machine cannot run jobs, its line is too slow for them, or it
-    /// cannot start at that place, or the program cannot be entered at the block.
-    pub fn open(
+    /// As `open`, but without the entry.
+    pub(crate) fn whole(
         path: &Path,
         machine: Machine,
         machine_path: &Path,
@@ -102,12 +97,14 @@ impl ProgramFile {
             .map_err(|error| ProgramError::new(machine_path, 0, Fault::Plan(error)))?;
         let signs = (there.len(), there.modified().ok());
         let path = path.to_owned();
-        let mut this = Self { path, machine, letters, settings, signs, entry: None };
+        let this = Self { path, machine, letters, settings, signs, entry: None };
         this.check_start()?;
-        if let Some(from) = &this.settings.from {
-            this.entry = Some(Entry::find(&this, from)?);
-        }
         Ok(this)
+    }
+
+    /// The same program, entered in its middle.
+    pub(crate) fn entered(self, entry: Entry) -> Self {
+        Self { entry: Some(entry), ..self }
     }
 
     /// Refuses a start beyond `travel`, or of an axis that does not exist.

@@ -18,6 +18,7 @@
 
 mod blocks;
 mod counts;
+mod enter;
 mod entry;
 mod error;
 mod events;
@@ -36,7 +37,7 @@ mod sync;
 pub use blocks::{Blocks, TimedBlock};
 pub use carrystep_gcode::{AXIS_LETTERS, Modes, Offsets, PathMode, Plane, Point, Turn};
 pub use carrystep_job::Row;
-pub use counts::{Counts, SwitchCount};
+pub use counts::Counts;
 pub use entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 pub use error::{Fault, ProgramError};
 pub use events::{DEFAULT_TOLERANCE, Event, Events, ProgrammedMove};
@@ -48,5 +49,5 @@ pub use marks::Marks;
 pub use pause::offsets_at;
 pub use rows::Rows;
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
-pub use switch::Switch;
+pub use switch::{Switch, SwitchCount};
 pub use sync::{SyncPoint, outputs, sync_points};

@@ -57,6 +57,17 @@ impl Switch {
     }
 }
 
+/// How often a program does something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SwitchCount {
+    /// What it does.
+    pub switch: Switch,
+    /// How often.
+    pub count: u64,
+    /// The first line that does it.
+    pub line: u64,
+}
+
 impl fmt::Display for Switch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
