@@ -131,7 +131,8 @@ const RUNS: [Run; 13] = [
 ];
 
 /// Programs that come with LinuxCNC, beside our own.
-const PROGRAMS_OF_LINUXCNC: &str = "square_and_arc:3dtest:arcspiral:cds:comp:daisy:hole-circle:polar:spiral:tort:flowsnake:3D_Chips";
+const PROGRAMS_OF_LINUXCNC: &str =
+    "square_and_arc:3dtest:arcspiral:cds:comp:hole-circle:polar:spiral:tort:flowsnake:3D_Chips";
 
 /// What stands for a run that has not been made.
 const NOT_YET: &str = "| not run yet | | | | |";
