@@ -55,6 +55,9 @@ pub struct Board {
     pub oscillator: Oscillator,
     /// The clocks that are proposed; the first is the default.
     pub clocks: Vec<Clocking>,
+    /// Segments in the queue of an axis of a machine that is made for the board: the deepest queue
+    /// that fits its parts, with which the first clock is reached; 7 if its file names none.
+    pub queue_depth: usize,
     /// Electrical standard of the gateware's pins.
     pub io: IoStandard,
     /// How the oscillator reaches an iCE40's PLL.

@@ -3,7 +3,7 @@
 use super::configuration::{ConfigurationMode, Package};
 use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, PllInput, Tie};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{MAX_AXES, check_schedule};
+use carrystep_core::engine::{MAX_AXES, QUEUE_DEPTHS, check_schedule};
 use carrystep_files::error::{InputError, SourceText};
 use configuration::{Exception, RESERVED, RawGate};
 use pins::Pins;
@@ -30,6 +30,7 @@ struct RawBoard {
     bitstream: Option<String>,
     bitgen: Option<String>,
     usb: Option<Spanned<String>>,
+    queue_depth: Option<Spanned<usize>>,
     configured: Spanned<Vec<ConfigurationMode>>,
     #[serde(default)]
     exception: Vec<Exception>,
@@ -157,6 +158,7 @@ impl Reader<'_> {
                 io: raw.oscillator.io.map_or(io, Spanned::into_inner),
             },
             clocks: Vec::new(),
+            queue_depth: raw.queue_depth.map_or(QUEUE_DEPTHS[0], Spanned::into_inner),
             io,
             pll: raw.pll.map(Spanned::into_inner),
             vccaux: raw.vccaux.map(Spanned::into_inner),
@@ -200,6 +202,10 @@ impl Reader<'_> {
         }
         if raw.sources.as_ref().is_empty() {
             return self.refuse(raw.sources.span(), "no source: where do its pins come from?");
+        }
+        let refused = |depth: &&Spanned<usize>| !QUEUE_DEPTHS.contains(depth.as_ref());
+        if let Some(depth) = raw.queue_depth.as_ref().filter(refused) {
+            return self.refuse(depth.span(), "the depth of a queue is 7, 15 or 31 segments");
         }
         if !raw.flash.as_ref().contains("FILE") {
             return self.refuse(

@@ -164,6 +164,15 @@ impl Wishes {
             }
             _ => String::new(),
         };
+        let queues = match &self.clock {
+            Some(ClockSource::Board(board)) => {
+                let depth = format!("queue_depth = {}", board.queue_depth);
+                format!(
+                    "{depth:<28} # segments that wait for an axis: the most that fit the board\n"
+                )
+            }
+            _ => String::new(),
+        };
         let limits = self.limits.as_deref().unwrap_or("none");
         let clock = format!("clock_hz = {clock_hz}");
         let tick = format!("tick_ns = {tick_ns}");
@@ -176,6 +185,7 @@ impl Wishes {
              {clock:<28} # Hz\n\
              {tick:<28} # from one addition to the next: {why}\n\
              {phased:<28} # an edge is placed to a tick divided by this\n\
+             {queues}\
              \n\
              [machine.guard]\n\
              {wired:<28} # pair: two switches an axis, each: one an axis, one: one for all, none\n\

@@ -52,7 +52,8 @@ const DRIVEN: &str = "passed port build ended stopped_by cause culprits meaning 
     axes axes[].axis axes[].before axes[].position axes[].steps_planned axes[].unit axes[].steps_per_unit";
 
 const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].title boards[].family
-    boards[].parts boards[].parts[].name boards[].parts[].package boards[].parts[].block_rams
+    boards[].queue_depth boards[].parts boards[].parts[].name boards[].parts[].package
+    boards[].parts[].block_rams
     boards[].oscillator boards[].oscillator.pin boards[].oscillator.hz boards[].oscillator.io
     boards[].clocks boards[].clocks[].clock_hz boards[].clocks[].tick_ns boards[].clocks[].phases
     boards[].clocks[].made_by boards[].clocks[].why boards[].io boards[].wires boards[].wires[].port

@@ -259,18 +259,18 @@ impl<'a> Gateware<'a> {
     }
 }
 
-/// The text of the shipped machine file at a clock of the board and at the board's fastest baud
-/// rate.
+/// The text of the shipped machine file at a clock of the board, at the board's fastest baud rate,
+/// and with its deepest queues.
 ///
 /// # Errors
 /// [`ExportError::Baud`] if the clock makes no usual baud rate.
 pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, ExportError> {
     let axes = SHIPPED.find("[[machine.axis]]").map_or("", |begin| &SHIPPED[begin..]);
     let Clocking { clock_hz, tick_ns, phases, .. } = clock;
-    let baud = board.uart(*clock_hz)?.baud();
+    let (baud, depth) = (board.uart(*clock_hz)?.baud(), board.queue_depth);
     Ok(format!(
         "# The shipped machine (sim/six-axis.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
-         phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n[machine.link]\nbaud = {baud}\n\n{axes}",
+         phases = {phases}\nphase = \"half\"\nqueue_depth = {depth}\n\n[machine.guard]\nlimits = \"each\"\n\n[machine.link]\nbaud = {baud}\n\n{axes}",
         board.title
     ))
 }

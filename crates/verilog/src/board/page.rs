@@ -69,6 +69,7 @@ fn values(board: &Board) -> Value {
         clocks => board.clocks.iter().map(clocking).collect::<Vec<_>>(),
         wires => board.wires.iter().map(wire).collect::<Vec<_>>(),
         limits => context! { low => board.bits("limit_min"), high => board.bits("limit_max") },
+        queue_depth => board.queue_depth,
         queues => QUEUE_DEPTHS.map(|depth| {
             // A slot has eight words of 32 bits for each of eight axes.
             let more = (depth + 1) * 8 * 8 * 32 / RAM_BITS - 4;
