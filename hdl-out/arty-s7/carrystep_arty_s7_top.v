@@ -83,7 +83,7 @@ module carrystep_arty_s7_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h9fc0e665889ab39f),
+        .BUILD_ID(64'h7e0e45d096c550ca),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),

@@ -83,7 +83,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h416c09920c000333),
+        .BUILD_ID(64'h41737fd0522e667e),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),

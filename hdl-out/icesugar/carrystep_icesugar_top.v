@@ -83,7 +83,7 @@ module carrystep_icesugar_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'he804827a10178d1c),
+        .BUILD_ID(64'h4ee7210eafa24f57),
         .CLOCK_HZ(32'h1c9c380),
         .TICK_NS(32'd3200),
         .ROUND_TICKS(32'd8),

@@ -98,7 +98,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'h2062a7b965b94182),
+        .BUILD_ID(64'hf3ae7ef209fd8472),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),

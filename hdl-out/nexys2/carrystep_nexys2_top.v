@@ -83,7 +83,7 @@ module carrystep_nexys2_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hea19617820757e15),
+        .BUILD_ID(64'h355de4f12910dc3),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

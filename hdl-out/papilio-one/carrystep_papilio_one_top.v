@@ -82,7 +82,7 @@ module carrystep_papilio_one_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hd6340ffe14a954ae),
+        .BUILD_ID(64'h36c970ae490f2f1d),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

@@ -84,7 +84,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hd6340ffe14a954ae),
+        .BUILD_ID(64'hfda42404bfd6c6cb),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),

@@ -84,7 +84,7 @@ module carrystep_upduino3_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hba09b60591a3f9c2),
+        .BUILD_ID(64'h7c8ebab83df9e999),
         .CLOCK_HZ(32'h23c3460),
         .TICK_NS(32'd2560),
         .ROUND_TICKS(32'd16),
