@@ -2,6 +2,8 @@
 //! change here changes tests/transcripts/help.md.
 
 mod machine;
+mod place;
+mod plan;
 mod port;
 mod profile;
 mod program;
@@ -14,11 +16,13 @@ use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser};
 pub use machine::{MachineArguments, MachineCommand, MachineNew};
+pub use place::{Jog, OffsetArguments};
+pub use plan::PlanArguments;
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{
-    HomeArguments, Jog, OffsetArguments, PeerArguments, PortArguments, ProgramPortArguments,
-    RunArguments, StatusArguments, Stop,
+    HomeArguments, PeerArguments, PortArguments, ProgramPortArguments, RunArguments,
+    StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
@@ -139,40 +143,6 @@ pub struct Demo {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
-}
-
-/// The arguments of `carrystep plan`.
-#[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)] // so that a negative tolerance is refused as one
-pub struct PlanArguments {
-    /// The move file, or a program in G-code: .ngc, .nc or .gcode.
-    #[arg(value_name = "MOVE.toml|JOB.ngc")]
-    pub file: PathBuf,
-    /// The options of programs.
-    #[command(flatten)]
-    pub program: ProgramArguments,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
-    /// fit_ns.
-    #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
-    pub fit_ns: Option<u64>,
-    /// List every segment: ticks, V, A, J.
-    #[arg(long)]
-    pub segments: bool,
-    /// List the executed blocks of a program instead: number, line, the time at which the motion
-    /// begins, text. With --json-lines, a JSON document in a line for each block.
-    #[arg(long, help_heading = program::HEADING, conflicts_with_all = ["json", "segments", "report", "from_block"])]
-    pub list_blocks: bool,
-    /// Write a page: the path by speed and by what binds it, the axes beside their limits, where the
-    /// time goes. It needs no network.
-    #[arg(long, value_name = "FILE.html")]
-    pub report: Option<PathBuf>,
-    /// One JSON document, segments included (of a program, only the figures).
-    #[arg(long)]
-    pub json: bool,
-    /// A JSON document in a line for each move (of a program for each row: the segments of all axes
-    /// for the same ticks), and one for the whole at the end. No move is kept in memory.
-    #[arg(long, conflicts_with_all = ["json", "segments"])]
-    pub json_lines: bool,
 }
 
 /// The arguments of `carrystep simulate`.

@@ -27,7 +27,6 @@ mod outcome;
 mod pause;
 mod place;
 mod program;
-mod shared;
 mod wait;
 
 /// Time between two searches for a hold that the limits forbid now.

@@ -2,6 +2,7 @@
 //! before anything is sent.
 
 use crate::registers::MOST_AXES;
+use core::cell::RefCell;
 use thiserror::Error;
 
 pub use carrystep_core::{OutputChange, Segment};
@@ -156,6 +157,30 @@ impl<S: SegmentSource + ?Sized> SegmentSource for &mut S {
 
     fn cut_refused(&mut self) {
         (**self).cut_refused();
+    }
+}
+
+/// A source that others change, in the same thread, while the link reads it. It is borrowed only
+/// during a call.
+impl<S: SegmentSource + ?Sized> SegmentSource for &RefCell<S> {
+    fn segment(&mut self, axis: u8) -> Option<Segment> {
+        self.borrow_mut().segment(axis)
+    }
+
+    fn outputs(&mut self) -> OutputChange {
+        self.borrow_mut().outputs()
+    }
+
+    fn start(&mut self) -> Option<u8> {
+        self.borrow_mut().start()
+    }
+
+    fn may_cut(&self) -> bool {
+        self.borrow().may_cut()
+    }
+
+    fn cut_refused(&mut self) {
+        self.borrow_mut().cut_refused();
     }
 }
 

@@ -11,52 +11,15 @@ use crate::singles::Singles;
 use crate::slip::{Decoder, Received};
 use crate::window::{Full, Window};
 use core::num::NonZeroU16;
-use thiserror::Error;
+
+mod error;
+mod timing;
+
+pub use error::{SessionLost, WriteError};
+pub use timing::Timing;
 
 /// Bits of SEEK: the axes that wait for the source.
 const SEEK_AXES: u32 = 0xff;
-
-/// Why a write was not accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum WriteError {
-    /// There is no room.
-    #[error(transparent)]
-    Full(#[from] Full),
-    /// This host owns no session.
-    #[error("this host has not opened a session with the gateware: open one before you write")]
-    NoSession,
-    /// The write is a START, and the drivers have no power.
-    #[error(transparent)]
-    NoPower(ProgramError),
-}
-
-/// Error: the gateware does not keep the number of this host's session any more. Another host has
-/// opened one since, or the gateware was restarted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error(
-    "another host has taken the gateware, or it was restarted: end one of the two hosts; then stop, clear and begin again"
-)]
-pub struct SessionLost {
-    /// The answer that says so.
-    pub answer: Answer,
-}
-
-/// Waiting times, in milliseconds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Timing {
-    /// Time without an answer until a request is sent again. It must exceed the delay of the line
-    /// and its driver.
-    pub resend: u32,
-    /// Time until a request is sent again that the gateware refused as busy.
-    pub pause: u32,
-}
-
-impl Default for Timing {
-    /// Times for USB serial bridges, which delay an answer by up to 16 ms.
-    fn default() -> Self {
-        Self { resend: 40, pause: 2 }
-    }
-}
 
 /// The dialogue of one host with one gateware, with up to `N` unacknowledged writes.
 #[derive(Debug, Clone)]

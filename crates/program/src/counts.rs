@@ -1,6 +1,6 @@
 //! What a program asks for, counted while it is read.
 
-use crate::events::{Event, ProgrammedMove};
+use crate::event::{Event, ProgrammedMove};
 use crate::letter::LINEAR;
 use crate::switch::SwitchCount;
 

@@ -2,7 +2,8 @@
 
 use crate::entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 use crate::error::{Fault, ProgramError};
-use crate::events::{Event, Events};
+use crate::event::Event;
+use crate::events::Events;
 use crate::file::{ProgramFile, Settings};
 use crate::letter::LINEAR;
 use crate::outputs::ProgramOutputs;

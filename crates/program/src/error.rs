@@ -138,7 +138,8 @@ pub enum Fault {
     /// Something was changed while the program waited, and the line of the wait goes on with a move
     /// that was computed before.
     #[error(
-        "the line in which the program waits has a move of its own, which knows nothing of what was changed in the pause"
+        "the line in which the program waits has a move of its own, which knows nothing of what was \
+         changed in the pause"
     )]
     ResumedAmidLine,
 }

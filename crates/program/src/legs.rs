@@ -1,7 +1,8 @@
 //! The programmed path as straight legs for the checker, which needs no other geometry.
 
 use crate::error::ProgramError;
-use crate::events::{Event, Events, ProgrammedMove};
+use crate::event::{Event, ProgrammedMove};
+use crate::events::Events;
 use crate::file::ProgramFile;
 use carrystep_check::PathLeg;
 

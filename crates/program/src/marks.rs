@@ -1,7 +1,8 @@
 //! Where a program changes outputs, for the checker: between which legs of the path.
 
 use crate::error::ProgramError;
-use crate::events::{Event, Events};
+use crate::event::Event;
+use crate::events::Events;
 use crate::file::ProgramFile;
 use crate::legs::chords;
 use crate::rows::is_wait;

@@ -1,7 +1,8 @@
 //! What a program has come to at a place where it waits.
 
 use crate::error::ProgramError;
-use crate::events::{Event, Events};
+use crate::event::Event;
+use crate::events::Events;
 use crate::file::ProgramFile;
 use crate::sync::SyncPoint;
 use carrystep_gcode::Offsets;

@@ -2,7 +2,8 @@
 
 use crate::counts::Counts;
 use crate::error::{Fault, ProgramError};
-use crate::events::{Event, Events, ProgrammedMove};
+use crate::event::{Event, ProgrammedMove};
+use crate::events::Events;
 use crate::file::ProgramFile;
 use crate::letters::Letters;
 use crate::sync::SyncPoint;

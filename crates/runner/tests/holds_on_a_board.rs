@@ -12,12 +12,11 @@
 mod support;
 
 use carrystep_core::link::Uart;
-use carrystep_core::{OutputChange, Segment};
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::Hold;
-use carrystep_link::{Ended, Patience, Progress, SegmentSource, Wish};
+use carrystep_link::{Ended, Patience, Progress, Wish};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_program::{ProgramFile, Row, Rows, Settings};
+use carrystep_program::{ProgramFile, Rows, Settings};
 use carrystep_runner::{Stretches, Wait, kept_ticks};
 use carrystep_virtual_board::ModelBoard;
 use std::cell::RefCell;
@@ -37,30 +36,6 @@ const MACHINE: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_d
 /// The greatest time from the request to the first pulse that differs, ms: 40, and the round trip
 /// of this line.
 const FIRST_CHANGE: u64 = 43;
-
-struct Shared<'a, I: Iterator<Item = Row>>(&'a RefCell<Stretches<I>>);
-
-impl<I: Iterator<Item = Row>> SegmentSource for Shared<'_, I> {
-    fn segment(&mut self, axis: u8) -> Option<Segment> {
-        self.0.borrow_mut().segment(axis)
-    }
-
-    fn outputs(&mut self) -> OutputChange {
-        self.0.borrow_mut().outputs()
-    }
-
-    fn start(&mut self) -> Option<u8> {
-        self.0.borrow_mut().start()
-    }
-
-    fn may_cut(&self) -> bool {
-        self.0.borrow().may_cut()
-    }
-
-    fn cut_refused(&mut self) {
-        self.0.borrow_mut().cut_refused();
-    }
-}
 
 /// What a run came to.
 struct Run {
@@ -97,7 +72,7 @@ fn run(path: &Path, request: Option<Request>) -> Run {
     while let Some(waits) = { stretches.borrow_mut().begin() } {
         holds += waits.iter().filter(|wait| matches!(wait, Wait::Hold(_))).count();
         let mut granted = 0;
-        let ended = host.stream(Shared(&stretches), |progress: &Progress<'_>| {
+        let ended = host.stream(&stretches, |progress: &Progress<'_>| {
             let queues = progress.queues.unwrap();
             granted = queues.cuts;
             let now = end.0.borrow().board.cycle();

@@ -8,14 +8,13 @@ use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{
-    Ended, HostError, OutputChange, Patience, Progress, Queues, Segment, SegmentSource, Timing,
-    Wish,
+    Ended, HostError, OutputChange, Progress, Queues, Segment, SegmentSource, Wish,
 };
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use std::cell::RefCell;
 use support::random::Random;
 use support::wire::Faults;
-use support::{CLOCK_HZ, End, Kind, SESSION, build};
+use support::{CLOCK_HZ, End, Kind, QUICK, SESSION, build};
 
 /// Ticks of a row.
 const TICKS: u32 = 1024;
@@ -68,11 +67,9 @@ impl Rows {
     }
 }
 
-struct Shared<'a>(&'a RefCell<Rows>);
-
-impl SegmentSource for Shared<'_> {
+impl SegmentSource for Rows {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
-        let Reading { rows, at } = &mut self.0.borrow_mut().now;
+        let Reading { rows, at } = &mut self.now;
         let at = at.get_mut(usize::from(axis))?;
         let row = rows.get(*at)?;
         *at += 1;
@@ -85,7 +82,7 @@ impl SegmentSource for Shared<'_> {
     }
 
     fn start(&mut self) -> Option<u8> {
-        self.0.borrow_mut().start.take()
+        self.start.take()
     }
 
     fn may_cut(&self) -> bool {
@@ -93,19 +90,10 @@ impl SegmentSource for Shared<'_> {
     }
 
     fn cut_refused(&mut self) {
-        let mut source = self.0.borrow_mut();
-        source.refused += 1;
-        source.now = source.before.take().unwrap();
+        self.refused += 1;
+        self.now = self.before.take().unwrap();
     }
 }
-
-const QUICK: Patience = Patience {
-    timing: Timing { resend: 12, pause: 2 },
-    silence: 500,
-    lost: 500,
-    change: 100,
-    status_period: 20,
-};
 
 /// How far behind the row that runs a cut is asked for.
 #[derive(Clone, Copy)]
@@ -129,7 +117,7 @@ fn cut<B: Kind>(seed: u64, begun: u32, behind: Behind, faults: Faults) -> Option
     let (old, new) = (plan(&mut random, ROWS), plan(&mut random, NEW_ROWS));
     let source = Rows::new(old.clone());
     let (mut asked, mut last) = (None, Queues { sent: 0, begun: 0, cuts: 0 });
-    let ended = host.stream(Shared(&source), |progress: &Progress<'_>| {
+    let ended = host.stream(&source, |progress: &Progress<'_>| {
         last = progress.queues.unwrap();
         if asked.is_none() && last.begun >= begun {
             let keep = match behind {

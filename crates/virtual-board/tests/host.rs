@@ -8,22 +8,13 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::registers::START;
 use carrystep_link::{
-    Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Snapshot,
-    Timing, Wish,
+    Command, Ended, HostError, Program, ProgramError, Progress, Segment, Snapshot, Wish,
 };
 use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::num::NonZeroU16;
 use support::random::Random;
 use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, MS, SESSION, TICK, build, waves};
-
-const QUICK: Patience = Patience {
-    timing: Timing { resend: 12, pause: 2 },
-    silence: 500,
-    lost: 500,
-    change: 100,
-    status_period: 20,
-};
+use support::{BoardHost, CLOCK_HZ, End, Kind, MS, QUICK, SESSION, TICK, build, waves};
 
 /// Runs a function with both kinds of board.
 macro_rules! on_both {

@@ -28,17 +28,43 @@ pub struct PlannerArguments {
 pub struct FromArguments {
     /// Begin with this executed block, as `plan --list-blocks` numbers them. The blocks before it
     /// are executed without motion; Z goes up, X and Y to the place, Z down.
-    #[arg(long, help_heading = HEADING, value_name = "BLOCK", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "BLOCK",
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
     pub from_block: Option<u64>,
     /// The machine place where the program began, as far as the place of the block depends on it
     /// (G91, G92), mm or degrees.
-    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place, requires = "from_block", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "AXIS=PLACE",
+        value_delimiter = ',',
+        value_parser = place,
+        requires = "from_block",
+        allow_hyphen_values = true
+    )]
     pub began_at: Vec<(usize, f64)>,
     /// The machine height of the way of X and Y to the block, mm. Default: the highest so far.
-    #[arg(long, help_heading = HEADING, value_name = "MM", value_parser = height, requires = "from_block", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "MM",
+        value_parser = height,
+        requires = "from_block",
+        allow_negative_numbers = true
+    )]
     pub safe_z: Option<f64>,
     /// How long the spindle turns before Z goes down, s. Default: the G4 behind its M3, otherwise 3.
-    #[arg(long, help_heading = HEADING, value_name = "S", value_parser = dwell, requires = "from_block")]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "S",
+        value_parser = dwell,
+        requires = "from_block"
+    )]
     pub spindle_dwell: Option<f64>,
 }
 
@@ -51,7 +77,13 @@ pub struct ProgramArguments {
     pub from: FromArguments,
     /// The machine place where the program begins, mm or degrees, for example x=10,z=-2. Default: 0.
     /// With --from-block, the machine goes from there to the place of the block.
-    #[arg(long, help_heading = HEADING, value_name = "AXIS=PLACE", value_delimiter = ',', value_parser = place)]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "AXIS=PLACE",
+        value_delimiter = ',',
+        value_parser = place
+    )]
     pub at: Vec<(usize, f64)>,
     /// Begin with the work offsets and the tool length that are kept of the board at this port. The
     /// board is not asked. Default: none.

@@ -65,7 +65,8 @@ impl ControlSocket {
 }
 
 impl Caller {
-    /// The complete requests of this caller with the text behind their words, and whether its connection stays open.
+    /// The complete requests of this caller with the text behind their words, and whether its
+    /// connection stays open.
     fn take(&mut self) -> (Vec<(SocketRequest, String)>, bool) {
         let mut bytes = [0; LONGEST];
         let stays = match self.stream.read(&mut bytes) {

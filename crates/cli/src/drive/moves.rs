@@ -1,7 +1,6 @@
 //! The moves of a file as a board is driven through them.
 
 use super::itinerary::{Itinerary, Plan};
-use super::shared::Shared;
 use crate::failure::Failure;
 use crate::job;
 use carrystep_core::Segment;
@@ -106,7 +105,7 @@ impl Itinerary for MovesOnce<'_> {
     }
 
     fn source(&self) -> Box<dyn SegmentSource + '_> {
-        Box::new(Shared(&self.moves))
+        Box::new(&self.moves)
     }
 
     fn whole(&self) -> Result<(), Failure> {

@@ -3,7 +3,6 @@
 use super::itinerary::{Itinerary, Plan, Rest};
 use super::outcome::ProgramDriven;
 use super::place::Place;
-use super::shared::Shared;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::pass::{Kept, RowsAhead};
@@ -302,7 +301,7 @@ impl Itinerary for ProgramStretches<'_> {
     }
 
     fn source(&self) -> Box<dyn SegmentSource + '_> {
-        Box::new(Shared(&self.stretches))
+        Box::new(&self.stretches)
     }
 
     fn hold(&self, queues: Option<Queues>) -> Option<u32> {

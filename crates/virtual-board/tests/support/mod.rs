@@ -12,7 +12,7 @@ pub use link::{random, wire};
 use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::{BuildId, END, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience, Segment};
+use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience, Segment, Timing};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, VerilatedBoard};
 use random::Random;
@@ -35,6 +35,15 @@ pub const FASTEST: i64 = 1 << 58;
 
 /// Number of the session of these hosts.
 pub const SESSION: NonZeroU16 = NonZeroU16::new(0xdbc0).unwrap();
+
+/// A host that gives up soon, on a line that is quick.
+pub const QUICK: Patience = Patience {
+    timing: Timing { resend: 12, pause: 2 },
+    silence: 500,
+    lost: 500,
+    change: 100,
+    status_period: 20,
+};
 
 pub type BoardHost<B> = Host<End<B>, End<B>>;
 
