@@ -13,8 +13,9 @@ use carrystep_files::{InputError, Machine};
 use carrystep_gcode::{AXES, AXIS_LETTERS, Arc, Canon, Point, Turn};
 use std::path::Path;
 
-/// By how much the second beginning differs from the first, mm and degrees. It is far above, so
-/// that the highest z differs if the beginning is one of those that it may be.
+/// Whether the place of a block depends on where the program began is found by executing the blocks
+/// before it a second time, from a place that is so far from the first one, mm and degrees. It lies
+/// 10 m higher, so that the highest z of both differs if it depends on the beginning.
 const ELSEWHERE: Point = [1.37, 2.61, 10_003.19, 4.43, 5.87, 7.01];
 
 /// The index of z.
