@@ -138,7 +138,7 @@ fn protocol_page_gives_the_time_outs_of_the_rust_client() {
     let host = |text| behind("crates/link/src/host.rs", text);
     let patience =
         |name| behind("crates/link/src/host/time.rs", &format!("\n            {name}: "));
-    let session = |text| behind("crates/link/src/session.rs", text);
+    let session = |text| behind("crates/link/src/session/timing.rs", text);
     let (resend, silence) = (session("Self { resend: "), patience("silence"));
     let period = patience("status_period");
     let watchdog =
