@@ -24,6 +24,7 @@ mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
+pub mod independence;
 mod latch_bank;
 mod output_control;
 mod parallel_core;
