@@ -12,7 +12,7 @@ const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
 
 /// The EDIF with one bit of the link's first instruction flipped.
 fn with_a_flipped_bit(edif: &str) -> String {
-    let program = edif.find("\"link.machine.instructions.words.0.0\"").expect("the program");
+    let program = edif.find("\"link.processor.instructions.words.0.0\"").expect("the program");
     let begin =
         program + edif[program..].find("(property INIT_00 (string \"").expect("its first words");
     let at = begin + edif[begin..].find("\"))").expect("the last digit") - 1;
