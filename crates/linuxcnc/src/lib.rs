@@ -15,7 +15,9 @@
 
 mod configuration;
 
-pub use configuration::{Configuration, Joint};
+pub use configuration::{
+    Configuration, Homing, Joint, LETTERS, MachineRefused, OutputNets, Wishes,
+};
 
 use carrystep_link::C_LIBRARY;
 

@@ -10,7 +10,7 @@
 
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_linuxcnc::{Configuration, Joint, component};
+use carrystep_linuxcnc::{Configuration, Homing, Joint, OutputNets, component};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{Edges, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
 use rustix::thread::gettid;
@@ -155,8 +155,10 @@ fn configuration(port: &str) -> Configuration {
         scale: SCALES[number],
         speed,
         acceleration,
-        travel: (-reach, reach),
+        travel: Some((-reach, reach)),
         angular: false,
+        homing: Homing::InPlace { at: 0.0 },
+        sequence: 0,
     };
     Configuration {
         name: "virtual".to_owned(),
@@ -165,11 +167,15 @@ fn configuration(port: &str) -> Configuration {
         build: None,
         periods: PERIODS as u32,
         horizon_ms: HORIZON_MS,
+        inches: false,
         joints: vec![
             joint(0, 'X', 100.0, 1000.0, 400.0),
             joint(1, 'Y', 100.0, 1000.0, 400.0),
             joint(2, 'Z', 50.0, 500.0, 400.0),
         ],
+        limits: false,
+        probe: false,
+        outputs: OutputNets::default(),
         display: "./ui.py".to_owned(),
         hal_files: vec!["sampler.hal".to_owned()],
     }

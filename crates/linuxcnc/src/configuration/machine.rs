@@ -1,0 +1,247 @@
+//! The configuration of a machine file.
+
+use super::{Configuration, Homing, Joint, LETTERS, OutputNets, rates};
+use carrystep_core::StartPhase;
+use carrystep_core::engine::LimitWiring;
+use carrystep_core::link::LineKind;
+use carrystep_files::machine::End;
+use carrystep_files::{Axis, Machine, decimal};
+use thiserror::Error;
+
+/// What the machine file does not say.
+#[derive(Debug, Clone)]
+pub struct Wishes {
+    /// Name of the machine, and of the files: letters, digits, `-` and `_`.
+    pub name: String,
+    /// The serial port.
+    pub port: String,
+    /// Time from a command to its pulses, ms; `None`: as short as is usual.
+    pub horizon_ms: Option<u32>,
+    /// LinuxCNC's user interface.
+    pub display: String,
+}
+
+/// Why LinuxCNC cannot have a machine.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum MachineRefused {
+    /// An axis has no letter.
+    #[error("axis '{axis}' has no letter: call it x, y, z, a, b, c, u, v or w, as LinuxCNC does")]
+    Name {
+        /// Its name.
+        axis: String,
+    },
+    /// Two axes have one letter.
+    #[error("two axes have the letter {letter}: LinuxCNC does not tell {letter} from {small}", small = .letter.to_ascii_lowercase())]
+    Twice {
+        /// The letter.
+        letter: char,
+    },
+    /// An axis has another unit than LinuxCNC.
+    #[error(
+        "axis '{axis}' is in {unit}: LinuxCNC has it in {wanted}. Give lead or steps_per_unit in that unit"
+    )]
+    Unit {
+        /// Its name.
+        axis: String,
+        /// The unit of the machine file.
+        unit: String,
+        /// The units of LinuxCNC for this letter.
+        wanted: &'static str,
+    },
+    /// Some axes are in mm and others in inches.
+    #[error(
+        "axis '{axis}' is in {unit}, and an axis before it is not: LinuxCNC has one unit of length"
+    )]
+    Mixed {
+        /// Its name.
+        axis: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// Places are not those that the component computes.
+    #[error("phase = \"zero\": the component needs phase = \"half\", the default")]
+    Phase,
+    /// The link is an SPI.
+    #[error("the host link is an SPI: the component drives a serial port")]
+    Spi,
+    /// The engine or the rate cannot be built.
+    #[error("{0}")]
+    Build(String),
+    /// No serial port has this rate.
+    #[error("baud = {baud}: the component's serial ports have one of {all}", all = all_bauds())]
+    Baud {
+        /// The rate of the machine file.
+        baud: u32,
+    },
+    /// The line does not hold the segments.
+    #[error(
+        "the line is too slow: segments of {joints} joints in 16 ms take more than half of {baud} baud"
+    )]
+    SlowLine {
+        /// Its rate.
+        baud: u32,
+        /// The number of joints.
+        joints: u32,
+    },
+    /// The queues do not hold the horizon.
+    #[error(
+        "the board's queues do not hold the segments of this horizon: at most {most_ms} ms with this queue_depth"
+    )]
+    LongHorizon {
+        /// The longest one.
+        most_ms: u32,
+    },
+    /// The horizon does not hold two segments.
+    #[error("the horizon is shorter than two segments: at least {least_ms} ms on this line")]
+    ShortHorizon {
+        /// The shortest one.
+        least_ms: u32,
+    },
+}
+
+fn all_bauds() -> String {
+    rates::BAUDS.map(|baud| baud.to_string()).join(", ")
+}
+
+impl Configuration {
+    /// The configuration of a machine, and what its user should know.
+    ///
+    /// A joint homes where it is. Where the axis has a `home` table, the place gets the coordinate
+    /// at which `carrystep home` leaves the axis, so that LinuxCNC agrees with a machine that was
+    /// homed by it.
+    ///
+    /// # Errors
+    /// [`MachineRefused`] if LinuxCNC or the component cannot have this machine.
+    pub fn of_machine(
+        machine: &Machine,
+        wishes: Wishes,
+    ) -> Result<(Self, Vec<String>), MachineRefused> {
+        if machine.phase != StartPhase::Half {
+            return Err(MachineRefused::Phase);
+        }
+        let engine = machine.engine();
+        engine.check().map_err(|error| MachineRefused::Build(error.to_string()))?;
+        let uart = match machine.line().map_err(|error| MachineRefused::Build(error.to_string()))? {
+            LineKind::Uart(uart) => uart,
+            LineKind::Spi => return Err(MachineRefused::Spi),
+        };
+        let mut inches = None;
+        let mut joints: Vec<Joint> = Vec::with_capacity(machine.axes.len());
+        let mut notes = Vec::new();
+        for (number, axis) in machine.axes.iter().enumerate() {
+            let letter = letter(axis)?;
+            if joints.iter().any(|joint| joint.letter == letter) {
+                return Err(MachineRefused::Twice { letter });
+            }
+            let angular = "ABC".contains(letter);
+            has_its_unit(axis, angular, &mut inches)?;
+            joints.push(joint(machine, number, letter, angular));
+            note(axis, number, &mut notes);
+        }
+        let count = u32::try_from(joints.len()).unwrap_or(u32::MAX);
+        let depth = u32::try_from(machine.queue).unwrap_or(u32::MAX);
+        let (periods, horizon_ms) = rates::choose(count, uart.baud(), depth, wishes.horizon_ms)?;
+        let configuration = Self {
+            name: wishes.name,
+            port: wishes.port,
+            baud: uart.baud(),
+            build: Some(uart.build_id(&engine).0),
+            periods,
+            horizon_ms,
+            inches: inches == Some(true),
+            joints,
+            limits: machine.guard.limits == LimitWiring::Pair,
+            probe: machine.guard.inputs[0].exist & 1 != 0,
+            outputs: OutputNets {
+                spindle: machine.output_uses.spindle,
+                spindle_reverse: machine.output_uses.spindle_reverse,
+                mist: machine.output_uses.mist,
+                flood: machine.output_uses.flood,
+                spindle_rpm: machine.output_uses.spindle_rpm,
+            },
+            display: wishes.display,
+            hal_files: Vec::new(),
+        };
+        Ok((configuration, notes))
+    }
+}
+
+fn letter(axis: &Axis) -> Result<char, MachineRefused> {
+    let mut characters = axis.name.chars().map(|character| character.to_ascii_uppercase());
+    match (characters.next(), characters.next()) {
+        (Some(letter), None) if LETTERS.contains(letter) => Ok(letter),
+        _ => Err(MachineRefused::Name { axis: axis.name.clone() }),
+    }
+}
+
+/// Checks the unit of an axis, and that all lengths have one unit. An axis without a unit in its
+/// file is taken to be in mm or degrees.
+fn has_its_unit(
+    axis: &Axis,
+    angular: bool,
+    inches: &mut Option<bool>,
+) -> Result<(), MachineRefused> {
+    let unit = axis.unit.name.as_str();
+    let found = match unit {
+        "deg" | "degree" | "degrees" | "\u{b0}" | "units" if angular => return Ok(()),
+        "mm" | "units" if !angular => false,
+        "in" | "inch" | "\"" if !angular => true,
+        _ => {
+            let wanted = if angular { "deg" } else { "mm or inch" };
+            return Err(MachineRefused::Unit {
+                axis: axis.name.clone(),
+                unit: unit.into(),
+                wanted,
+            });
+        }
+    };
+    match inches.replace(found) {
+        Some(before) if before != found => {
+            Err(MachineRefused::Mixed { axis: axis.name.clone(), unit: unit.into() })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn joint(machine: &Machine, number: usize, letter: char, angular: bool) -> Joint {
+    let axis = &machine.axes[number];
+    let scale = decimal::to_f64(&axis.steps_per_unit);
+    let units = |steps: i64| steps as f64 / scale;
+    let group = machine.home_order.iter().position(|group| group.contains(&number));
+    Joint {
+        letter,
+        scale,
+        speed: decimal::to_f64(&axis.speed_limit) / scale,
+        acceleration: decimal::to_f64(&axis.accel_limit) / scale,
+        travel: axis.travel.map(|[low, high]| (units(low), units(high))),
+        angular,
+        homing: Homing::InPlace { at: units(rests(axis)) },
+        sequence: u32::try_from(group.unwrap_or(0)).unwrap_or(0),
+    }
+}
+
+/// Where an axis rests after `carrystep home`, steps; 0 if it does not home.
+fn rests(axis: &Axis) -> i64 {
+    axis.home.as_ref().map_or(0, |home| match home.toward {
+        End::Min => home.position + i64::from(home.pull_off),
+        End::Max => home.position - i64::from(home.pull_off),
+    })
+}
+
+fn note(axis: &Axis, number: usize, notes: &mut Vec<String>) {
+    let name = &axis.name;
+    if axis.travel.is_none() {
+        notes.push(format!("axis '{name}' has no travel: LinuxCNC does not limit joint {number}"));
+    }
+    notes.push(match &axis.home {
+        Some(_) => format!(
+            "axis '{name}' homes by `carrystep home` before LinuxCNC starts: joint {number} then takes \
+             the place where it is for {}",
+            axis.unit.own(rests(axis) as f64, 0)
+        ),
+        None => format!(
+            "axis '{name}' has no home table: joint {number} takes the place where it is for {}",
+            axis.unit.own(0.0, 0)
+        ),
+    });
+}
