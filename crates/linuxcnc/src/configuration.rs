@@ -27,9 +27,8 @@ pub enum Homing {
         at: f64,
         /// Coordinate at which the joint rests afterwards, units.
         rest: f64,
-        /// Whether the board's latch gives the place of the last approach, by the handshake that
-        /// LinuxCNC has for index pulses.
-        latched: bool,
+        /// Whether LinuxCNC goes on, behind the switch, to the next index pulse.
+        index: bool,
     },
 }
 
@@ -57,9 +56,14 @@ pub struct Joint {
 /// The letters of LinuxCNC's axes. A, B and C turn.
 pub const LETTERS: &str = "XYZABCUVW";
 
-/// The outputs of the board that LinuxCNC switches, by their numbers.
+/// The outputs that the board has, and what LinuxCNC switches with them, by their numbers. Those
+/// without a use are the digital outputs of `M62` to `M65` with their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OutputNets {
+    /// Number of outputs, 0 to 8.
+    pub count: u8,
+    /// Whether there is a PWM.
+    pub pwm: bool,
     /// Active while the spindle turns.
     pub spindle: Option<u8>,
     /// Active while it turns counterclockwise.
@@ -68,7 +72,8 @@ pub struct OutputNets {
     pub mist: Option<u8>,
     /// Active while flood is on.
     pub flood: Option<u8>,
-    /// Turns per minute at the greatest duty of the PWM, which follows the spindle's speed.
+    /// Turns per minute at the greatest duty of the PWM, which follows the spindle's speed; without
+    /// it the PWM is analog output 0 of `M67` and `M68`.
     pub spindle_rpm: Option<u32>,
 }
 
@@ -95,6 +100,10 @@ pub struct Configuration {
     pub limits: bool,
     /// Whether the board has a probe.
     pub probe: bool,
+    /// The latch of the edge that closes the probe.
+    pub probe_latch: Option<u8>,
+    /// The latch with a pin of its own, for index pulses.
+    pub index_latch: Option<u8>,
     /// The board's outputs.
     pub outputs: OutputNets,
     /// LinuxCNC's user interface.

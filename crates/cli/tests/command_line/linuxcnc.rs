@@ -98,6 +98,35 @@ fn files_have_the_numbers_of_the_machine_file() {
     }
 }
 
+/// Spindle, coolant, PWM, and latches for the probe and for index pulses.
+#[test]
+fn outputs_and_latches_have_their_nets() {
+    let (folder, ran) = write(MILL, "");
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    assert!(!read(&folder, "out/mill.hal").contains("_latch"), "no latch, no parameter");
+    let inputs = "[machine.inputs]\nlatches = [{ edge = \"falling\", source = \"probe\" }, \
+        { edge = \"rising\" }, { edge = \"rising\", source = \"probe\" }]";
+    let outputs = "[machine.outputs]\ncount = 5\npwm_divider = 1\nspindle = 2\nflood = 0\nspindle_rpm = 24000";
+    let text = MILL.replace("[machine.inputs]", &format!("{outputs}\n{inputs}"));
+    let (folder, ran) = write(&text, "");
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let hal = read(&folder, "out/mill.hal");
+    for words in [
+        " outputs=5 pwm=1 probe_latch=2 index_latch=1\n",
+        " num_dio=8\n",
+        "net spindle-on spindle.0.on => carrystep.0.out-2\n",
+        "net flood iocontrol.0.coolant-flood => carrystep.0.out-0\n",
+        "net digital-4 motion.digital-out-04 => carrystep.0.out-4\n",
+        "setp carrystep.0.pwm-scale 24000\n",
+        "net joint-1-index joint.1.index-enable <=> carrystep.0.joint.1.index-enable\n",
+    ] {
+        assert!(hal.contains(words), "{words}: {hal}");
+    }
+    let text = text.replace("spindle_rpm = 24000", "");
+    let hal = read(&write(&text, "").0, "out/mill.hal");
+    assert!(hal.contains("net duty motion.analog-out-00 => carrystep.0.pwm-duty\n"), "{hal}");
+}
+
 #[test]
 fn existing_files_stay_unless_they_may_be_replaced() {
     let folder = Folder::new();

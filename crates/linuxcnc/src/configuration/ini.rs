@@ -13,6 +13,15 @@ const JUMP_TENTHS: f64 = 11.0;
 /// The greatest following error, in steps. A step is the least one that means something.
 const ERROR_STEPS: f64 = 2.0;
 
+/// From an edge at a pin to its report, at the most, s.
+const REPORT_S: f64 = 0.1;
+
+/// Why the greatest following error is that large.
+const JUMPS: &str = "\
+# In the period in which a probe, a home switch or an index pulse is shown, position-fb is its place,
+# and not the command, which is a horizon ahead. The component itself faults if a step is lost.
+";
+
 pub fn text(configuration: &Configuration) -> String {
     let Configuration { name, port, display, joints, .. } = configuration;
     let letters: Vec<String> = joints.iter().map(|joint| joint.letter.to_string()).collect();
@@ -52,34 +61,41 @@ pub fn text(configuration: &Configuration) -> String {
     line(format_args!("\n[KINS]\nKINEMATICS = trivkins coordinates={}", letters.concat()));
     line(format_args!("JOINTS = {}", joints.len()));
     for (number, joint) in joints.iter().enumerate() {
-        line(format_args!("{}", of_joint(number, joint)));
+        line(format_args!("{}", of_joint(configuration, number, joint)));
     }
     text
 }
 
 /// The sections of a joint and of its axis.
-fn of_joint(number: usize, joint: &Joint) -> String {
+fn of_joint(configuration: &Configuration, number: usize, joint: &Joint) -> String {
     let Joint { letter, scale, speed, acceleration, .. } = joint;
     let travel = joint
         .travel
         .map_or_else(String::new, |(low, high)| format!("MIN_LIMIT = {low}\nMAX_LIMIT = {high}\n"));
     let limits = format!("MAX_VELOCITY = {speed}\nMAX_ACCELERATION = {acceleration}\n{travel}");
     let kind = if joint.angular { "ANGULAR" } else { "LINEAR" };
-    let error = ERROR_STEPS / scale.abs();
+    let searches = matches!(joint.homing, Homing::Switch { .. });
+    let jumps = configuration.probe || configuration.index_latch.is_some() || searches;
+    let (why, error) = if jumps {
+        let behind = f64::from(configuration.horizon_ms) * 1e-3 + REPORT_S;
+        (JUMPS, speed * behind + ERROR_STEPS / scale.abs())
+    } else {
+        ("", ERROR_STEPS / scale.abs())
+    };
     let homing = match &joint.homing {
         Homing::InPlace { at } => format!(
             "# The place where the joint is gets the coordinate HOME_OFFSET.\n\
              HOME = {at}\nHOME_OFFSET = {at}\nHOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0"
         ),
-        Homing::Switch { search, latch, at, rest, latched, .. } => format!(
+        Homing::Switch { search, latch, at, rest, index, .. } => format!(
             "HOME = {rest}\nHOME_OFFSET = {at}\nHOME_SEARCH_VEL = {search}\n\
-             HOME_LATCH_VEL = {latch}\nHOME_USE_INDEX = {}",
-            if *latched { "YES" } else { "NO" }
+             HOME_LATCH_VEL = {latch}{}",
+            if *index { "\nHOME_USE_INDEX = YES\nHOME_INDEX_NO_ENCODER_RESET = YES" } else { "" }
         ),
     };
     format!(
         "\n[AXIS_{letter}]\n{limits}\n[JOINT_{number}]\nTYPE = {kind}\n{limits}\
-         SCALE = {scale}\nMAXVEL = {}\nFERROR = {error}\nMIN_FERROR = {error}\n\
+         SCALE = {scale}\nMAXVEL = {}\n{why}FERROR = {error}\nMIN_FERROR = {error}\n\
          {homing}\nHOME_SEQUENCE = {}",
         speed * JUMP_TENTHS / 10.0,
         joint.sequence

@@ -2,7 +2,7 @@
 
 use super::{Configuration, Homing, Joint, LETTERS, OutputNets, rates};
 use carrystep_core::StartPhase;
-use carrystep_core::engine::LimitWiring;
+use carrystep_core::engine::{Guard, Latch, LatchSource, LimitWiring};
 use carrystep_core::link::LineKind;
 use carrystep_files::machine::End;
 use carrystep_files::{Axis, Machine, decimal};
@@ -152,7 +152,14 @@ impl Configuration {
             joints,
             limits: machine.guard.limits == LimitWiring::Pair,
             probe: machine.guard.inputs[0].exist & 1 != 0,
+            probe_latch: latch(&machine.guard, |latch| {
+                let closes = latch.low == (machine.guard.inputs[0].low & 1 != 0);
+                closes && latch.source == LatchSource::Switch { row: PROBE_ROW, axis: 0 }
+            }),
+            index_latch: latch(&machine.guard, |latch| latch.source == LatchSource::Pin),
             outputs: OutputNets {
+                count: u8::try_from(machine.outputs.exist.count_ones()).unwrap_or(0),
+                pwm: machine.outputs.pwm_divider != 0,
                 spindle: machine.output_uses.spindle,
                 spindle_reverse: machine.output_uses.spindle_reverse,
                 mist: machine.output_uses.mist,
@@ -164,6 +171,14 @@ impl Configuration {
         };
         Ok((configuration, notes))
     }
+}
+
+/// The row of switches whose first input is the probe.
+const PROBE_ROW: u8 = 2;
+
+/// The number of the first latch that fits.
+fn latch(guard: &Guard, fits: impl Fn(&Latch) -> bool) -> Option<u8> {
+    guard.latches.iter().position(fits).and_then(|number| u8::try_from(number).ok())
 }
 
 fn letter(axis: &Axis) -> Result<char, MachineRefused> {
