@@ -1,10 +1,9 @@
 //! A virtual board in a thread of its own, in real time. Its inputs depend on the position of axis
 //! 0: a home switch at a general input, and a probe, which is there while output 0 is on.
 
-use crate::{BAUD, CLOCK_HZ, JOINTS, PRIORITIES, STOP, TICK_NS, prefer};
-use carrystep_core::engine::{Cause, InputRow, Latch, LatchSource, LimitWiring, Outputs};
-use carrystep_core::link::Uart;
-use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use crate::{CLOCK_HZ, JOINTS, PRIORITIES, machine, prefer};
+use carrystep_core::engine::Cause;
+use carrystep_core::link::LineKind;
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{
     Edges, ModelBoard, Pace, RealTimeBoard, SimulatedBoard as _, Switches, Terminal,
@@ -47,28 +46,13 @@ pub struct Done {
     pub probes: Vec<i32>,
 }
 
-/// A board with a probe and its latch, a general input and an output.
-fn build() -> EngineBuild {
-    let timebase = Timebase::new(CLOCK_HZ, TICK_NS, 16).unwrap();
-    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-    let mut build = EngineBuild::minimal(&build, STOP);
-    build.guard.round = 1024;
-    build.guard.watchdog = 391;
-    build.guard.limits = LimitWiring::None;
-    build.guard.inputs = [InputRow { exist: 0b11, low: 0 }, InputRow::default()];
-    let source = LatchSource::Switch { row: 2, axis: 0 };
-    build.guard.latches = vec![Latch { source, low: false, looks: 1 }];
-    build.outputs = Outputs { exist: 0b1, pwm_divider: 0, off_at_ramps: true };
-    build.queue = 31;
-    build.check().unwrap();
-    build
-}
-
 /// A board in a thread of its own, until `end` is set.
 pub fn board(end: Arc<AtomicBool>) -> (String, JoinHandle<Done>) {
     let terminal = Terminal::new().unwrap();
     let name = terminal.name().to_owned();
-    let model = ModelBoard::new(&build(), Uart::new(CLOCK_HZ, BAUD).unwrap());
+    let machine = machine();
+    let LineKind::Uart(uart) = machine.line().unwrap() else { panic!("a UART") };
+    let model = ModelBoard::new(&machine.engine(), uart);
     let mut board = RealTimeBoard::new(model, terminal, Pace::real(CLOCK_HZ), CLOCK_HZ);
     let thread = thread::spawn(move || {
         // Of this thread alone. Without the right to it, the board runs as it is.

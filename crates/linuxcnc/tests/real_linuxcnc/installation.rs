@@ -1,7 +1,7 @@
 //! The real LinuxCNC: the component among its modules, and a run of it as a user without rights.
 
-use crate::{BAUD, HORIZON_MS, PERIODS, PRIORITIES, SCALES};
-use carrystep_linuxcnc::{Configuration, Homing, Joint, OutputNets, component};
+use crate::{HORIZON_MS, PERIODS, PRIORITIES, machine};
+use carrystep_linuxcnc::{Configuration, Homing, Wishes, component};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -86,47 +86,30 @@ fn watch(folder: PathBuf, end: Arc<AtomicBool>) -> JoinHandle<()> {
     })
 }
 
+/// What `carrystep linuxcnc` writes for the machine; with a switch for joint 0, or without a probe.
 fn configuration(port: &str, homes: bool) -> Configuration {
-    let in_place = Homing::InPlace { at: 0.0 };
-    let switch = Homing::Switch {
-        pin: "in-1-0".to_owned(),
-        search: -20.0,
-        latch: -2.0,
-        at: 0.0,
-        rest: 5.0,
-        index: false,
-    };
-    let joint = |number: usize, letter, speed, acceleration| Joint {
-        letter,
-        scale: SCALES[number],
-        speed,
-        acceleration,
-        travel: Some((-400.0, 400.0)),
-        angular: false,
-        homing: if homes && number == 0 { switch.clone() } else { in_place.clone() },
-        sequence: 0,
-    };
-    Configuration {
+    let wishes = Wishes {
         name: "virtual".to_owned(),
         port: port.to_owned(),
-        baud: BAUD,
-        build: None,
-        periods: PERIODS as u32,
-        horizon_ms: HORIZON_MS,
-        inches: false,
-        joints: vec![
-            joint(0, 'X', 100.0, 1000.0),
-            joint(1, 'Y', 100.0, 1000.0),
-            joint(2, 'Z', 50.0, 500.0),
-        ],
-        limits: false,
-        probe: homes,
-        probe_latch: Some(0),
-        index_latch: None,
-        outputs: OutputNets { count: 1, ..OutputNets::default() },
+        horizon_ms: Some(HORIZON_MS),
         display: "./ui.py".to_owned(),
-        hal_files: vec!["sampler.hal".to_owned()],
+    };
+    let (mut configuration, _) = Configuration::of_machine(&machine(), wishes).unwrap();
+    assert_eq!(configuration.periods as usize, PERIODS);
+    configuration.hal_files = vec!["sampler.hal".to_owned()];
+    // Without a probe, LinuxCNC's own following error is at its tightest.
+    configuration.probe = homes;
+    if homes {
+        configuration.joints[0].homing = Homing::Switch {
+            pin: "in-1-0".to_owned(),
+            search: -20.0,
+            latch: -2.0,
+            at: 0.0,
+            rest: 5.0,
+            index: false,
+        };
     }
+    configuration
 }
 
 const SAMPLER: &str = "\

@@ -15,6 +15,7 @@ mod installation;
 
 use board::{Done, board};
 use carrystep_core::engine::Cause;
+use carrystep_files::{Machine, SourceText};
 use compare::{compare, samples};
 use installation::{Module, Ran, linuxcnc, prefer};
 use std::fs::{self, Permissions};
@@ -33,9 +34,6 @@ const SCALES: [f64; JOINTS] = [80.0, 80.0, 400.0];
 /// can take 100 ms and more while other programs use all of the computer's cores.
 const PERIODS: usize = 8;
 const HORIZON_MS: u32 = 200;
-const BAUD: u32 = 921_600;
-/// Stop acceleration, 2^-64 step per tick^2: 119 000 steps/s^2.
-const STOP: u64 = 1 << 41;
 /// The greatest distance between pulses and commands: half a step by which pulses are whole, and the
 /// cubics' own error.
 const BOUND: f64 = 1.0;
@@ -44,6 +42,13 @@ const LATCH_SPEED: f64 = 160.0;
 /// Priorities under SCHED_FIFO of the board and of LinuxCNC's real-time process, where the user may
 /// set them: both run in real time, beside whatever else this computer does.
 const PRIORITIES: [&str; 2] = ["10", "11"];
+
+/// The machine of all runs.
+fn machine() -> Machine {
+    let text = include_str!("machine.toml");
+    let source = SourceText { path: "machine.toml".into(), text: text.into() };
+    Machine::from_source(&source).unwrap()
+}
 
 /// One LinuxCNC runs on a computer.
 static ALONE: Mutex<()> = Mutex::new(());
