@@ -43,7 +43,8 @@ static void take_probe(carrystep_latches *latches, carrystep_look *look, carryst
             find(latch, look, session);
             return;
         }
-        latch->doubts = closed != edge ? (uint8_t)(latch->doubts + 1u) : 0u;
+        bool waits = edge && (look->levels >> CARRYSTEP_PROBE_BIT & 1u) != 0;
+        latch->doubts = closed != edge && !waits ? (uint8_t)(latch->doubts + 1u) : 0u;
         if (latch->doubts < DOUBTS) {
             return;
         }

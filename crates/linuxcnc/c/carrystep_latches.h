@@ -2,8 +2,9 @@
  * pulses. A latch keeps the place of the first edge since it was armed.
  *
  * The probe is shown as closed only together with the record of the edge that closed it. Its latch
- * is armed while the probe is open. An edge that no closed probe follows was noise, and a closed
- * probe without an edge was closed before the latch was armed; two snapshots, 20 ms, decide. */
+ * is armed while the probe is open. An edge behind which the pin is not active any more was noise,
+ * and a closed probe without an edge was closed before the latch was armed; two snapshots, 20 ms,
+ * decide. An active pin whose level has not been accepted yet (debounce time) is waited for. */
 #ifndef CARRYSTEP_LATCHES_H
 #define CARRYSTEP_LATCHES_H
 

@@ -6,8 +6,14 @@ static const uint8_t OF_SNAPSHOT[] = {CARRYSTEP_SNAPSHOT_P_HIGH, CARRYSTEP_SNAPS
                                       CARRYSTEP_SNAPSHOT_LEFT};
 static const uint8_t OF_RECORD[] = {CARRYSTEP_LATCH_P_HIGH, CARRYSTEP_LATCH_POSITION, CARRYSTEP_LATCH_STATUS};
 
-/* Registers that are read once with a snapshot. */
-static const uint8_t ALONE[] = {CARRYSTEP_SNAPSHOT_TICKS, CARRYSTEP_INPUTS, CARRYSTEP_CAPTURES, CARRYSTEP_LATCHES};
+/* Registers that are read once with a snapshot: two of them always, the others for latches. */
+static const uint8_t ALONE[] = {CARRYSTEP_SNAPSHOT_TICKS, CARRYSTEP_INPUTS, CARRYSTEP_INPUT_LEVELS, CARRYSTEP_CAPTURES,
+                                CARRYSTEP_LATCHES};
+
+static uint32_t alone(const carrystep_look *look)
+{
+    return look->latched ? (uint32_t)sizeof ALONE : 2u;
+}
 
 static bool records(const carrystep_look *look)
 {
@@ -16,7 +22,7 @@ static bool records(const carrystep_look *look)
 
 static uint32_t registers(const carrystep_look *look)
 {
-    return records(look) ? 3u * look->axes : (uint32_t)sizeof ALONE + 4u * look->axes;
+    return records(look) ? 3u * look->axes : alone(look) + 4u * look->axes;
 }
 
 /* The register with this number in the set of those that are read. */
@@ -25,22 +31,22 @@ static uint8_t register_of(const carrystep_look *look, uint32_t number)
     if (records(look)) {
         return (uint8_t)CARRYSTEP_OF_AXIS(OF_RECORD[number % 3u], number / 3u);
     }
-    if (number < sizeof ALONE) {
+    if (number < alone(look)) {
         return ALONE[number];
     }
-    number -= (uint32_t)sizeof ALONE;
+    number -= alone(look);
     return (uint8_t)CARRYSTEP_OF_AXIS(OF_SNAPSHOT[number % 4u], number / 4u);
 }
 
 static void set(carrystep_look *look, uint32_t number, uint32_t data)
 {
-    uint32_t *alone[] = {&look->ticks, &look->inputs, &look->captures, &look->latches};
+    uint32_t *once[] = {&look->ticks, &look->inputs, &look->levels, &look->captures, &look->latches};
     uint32_t each = records(look) ? 3u : 4u;
-    if (!records(look) && number < sizeof ALONE) {
-        *alone[number] = data;
+    if (!records(look) && number < alone(look)) {
+        *once[number] = data;
         return;
     }
-    number -= records(look) ? 0u : (uint32_t)sizeof ALONE;
+    number -= records(look) ? 0u : alone(look);
     carrystep_seen *seen = records(look) ? &look->record[number / each] : &look->seen[number / each];
     uint32_t *words[] = {&seen->p_high, &seen->position, &seen->status, &seen->left};
     *words[number % each] = data;

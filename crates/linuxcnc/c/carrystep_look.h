@@ -1,6 +1,6 @@
 /* What the thread reads of the board again and again: the state of all axes in one tick
- * (SNAPSHOT), the inputs, which latches are armed, and the record of a latch that has found its
- * edge. Nothing here knows what it is for. */
+ * (SNAPSHOT) and the inputs; and where latches are used, which of them are armed, and the record of
+ * one that has found its edge. Nothing here knows what it is for. */
 #ifndef CARRYSTEP_LOOK_H
 #define CARRYSTEP_LOOK_H
 
@@ -27,6 +27,7 @@ typedef enum {
 
 typedef struct {
     uint8_t axes;
+    bool latched;      /* latches are used */
     carrystep_look_stage stage;
     uint64_t begun;    /* us, when the last snapshot began */
     uint32_t count;    /* blocks sent before it */
@@ -35,6 +36,7 @@ typedef struct {
     uint64_t missing;  /* registers not read yet, one bit each */
     uint32_t ticks;    /* SNAPSHOT_TICKS */
     uint32_t inputs;   /* INPUTS, read behind the snapshot */
+    uint32_t levels;   /* INPUT_LEVELS, likewise: not debounced */
     uint32_t captures; /* CAPTURES, read behind the inputs */
     uint32_t latches;  /* LATCHES, likewise */
     uint8_t latch;     /* whose record is read */

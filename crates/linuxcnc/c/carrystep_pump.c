@@ -72,6 +72,7 @@ void carrystep_pump_begin(carrystep_pump *pump, carrystep_shared *shared, const 
     pump->now = now_us;
     pump->heard = now_us;
     pump->look.axes = how->axes;
+    pump->look.latched = how->probe_latch != CARRYSTEP_NO_LATCH || how->index_latch != CARRYSTEP_NO_LATCH;
     carrystep_latches_begin(&pump->latches, how->probe_latch, how->index_latch);
     carrystep_begin(&pump->session, RESEND_MS, PAUSE_MS);
     enter(pump, CARRYSTEP_PUMP_ASKING);

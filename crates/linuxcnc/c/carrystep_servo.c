@@ -196,6 +196,7 @@ static void look(carrystep_servo *servo, uint32_t before, const carrystep_servo_
     if (report->latched == CARRYSTEP_LATCHED_INDEX) {
         joints = servo->index;
         at = report->latched_at;
+        servo->moment.found = servo->index;
         servo->index = 0;
     } else if ((changed >> 16 & 1u) != 0) {
         joints = 0xff;
@@ -203,9 +204,13 @@ static void look(carrystep_servo *servo, uint32_t before, const carrystep_servo_
     } else if (changed != 0) {
         joints = in->homing;
     }
-    if (joints != 0 && servo->moment.joints == 0) {
-        servo->moment.joints = joints;
-        memcpy(servo->moment.at, at, sizeof servo->moment.at);
+    for (uint8_t axis = 0; axis < servo->axes; axis++) {
+        /* Of several reports in a period the first counts, but a latch before a snapshot. */
+        bool counts = (servo->moment.joints >> axis & 1u) == 0 || at == report->latched_at;
+        if ((joints >> axis & 1u) != 0 && counts) {
+            servo->moment.joints |= 1u << axis;
+            servo->moment.at[axis] = at[axis];
+        }
     }
 }
 
@@ -213,6 +218,7 @@ void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep
 {
     uint32_t before = servo->report.inputs;
     servo->moment.joints = 0;
+    servo->moment.found = 0;
     servo->index = servo->stream != 0 ? in->index : 0;
     while (carrystep_ring_take(&servo->shared->reports, &servo->report)) {
         look(servo, before, in);
@@ -224,7 +230,7 @@ void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep
     }
     decide(servo, period_ns, in);
     __atomic_store_n(&servo->shared->index, (uint32_t)servo->index, __ATOMIC_RELEASE);
-    out->index = in->index & (uint8_t)(servo->stream != 0 ? servo->index : 0xffu);
+    out->index = (uint8_t)(in->index & ~(unsigned)servo->moment.found);
     uint32_t code = servo->fault != 0 ? servo->fault : servo->report.fault;
     bool away = servo->stream == 0 && servo->report.state != CARRYSTEP_READY;
     out->fault_code = code;

@@ -102,6 +102,7 @@ typedef struct {
     carrystep_place at[CARRYSTEP_MOST_AXES]; /* the latest known places */
     struct {
         uint32_t joints;  /* whose feedback is `at` in this period, one bit each */
+        uint8_t found;    /* whose index pulse was found, one bit each */
         carrystep_place at[CARRYSTEP_MOST_AXES];
     } moment;
     uint8_t index;        /* the joints that wait for an index pulse, one bit each */

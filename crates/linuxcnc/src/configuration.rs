@@ -1,10 +1,12 @@
 //! The files of a LinuxCNC configuration for one board: INI, HAL and tool table.
 
 mod hal;
+mod home_switch;
 mod ini;
 mod machine;
 mod rates;
 
+pub use home_switch::{HomeSwitch, SwitchRefused};
 pub use machine::{MachineRefused, Wishes};
 
 /// When and how LinuxCNC gives a joint its machine coordinate.

@@ -20,7 +20,8 @@
 mod configuration;
 
 pub use configuration::{
-    Configuration, Homing, Joint, LETTERS, MachineRefused, OutputNets, Wishes,
+    Configuration, HomeSwitch, Homing, Joint, LETTERS, MachineRefused, OutputNets, SwitchRefused,
+    Wishes,
 };
 
 use carrystep_link::C_LIBRARY;

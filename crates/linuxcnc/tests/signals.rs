@@ -129,6 +129,18 @@ fn smooth(u: f64) -> f64 {
     u * u * (3.0 - 2.0 * u)
 }
 
+/// A debounce time of 51 ms: five snapshots show the edge of a probe that is not closed yet.
+#[test]
+fn a_long_debounce_time_does_not_move_the_place_of_the_edge() {
+    let mut build = with(vec![at_probe()]);
+    build.guard.debounce = 25;
+    let mut world = World::with(4, 0, &build, "0 0 0 255").made_ready();
+    world.inputs = Some(|_, position| probe(position >= EDGE));
+    let found = world.watched(700, long, |world| world.says.inputs & PROBE != 0);
+    is_the_edge(found[0], EDGE);
+    world.bench.end();
+}
+
 #[test]
 fn an_edge_without_a_probe_behind_it_is_noise() {
     let mut world = World::with(4, 0, &with(vec![at_probe()]), "0 0 0 255").made_ready();

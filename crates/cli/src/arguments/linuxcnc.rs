@@ -1,5 +1,6 @@
 //! The arguments of `carrystep linuxcnc`. The docstrings of the fields are the command's help.
 
+use carrystep_linuxcnc::HomeSwitch;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,6 +24,13 @@ pub struct LinuxcncArguments {
     /// LinuxCNC's user interface.
     #[arg(long, value_name = "PROGRAM", default_value = "axis")]
     pub display: String,
+    /// LinuxCNC homes this axis on a general input of the machine file, by its number from 0. The
+    /// other keys are those of a `home` table. Repeat for each axis.
+    #[arg(
+        long = "home-switch",
+        value_name = "AXIS,input=N,toward=END,seek_speed=V,slow_speed=V,pull_off=X,position=X"
+    )]
+    pub switches: Vec<HomeSwitch>,
     /// Also write the sources of the HAL component to DIR/component; `make` builds it there.
     #[arg(long)]
     pub component: bool,

@@ -48,6 +48,7 @@ pub fn run(arguments: &LinuxcncArguments) -> Result<(), Failure> {
         port: one_word(&arguments.port, "--port")?,
         horizon_ms: arguments.horizon_ms,
         display: one_word(&arguments.display, "--display")?,
+        switches: arguments.switches.clone(),
     };
     let (configuration, notes) = Configuration::of_machine(&machine, wishes)
         .map_err(|error| Failure::input(format!("{}: {error}", arguments.machine.display())))?;

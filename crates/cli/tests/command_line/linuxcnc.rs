@@ -127,6 +127,54 @@ fn outputs_and_latches_have_their_nets() {
     assert!(hal.contains("net duty motion.analog-out-00 => carrystep.0.pwm-duty\n"), "{hal}");
 }
 
+/// LinuxCNC homes on general inputs.
+#[test]
+fn home_switches_at_general_inputs() {
+    let text = MILL
+        .replace("[machine.inputs]", "[machine.inputs]\ngeneral = [\"low\", \"low\", \"high\"]");
+    let x = "--home-switch x,input=2,toward=min,seek_speed=30,slow_speed=2,pull_off=4,position=1";
+    let z = "--home-switch z,input=1,toward=max,seek_speed=5,slow_speed=5,pull_off=2,position=9.5";
+    let (folder, ran) = write(&text, &format!("{x} {z}"));
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let (ini, hal) = (read(&folder, "out/mill.ini"), read(&folder, "out/mill.hal"));
+    for (section, key, wanted) in [
+        ("JOINT_0", "HOME_SEARCH_VEL", "-30"),
+        ("JOINT_0", "HOME_LATCH_VEL", "-2"),
+        ("JOINT_0", "HOME_OFFSET", "1"),
+        ("JOINT_0", "HOME", "5"),
+        ("JOINT_0", "HOME_SEQUENCE", "1"),
+        ("JOINT_1", "HOME_SEARCH_VEL", "5"),
+        ("JOINT_1", "HOME", "7.5"),
+        ("JOINT_1", "HOME_SEQUENCE", "0"),
+        ("JOINT_2", "HOME_SEARCH_VEL", "0"),
+    ] {
+        assert_eq!(value(&ini, section, key), wanted, "{key} of {section}");
+    }
+    assert!(hal.contains("net in-2-0 carrystep.0.in-2-0 => joint.0.home-sw-in"), "{hal}");
+    assert!(hal.contains("net in-1-1 carrystep.0.in-1-1 => joint.1.home-sw-in"), "{hal}");
+    for (old, new, words) in [
+        ("x,", "q,", "axis 'q': no axis has this name"),
+        ("input=2", "input=3", "no general input 3"),
+        ("input=2", "input=x", "input is not a number"),
+        ("input=2", "input=255", "no general input 255"),
+        ("toward=min", "toward=left", "toward is min or max"),
+        ("seek_speed=30", "seek_speed=300", "seek_speed is over speed_limit"),
+        ("slow_speed=2", "slow_speed=31", "slow_speed is over seek_speed"),
+        ("slow_speed=2", "slow_speed=nan", "slow_speed is not a number over 0"),
+        ("pull_off=4,", "", "no pull_off"),
+        ("pull_off=4", "pull_off=4,pull_off=5", "two values of pull_off"),
+        ("pull_off=4", "pulloff=4", "no key 'pulloff'"),
+        ("position=1", "position=-100", "is outside of travel"),
+    ] {
+        let (folder, ran) = write(&text, &x.replacen(old, new, 1));
+        ran.refuses(words);
+        assert!(!folder.path("out").exists(), "{words}");
+    }
+    write(&text, &format!("{x} {x}")).1.refuses("it has two");
+    let both = format!("{x} {}", z.replace("input=1", "input=2"));
+    write(&text, &both).1.refuses("input 2 is that of another axis");
+}
+
 #[test]
 fn existing_files_stay_unless_they_may_be_replaced() {
     let folder = Folder::new();

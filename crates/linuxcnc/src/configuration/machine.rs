@@ -1,6 +1,6 @@
 //! The configuration of a machine file.
 
-use super::{Configuration, Homing, Joint, LETTERS, OutputNets, rates};
+use super::{Configuration, HomeSwitch, Homing, Joint, LETTERS, OutputNets, SwitchRefused, rates};
 use carrystep_core::StartPhase;
 use carrystep_core::engine::{Guard, Latch, LatchSource, LimitWiring};
 use carrystep_core::link::LineKind;
@@ -19,6 +19,8 @@ pub struct Wishes {
     pub horizon_ms: Option<u32>,
     /// LinuxCNC's user interface.
     pub display: String,
+    /// The home switches at general inputs.
+    pub switches: Vec<HomeSwitch>,
 }
 
 /// Why LinuxCNC cannot have a machine.
@@ -58,6 +60,9 @@ pub enum MachineRefused {
         /// Its unit.
         unit: String,
     },
+    /// A home switch cannot be.
+    #[error(transparent)]
+    Switch(#[from] SwitchRefused),
     /// Places are not those that the component computes.
     #[error("phase = \"zero\": the component needs phase = \"half\", the default")]
     Phase,
@@ -106,7 +111,7 @@ fn all_bauds() -> String {
 impl Configuration {
     /// The configuration of a machine, and what its user should know.
     ///
-    /// A joint homes where it is. Where the axis has a `home` table, the place gets the coordinate
+    /// A joint without a home switch at a general input homes where it is. Where the axis has a `home` table, the place gets the coordinate
     /// at which `carrystep home` leaves the axis, so that LinuxCNC agrees with a machine that was
     /// homed by it.
     ///
@@ -135,9 +140,17 @@ impl Configuration {
             }
             let angular = "ABC".contains(letter);
             has_its_unit(axis, angular, &mut inches)?;
-            joints.push(joint(machine, number, letter, angular));
-            note(axis, number, &mut notes);
+            let mut joint = joint(machine, number, letter, angular);
+            let switch = wishes.switches.iter().find(|switch| switch.axis == axis.name);
+            if let Some(switch) = switch {
+                joint.homing = switch.homing(machine, axis)?;
+                // As machine files have it: the tool is up before the table moves.
+                joint.sequence = u32::from(letter != 'Z');
+            }
+            note(axis, number, switch, &mut notes);
+            joints.push(joint);
         }
+        has_one_switch_each(machine, &wishes.switches)?;
         let count = u32::try_from(joints.len()).unwrap_or(u32::MAX);
         let depth = u32::try_from(machine.queue).unwrap_or(u32::MAX);
         let (periods, horizon_ms) = rates::choose(count, uart.baud(), depth, wishes.horizon_ms)?;
@@ -171,6 +184,23 @@ impl Configuration {
         };
         Ok((configuration, notes))
     }
+}
+
+fn has_one_switch_each(machine: &Machine, switches: &[HomeSwitch]) -> Result<(), SwitchRefused> {
+    for (number, switch) in switches.iter().enumerate() {
+        let refused = |why: String| Err(SwitchRefused { axis: switch.axis.clone(), why });
+        if machine.axis_index(&switch.axis).is_none() {
+            return refused(format!("no axis has this name; there are {}", machine.axis_names()));
+        }
+        let before = &switches[..number];
+        if before.iter().any(|other| other.axis == switch.axis) {
+            return refused("it has two".to_owned());
+        }
+        if before.iter().any(|other| other.input == switch.input) {
+            return refused(format!("input {} is that of another axis", switch.input));
+        }
+    }
+    Ok(())
 }
 
 /// The row of switches whose first input is the probe.
@@ -243,18 +273,19 @@ fn rests(axis: &Axis) -> i64 {
     })
 }
 
-fn note(axis: &Axis, number: usize, notes: &mut Vec<String>) {
+fn note(axis: &Axis, number: usize, switch: Option<&HomeSwitch>, notes: &mut Vec<String>) {
     let name = &axis.name;
     if axis.travel.is_none() {
         notes.push(format!("axis '{name}' has no travel: LinuxCNC does not limit joint {number}"));
     }
-    notes.push(match &axis.home {
-        Some(_) => format!(
+    notes.push(match (switch, &axis.home) {
+        (Some(switch), _) => format!("LinuxCNC homes axis '{name}' on {}", switch.pin()),
+        (None, Some(_)) => format!(
             "axis '{name}' homes by `carrystep home` before LinuxCNC starts: joint {number} then takes \
              the place where it is for {}",
             axis.unit.own(rests(axis) as f64, 0)
         ),
-        None => format!(
+        (None, None) => format!(
             "axis '{name}' has no home table: joint {number} takes the place where it is for {}",
             axis.unit.own(0.0, 0)
         ),

@@ -1,7 +1,7 @@
 //! The real LinuxCNC: the component among its modules, and a run of it as a user without rights.
 
 use crate::{HORIZON_MS, PERIODS, PRIORITIES, machine};
-use carrystep_linuxcnc::{Configuration, Homing, Wishes, component};
+use carrystep_linuxcnc::{Configuration, Wishes, component};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -86,6 +86,9 @@ fn watch(folder: PathBuf, end: Arc<AtomicBool>) -> JoinHandle<()> {
     })
 }
 
+/// The home switch of joint 0.
+const SWITCH: &str = "x,input=0,toward=min,seek_speed=20,slow_speed=2,pull_off=5,position=0";
+
 /// What `carrystep linuxcnc` writes for the machine; with a switch for joint 0, or without a probe.
 fn configuration(port: &str, homes: bool) -> Configuration {
     let wishes = Wishes {
@@ -93,22 +96,13 @@ fn configuration(port: &str, homes: bool) -> Configuration {
         port: port.to_owned(),
         horizon_ms: Some(HORIZON_MS),
         display: "./ui.py".to_owned(),
+        switches: if homes { vec![SWITCH.parse().unwrap()] } else { Vec::new() },
     };
     let (mut configuration, _) = Configuration::of_machine(&machine(), wishes).unwrap();
     assert_eq!(configuration.periods as usize, PERIODS);
     configuration.hal_files = vec!["sampler.hal".to_owned()];
     // Without a probe, LinuxCNC's own following error is at its tightest.
     configuration.probe = homes;
-    if homes {
-        configuration.joints[0].homing = Homing::Switch {
-            pin: "in-1-0".to_owned(),
-            search: -20.0,
-            latch: -2.0,
-            at: 0.0,
-            rest: 5.0,
-            index: false,
-        };
-    }
     configuration
 }
 
