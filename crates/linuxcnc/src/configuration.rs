@@ -5,9 +5,11 @@ mod home_switch;
 mod ini;
 mod machine;
 mod rates;
+mod refused;
 
 pub use home_switch::{HomeSwitch, SwitchRefused};
-pub use machine::{MachineRefused, Wishes};
+pub use machine::Wishes;
+pub use refused::MachineRefused;
 
 /// When and how LinuxCNC gives a joint its machine coordinate.
 #[derive(Debug, Clone, PartialEq)]

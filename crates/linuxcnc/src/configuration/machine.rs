@@ -1,12 +1,12 @@
 //! The configuration of a machine file.
 
+use super::refused::MachineRefused;
 use super::{Configuration, HomeSwitch, Homing, Joint, LETTERS, OutputNets, SwitchRefused, rates};
 use carrystep_core::StartPhase;
 use carrystep_core::engine::{Guard, Latch, LatchSource, LimitWiring};
 use carrystep_core::link::LineKind;
 use carrystep_files::machine::End;
 use carrystep_files::{Axis, Machine, decimal};
-use thiserror::Error;
 
 /// What the machine file does not say.
 #[derive(Debug, Clone)]
@@ -21,91 +21,6 @@ pub struct Wishes {
     pub display: String,
     /// The home switches at general inputs.
     pub switches: Vec<HomeSwitch>,
-}
-
-/// Why LinuxCNC cannot have a machine.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum MachineRefused {
-    /// An axis has no letter.
-    #[error("axis '{axis}' has no letter: call it x, y, z, a, b, c, u, v or w, as LinuxCNC does")]
-    Name {
-        /// Its name.
-        axis: String,
-    },
-    /// Two axes have one letter.
-    #[error("two axes have the letter {letter}: LinuxCNC does not tell {letter} from {small}", small = .letter.to_ascii_lowercase())]
-    Twice {
-        /// The letter.
-        letter: char,
-    },
-    /// An axis has another unit than LinuxCNC.
-    #[error(
-        "axis '{axis}' is in {unit}: LinuxCNC has it in {wanted}. Give lead or steps_per_unit in that unit"
-    )]
-    Unit {
-        /// Its name.
-        axis: String,
-        /// The unit of the machine file.
-        unit: String,
-        /// The units of LinuxCNC for this letter.
-        wanted: &'static str,
-    },
-    /// Some axes are in mm and others in inches.
-    #[error(
-        "axis '{axis}' is in {unit}, and an axis before it is not: LinuxCNC has one unit of length"
-    )]
-    Mixed {
-        /// Its name.
-        axis: String,
-        /// Its unit.
-        unit: String,
-    },
-    /// A home switch cannot be.
-    #[error(transparent)]
-    Switch(#[from] SwitchRefused),
-    /// Places are not those that the component computes.
-    #[error("phase = \"zero\": the component needs phase = \"half\", the default")]
-    Phase,
-    /// The link is an SPI.
-    #[error("the host link is an SPI: the component drives a serial port")]
-    Spi,
-    /// The engine or the rate cannot be built.
-    #[error("{0}")]
-    Build(String),
-    /// No serial port has this rate.
-    #[error("baud = {baud}: the component's serial ports have one of {all}", all = all_bauds())]
-    Baud {
-        /// The rate of the machine file.
-        baud: u32,
-    },
-    /// The line does not hold the segments.
-    #[error(
-        "the line is too slow: segments of {joints} joints in 16 ms take more than half of {baud} baud"
-    )]
-    SlowLine {
-        /// Its rate.
-        baud: u32,
-        /// The number of joints.
-        joints: u32,
-    },
-    /// The queues do not hold the horizon.
-    #[error(
-        "the board's queues do not hold the segments of this horizon: at most {most_ms} ms with this queue_depth"
-    )]
-    LongHorizon {
-        /// The longest one.
-        most_ms: u32,
-    },
-    /// The horizon does not hold two segments.
-    #[error("the horizon is shorter than two segments: at least {least_ms} ms on this line")]
-    ShortHorizon {
-        /// The shortest one.
-        least_ms: u32,
-    },
-}
-
-fn all_bauds() -> String {
-    rates::BAUDS.map(|baud| baud.to_string()).join(", ")
 }
 
 impl Configuration {

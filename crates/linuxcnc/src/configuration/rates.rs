@@ -1,12 +1,6 @@
 //! How long segments are and how far ahead they are sent, so that line and queue hold them.
 
-use super::machine::MachineRefused;
-
-/// Rates that a serial port can be set to, bit/s, as `carrystep_port.c` lists them.
-pub const BAUDS: [u32; 12] = [
-    115_200, 230_400, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_152_000, 1_500_000,
-    2_000_000, 2_500_000, 3_000_000,
-];
+use super::refused::{BAUDS, MachineRefused};
 
 /// Bytes of a segment on the line, with the ends of its frame and a few escapes.
 const SEGMENT_BYTES: u32 = 44;
