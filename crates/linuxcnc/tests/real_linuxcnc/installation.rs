@@ -144,7 +144,7 @@ impl Ran {
 }
 
 /// Runs LinuxCNC at this port; `what` is the part of ui.py that is run.
-pub fn linuxcnc(folder: &Path, port: &str, what: &str, programs: &[String]) -> Ran {
+pub fn linuxcnc(folder: &Path, port: &str, what: &str, program: &Path) -> Ran {
     fs::set_permissions(port, Permissions::from_mode(0o666)).unwrap();
     let run = tempfile::tempdir_in(folder).unwrap();
     let own = run.path();
@@ -168,7 +168,7 @@ pub fn linuxcnc(folder: &Path, port: &str, what: &str, programs: &[String]) -> R
         .env("RTAPI_UID", "65534")
         .env("RTAPI_FIFO_PATH", own.join("fifo"))
         .env("WHAT", what)
-        .env("PROGRAMS", programs.join(":"))
+        .env("PROGRAM", program)
         .output()
         .unwrap();
     end.store(true, Ordering::Relaxed);

@@ -20,7 +20,7 @@ use compare::{compare, samples};
 use installation::{Module, Ran, linuxcnc, prefer};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tempfile::TempDir;
@@ -60,40 +60,67 @@ enum Outcome {
     Void(String),
 }
 
-/// Runs with a board, in a folder that the user nobody can read, until one is not void; three void
-/// runs fail. The names of the programs are those of CARRYSTEP_LINUXCNC, ours the first.
-fn until_not_void(name: &str, attempt: impl Fn(&Path, &[String]) -> Outcome) {
-    let Ok(asked) = std::env::var("CARRYSTEP_LINUXCNC") else {
-        return;
-    };
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sim/jobs/square_and_arc.ngc");
-    let folder = TempDir::new().unwrap();
-    fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).unwrap();
-    let square = folder.path().join("square_and_arc.ngc");
-    fs::copy(own, &square).unwrap();
-    let others = asked.split(':').filter(|name| !name.is_empty() && *name != "square_and_arc");
-    let programs: Vec<String> = std::iter::once(square.display().to_string())
-        .chain(others.map(|name| format!("/usr/share/linuxcnc/ncfiles/{name}.ngc")))
-        .collect();
-    let _module = Module::build(folder.path());
-    for _ in 0..3 {
-        match attempt(folder.path(), &programs) {
-            Outcome::Good(figures) => {
-                eprintln!("FIGURES {name}: {figures}");
-                return;
-            }
-            Outcome::Void(why) => eprintln!("void: {name}: {why}"),
-        }
+/// What all runs need: the component among LinuxCNC's modules, and programs.
+struct Workshop {
+    folder: TempDir,
+    _module: Module,
+    /// Our own program, where the user nobody can read it.
+    square: PathBuf,
+    /// LinuxCNC's programs of CARRYSTEP_LINUXCNC.
+    others: Vec<PathBuf>,
+}
+
+impl Workshop {
+    /// `None` without CARRYSTEP_LINUXCNC.
+    fn new() -> Option<Self> {
+        let asked = std::env::var("CARRYSTEP_LINUXCNC").ok()?;
+        let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sim/jobs/square_and_arc.ngc");
+        let folder = TempDir::new().unwrap();
+        fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).unwrap();
+        let square = folder.path().join("square_and_arc.ngc");
+        fs::copy(own, &square).unwrap();
+        let others = asked.split(':').filter(|name| !name.is_empty() && *name != "square_and_arc");
+        let place = |name| PathBuf::from(format!("/usr/share/linuxcnc/ncfiles/{name}.ngc"));
+        let others = others.map(place).collect();
+        let _module = Module::build(folder.path());
+        Some(Self { folder, _module, square, others })
     }
-    panic!("{name}: three runs were void");
+
+    /// Makes a run until one is not void; three void runs fail.
+    fn until_not_void(&self, name: &str, attempt: impl Fn(&Path) -> Outcome) {
+        for _ in 0..3 {
+            match attempt(self.folder.path()) {
+                Outcome::Good(figures) => {
+                    eprintln!("FIGURES {name}: {figures}");
+                    return;
+                }
+                Outcome::Void(why) => eprintln!("void: {name}: {why}"),
+            }
+        }
+        panic!("{name}: three runs were void");
+    }
+
+    /// A run whose pulses must follow the commands.
+    fn follows(&self, name: &str, what: &str, program: &Path) {
+        self.until_not_void(name, |folder| {
+            let (ran, done) = one(folder, what, program);
+            if let Some(void) = void(&ran, &done) {
+                return void;
+            }
+            is_whole(&ran);
+            match follows(&ran, &done) {
+                Ok(figures) => Outcome::Good(figures),
+                Err(void) => void,
+            }
+        });
+    }
 }
 
 /// Runs LinuxCNC with a new board. `None` if the computer was too late.
-fn one(folder: &Path, what: &str, programs: &[String]) -> (Ran, Done) {
+fn one(folder: &Path, what: &str, program: &Path) -> (Ran, Done) {
     let end = Arc::new(AtomicBool::new(false));
     let (port, thread) = board(Arc::clone(&end));
-    let ran = linuxcnc(folder, &port, what, programs);
+    let ran = linuxcnc(folder, &port, what, program);
     end.store(true, Ordering::Relaxed);
     (ran, thread.join().unwrap())
 }
@@ -134,27 +161,25 @@ fn follows(ran: &Ran, done: &Done) -> Result<String, Outcome> {
     ))
 }
 
-/// Programs, feed hold, abort, jog, e-stop.
+/// Feed hold, abort, jog, e-stop; and each program of its own.
 #[test]
 fn the_real_linuxcnc_drives_a_virtual_board() {
-    until_not_void("programs", |folder, programs| {
-        let (ran, done) = one(folder, "programs", programs);
-        if let Some(void) = void(&ran, &done) {
-            return void;
-        }
-        is_whole(&ran);
-        match follows(&ran, &done) {
-            Ok(figures) => Outcome::Good(format!("{} programs, {figures}", programs.len())),
-            Err(void) => void,
-        }
-    });
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(workshop) = Workshop::new() else { return };
+    workshop.follows("cases", "cases", &workshop.square);
+    for program in &workshop.others {
+        let name = program.file_stem().unwrap().to_string_lossy();
+        workshop.follows(&name, "program", program);
+    }
 }
 
 /// A home switch at a general input; G38.2 with a latch, behind an output that M64 switches on.
 #[test]
 fn the_real_linuxcnc_homes_and_probes() {
-    until_not_void("home and probe", |folder, programs| {
-        let (ran, done) = one(folder, "home_and_probe", programs);
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(workshop) = Workshop::new() else { return };
+    workshop.until_not_void("home and probe", |folder| {
+        let (ran, done) = one(folder, "home_and_probe", &workshop.square);
         if let Some(void) = void(&ran, &done) {
             return void;
         }
@@ -179,11 +204,13 @@ fn the_real_linuxcnc_homes_and_probes() {
 /// true position.
 #[test]
 fn the_real_linuxcnc_is_killed_in_motion() {
-    until_not_void("killed in motion", |folder, programs| {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(workshop) = Workshop::new() else { return };
+    workshop.until_not_void("killed in motion", |folder| {
         let end = Arc::new(AtomicBool::new(false));
         let (port, thread) = board(Arc::clone(&end));
-        let killed = linuxcnc(folder, &port, "killed", programs);
-        let next = linuxcnc(folder, &port, "look", programs);
+        let killed = linuxcnc(folder, &port, "killed", &workshop.square);
+        let next = linuxcnc(folder, &port, "look", &workshop.square);
         end.store(true, Ordering::Relaxed);
         let done = thread.join().unwrap();
         if let Some(void) = void(&killed, &done) {

@@ -2,7 +2,7 @@
 """The user of a headless LinuxCNC: LinuxCNC starts it as its user interface (DISPLAY).
 
 It records every servo period by halsampler to samples.txt, does what its environment variable WHAT
-says with the programs of PROGRAMS, and writes what came of it to result.json."""
+says with the program PROGRAM, and writes what came of it to result.json."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import time
 import linuxcnc
 
 command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
-result = {"errors": [], "programs": [], "steps": []}
+result = {"errors": [], "steps": []}
 
 
 def look():
@@ -97,14 +97,19 @@ def off():
     time.sleep(0.3)
 
 
-def programs():
+def program():
     home(10)
-    names = os.environ["PROGRAMS"].split(":")
-    for program in names:
-        begin(program)
-        finish(program, 300)
-        result["programs"].append(os.path.basename(program))
-    first = names[0]
+    name = os.environ["PROGRAM"]
+    begin(name)
+    finish(name, 1200)
+    off()
+
+
+def cases():
+    home(10)
+    first = os.environ["PROGRAM"]
+    begin(first)
+    finish(first, 60)
 
     begin(first)
     until(moving, 5, "motion")
@@ -144,7 +149,6 @@ def programs():
     begin(first)
     finish(first, 60)
     off()
-    result["feedback"] = [float(pin(f"joint.{joint}.position-fb")) for joint in range(3)]
 
 
 def mdi(line, seconds):
@@ -187,7 +191,7 @@ def home_and_probe():
 
 def killed():
     home(10)
-    begin(os.environ["PROGRAMS"].split(":")[0])
+    begin(os.environ["PROGRAM"])
     until(moving, 5, "motion")
     open("kill", "w").close()
     for _ in range(500):
@@ -205,7 +209,7 @@ def look_at_it():
 
 
 what = os.environ["WHAT"]
-work = {"programs": programs, "home_and_probe": home_and_probe, "killed": killed, "look": look_at_it}
+work = {"program": program, "cases": cases, "home_and_probe": home_and_probe, "killed": killed, "look": look_at_it}
 samples = open("samples.txt", "w")
 sampler = subprocess.Popen(["stdbuf", "-oL", "halsampler", "-t"], stdout=samples)
 try:
