@@ -1,6 +1,7 @@
 //! The definition of the command line. The parser and the help are both made from it, so every
 //! change here changes tests/transcripts/help.md.
 
+mod linuxcnc;
 mod machine;
 mod place;
 mod plan;
@@ -15,6 +16,7 @@ use carrystep_sweep::Shard;
 use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser};
+pub use linuxcnc::LinuxcncArguments;
 pub use machine::{MachineArguments, MachineCommand, MachineNew};
 pub use place::{Jog, OffsetArguments};
 pub use plan::PlanArguments;
@@ -95,6 +97,9 @@ pub enum Subcommand {
     /// `max x 0`); Ctrl-C or `end` ends it.
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
+    /// Write the configuration of LinuxCNC for a machine: INI, HAL and tool table, for the HAL
+    /// component (docs/linuxcnc.md).
+    Linuxcnc(LinuxcncArguments),
     /// Write a new machine file.
     Machine(MachineArguments),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.

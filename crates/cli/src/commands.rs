@@ -9,6 +9,7 @@ pub mod demo;
 pub mod doctor;
 pub mod hold;
 pub mod home;
+pub mod linuxcnc;
 pub mod list_blocks;
 pub mod machine;
 pub mod offset;

@@ -6,8 +6,8 @@
 //! field that is removed or changes its meaning increments it.
 
 use crate::commands::{
-    boards, build, check, check_program, doctor, home, list_blocks, machine, offset, plan,
-    plan_program, profile, sweep, table, verilog,
+    boards, build, check, check_program, doctor, home, linuxcnc, list_blocks, machine, offset,
+    plan, plan_program, profile, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job, pause, program_run};
@@ -36,6 +36,7 @@ documents! {
     "drive", 1: drive::Driven;
     "failure", 1: ending::FailedRun;
     "home", 1: home::HomeReport;
+    "linuxcnc", 1: linuxcnc::WrittenForLinuxcnc;
     "machine-new", 1: machine::WrittenMachine<'_>;
     "offset", 1: offset::ShownOffsets;
     "pause", 1: pause::PauseResult;

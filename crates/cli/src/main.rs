@@ -76,6 +76,7 @@ fn main() -> ExitCode {
         Subcommand::Stop(stop) => commands::stop::stop(stop),
         #[cfg(unix)]
         Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
+        Subcommand::Linuxcnc(linuxcnc) => commands::linuxcnc::run(linuxcnc),
         Subcommand::Machine(machine) => commands::machine::run(machine),
         Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),

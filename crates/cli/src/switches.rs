@@ -166,9 +166,10 @@ mod tests {
 
     #[test]
     fn switches_drive_the_inputs_of_their_wiring() {
-        let pressed = Switches { estop: true, limit_min: 0b0010, limit_max: 0b0100 };
+        let pressed =
+            Switches { estop: true, limit_min: 0b0010, limit_max: 0b0100, ..Switches::default() };
         let wires = |wiring| {
-            let Switches { estop, limit_min, limit_max } = wired(pressed, wiring);
+            let Switches { estop, limit_min, limit_max, .. } = wired(pressed, wiring);
             (estop, limit_min, limit_max)
         };
         assert_eq!(wires(LimitWiring::Pair), (true, 0b0010, 0b0100));

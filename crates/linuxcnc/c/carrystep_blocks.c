@@ -159,11 +159,13 @@ static carrystep_taken finish(carrystep_blocks *blocks, int32_t trim, carrystep_
         blocks->axis[axis].at = at + carrystep_distance(&block->axes[axis], ticks);
         blocks->axis[axis].speed = speed;
     }
+    block->axes[0].outputs = blocks->outputs;
+    blocks->outputs = blocks->next_outputs;
     blocks->ticks += ticks;
     return CARRYSTEP_A_BLOCK;
 }
 
-carrystep_taken carrystep_blocks_take(carrystep_blocks *blocks, const double *steps, int32_t trim,
+carrystep_taken carrystep_blocks_take(carrystep_blocks *blocks, const double *steps, uint32_t outputs, int32_t trim,
                                       carrystep_block *block)
 {
     carrystep_taken taken = check(blocks, steps);
@@ -174,12 +176,16 @@ carrystep_taken carrystep_blocks_take(carrystep_blocks *blocks, const double *st
         blocks->axis[axis].previous = blocks->axis[axis].latest;
         blocks->axis[axis].latest = steps[axis];
     }
+    if (blocks->ticks == 0 && blocks->seen == 0) {
+        blocks->outputs = outputs; /* the first period of the stream */
+    }
     blocks->seen++;
     if (blocks->seen > blocks->periods) {
         taken = finish(blocks, trim, block);
         blocks->seen = 1;
     }
     if (blocks->seen == blocks->periods) {
+        blocks->next_outputs = outputs;
         for (uint8_t axis = 0; axis < blocks->axes; axis++) {
             blocks->axis[axis].end = blocks->axis[axis].latest;
             blocks->axis[axis].before = blocks->axis[axis].previous;

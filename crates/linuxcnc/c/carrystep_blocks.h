@@ -5,6 +5,9 @@
  * these ends show. So position and speed are continuous from block to block. A block is known one
  * period after its end.
  *
+ * Outputs switch where a block begins, and never before the motion with which they were commanded:
+ * what they are at the end of a block is what they are from there on.
+ *
  * Places are exact: integers of 2^-64 step. A segment of n ticks ends less than n of these units
  * from the command, and the next segment begins where it really ends, so that rounding never adds
  * up. This needs a compiler with 128-bit integers: GCC or Clang for a 64-bit processor.
@@ -51,6 +54,8 @@ typedef struct {
     uint64_t ticks;       /* of all blocks of this stream */
     uint32_t stream;
     uint32_t culprit;     /* the axis whose command was refused */
+    uint32_t outputs;     /* of the block that waits for its speed, as in carrystep_segment */
+    uint32_t next_outputs; /* of the block behind it */
     struct {
         double most;      /* greatest steps in a period */
         double latest;    /* the latest command, steps */
@@ -68,9 +73,10 @@ typedef struct {
 bool carrystep_blocks_begin(carrystep_blocks *blocks, uint32_t stream, uint8_t axes, uint32_t periods,
                             uint32_t period_ns, uint32_t tick_ns, const carrystep_place *at, const double *most);
 
-/* Takes the commands of the next servo period, in steps. Segments are longer than the periods by
- * `trim` parts per 10^9, at most 10^7 in either direction. After a refusal the stream has ended. */
-carrystep_taken carrystep_blocks_take(carrystep_blocks *blocks, const double *steps, int32_t trim,
+/* Takes the commands of the next servo period: places in steps, and `outputs` as in
+ * carrystep_segment. Segments are longer than the periods by `trim` parts per 10^9, at most 10^7 in
+ * either direction. After a refusal the stream has ended. */
+carrystep_taken carrystep_blocks_take(carrystep_blocks *blocks, const double *steps, uint32_t outputs, int32_t trim,
                                       carrystep_block *block);
 
 /* The cubic over `ticks` ticks (1 to CARRYSTEP_MOST_BLOCK_TICKS) and `distance`, 2^-64 step, that

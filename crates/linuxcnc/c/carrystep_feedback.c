@@ -1,6 +1,9 @@
 /* See carrystep_feedback.h. */
 #include "carrystep_feedback.h"
 
+#include <string.h>
+
+#define A_STEP ((carrystep_place)1 << 64)
 #define HALF_A_STEP ((carrystep_place)1 << 63)
 
 void carrystep_remember(carrystep_sent *sent, const carrystep_block *block)
@@ -42,4 +45,30 @@ bool carrystep_commanded(const carrystep_sent *sent, uint32_t count, uint32_t sl
     *place = block->at[axis] + carrystep_distance(&block->axes[axis], done);
     *ticks = block->before + done;
     return true;
+}
+
+bool carrystep_measure(const carrystep_sent *sent, uint32_t count, uint32_t slots, uint8_t axes,
+                       const carrystep_seen *seen, carrystep_places *places)
+{
+    bool all = count > 0;
+    memset(places, 0, sizeof *places);
+    for (uint8_t axis = 0; axis < axes; axis++) {
+        carrystep_place planned, error;
+        places->at[axis] = carrystep_actual(&seen[axis]);
+        if (count == 0 ||
+            !carrystep_commanded(sent, count, slots, axis, &seen[axis], &planned, &places->gone_by)) {
+            all = false;
+            continue;
+        }
+        error = places->at[axis] - planned;
+        places->error[axis] = carrystep_steps_of(error);
+        if (error >= A_STEP || error <= -A_STEP) {
+            places->lost |= (uint8_t)(1u << axis);
+        }
+    }
+    if (all) {
+        const carrystep_block *last = &sent->blocks[(count - 1u) % CARRYSTEP_REMEMBERED];
+        places->reserve = last->before + last->axes[0].ticks - places->gone_by;
+    }
+    return all;
 }

@@ -42,4 +42,18 @@ carrystep_place carrystep_actual(const carrystep_seen *seen);
 bool carrystep_commanded(const carrystep_sent *sent, uint32_t count, uint32_t slots, uint8_t axis,
                          const carrystep_seen *seen, carrystep_place *place, uint64_t *ticks);
 
+/* What a snapshot shows of all axes. */
+typedef struct {
+    carrystep_place at[CARRYSTEP_MOST_AXES];
+    double error[CARRYSTEP_MOST_AXES]; /* steps: place less command; 0 where the command is not known */
+    uint8_t lost;     /* the axes that are off by a step or more, one bit each */
+    uint64_t gone_by; /* ticks of the stream */
+    uint64_t reserve; /* ticks until the end of the last block that was sent */
+} carrystep_places;
+
+/* Compares the axes with the first `count` blocks; 0: no stream runs. False if not all of them run
+ * a block: the start has not been executed yet, or the axes have stopped. */
+bool carrystep_measure(const carrystep_sent *sent, uint32_t count, uint32_t slots, uint8_t axes,
+                       const carrystep_seen *seen, carrystep_places *places);
+
 #endif

@@ -11,7 +11,6 @@
 #define LOOK (10u * MS)      /* between snapshots */
 #define POLL (5u * MS)       /* between reads while something is waited for */
 #define CLEAR (20u * MS)     /* between tries to clear a stop */
-#define A_STEP ((carrystep_place)1 << 64)
 
 void carrystep_pump_away(carrystep_shared *shared, uint32_t fault)
 {
@@ -28,7 +27,9 @@ static void tell(carrystep_pump *pump)
                                              CARRYSTEP_READY, CARRYSTEP_POWERING, CARRYSTEP_RUNNING, CARRYSTEP_AWAY};
     pump->report.state = STATES[pump->state];
     /* If the queue is full, the real-time function does not run; a later report tells the same. */
-    carrystep_ring_put(&pump->shared->reports, &pump->report);
+    if (carrystep_ring_put(&pump->shared->reports, &pump->report)) {
+        pump->report.latched = CARRYSTEP_LATCHED_NOTHING;
+    }
 }
 
 static void enter(carrystep_pump *pump, carrystep_pump_state state)
@@ -70,6 +71,9 @@ void carrystep_pump_begin(carrystep_pump *pump, carrystep_shared *shared, const 
     pump->how = *how;
     pump->now = now_us;
     pump->heard = now_us;
+    pump->look.axes = how->axes;
+    pump->look.latched = how->probe_latch != CARRYSTEP_NO_LATCH || how->index_latch != CARRYSTEP_NO_LATCH;
+    carrystep_latches_begin(&pump->latches, how->probe_latch, how->index_latch);
     carrystep_begin(&pump->session, RESEND_MS, PAUSE_MS);
     enter(pump, CARRYSTEP_PUMP_ASKING);
 }
@@ -91,56 +95,11 @@ static uint8_t mask(const carrystep_pump *pump)
 
 /* ---- snapshots ---- */
 
-static const uint8_t OF_AXIS[] = {CARRYSTEP_SNAPSHOT_P_HIGH, CARRYSTEP_SNAPSHOT_POSITION, CARRYSTEP_SNAPSHOT_STATUS,
-                                  CARRYSTEP_SNAPSHOT_LEFT};
-#define ALONE 2u /* registers that are read once: TICKS, INPUTS */
-
-/* The register with this number in the set of those that a snapshot reads. */
-static uint8_t snapshot_register(uint32_t number)
-{
-    if (number < ALONE) {
-        return number == 0 ? CARRYSTEP_SNAPSHOT_TICKS : CARRYSTEP_INPUTS;
-    }
-    number -= ALONE;
-    return (uint8_t)CARRYSTEP_OF_AXIS(OF_AXIS[number % 4u], number / 4u);
-}
-
-static uint32_t registers(const carrystep_pump *pump)
-{
-    return ALONE + 4u * pump->how.axes;
-}
-
-/* Begins a snapshot, but never before the last one is complete: its reads and those of the next
- * have the same addresses, and a mixture of both would be a place where no axis ever was. */
+/* Begins a snapshot when it is time. */
 static void begin_snapshot(carrystep_pump *pump)
 {
-    if (pump->snapshot.stage == 0 && pump->now - pump->looked >= LOOK && carrystep_write(&pump->session, CARRYSTEP_SNAPSHOT, 1)) {
-        pump->snapshot.stage = 1;
-        pump->snapshot.count = pump->sent.sent;
-        pump->snapshot.before = pump->now;
-        pump->looked = pump->now;
-    }
-}
-
-/* Whether the write of SNAPSHOT is acknowledged. Any answer may do that, if its own was lost. */
-static bool snapshot_is_taken(const carrystep_session *session)
-{
-    for (unsigned index = 0; index < session->length; index++) {
-        unsigned slot = (session->at + index) % CARRYSTEP_SLOTS;
-        if (session->slots[slot].address == (CARRYSTEP_WRITE | CARRYSTEP_SNAPSHOT)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static void read_snapshot(carrystep_pump *pump)
-{
-    for (uint32_t number = 0; pump->snapshot.stage == 2 && number < registers(pump); number++) {
-        if ((pump->snapshot.missing >> number & 1u) != 0 &&
-            !carrystep_read(&pump->session, snapshot_register(number))) {
-            return;
-        }
+    if (pump->now - pump->look.begun >= LOOK) {
+        carrystep_look_begin(&pump->look, &pump->session, pump->now, pump->sent.sent);
     }
 }
 
@@ -158,38 +117,29 @@ static void trim(carrystep_pump *pump, int64_t lead)
 
 static void finish_snapshot(carrystep_pump *pump)
 {
-    int64_t tick = carrystep_tick(&pump->ticks, pump->snapshot.ticks);
-    bool running = pump->state == CARRYSTEP_PUMP_RUNNING && pump->snapshot.count > 0;
-    bool all = running;
-    uint64_t gone_by = 0;
-    pump->snapshot.stage = 0;
-    carrystep_observe(&pump->clocks, tick, pump->snapshot.before, pump->snapshot.after);
-    for (uint8_t axis = 0; axis < pump->how.axes; axis++) {
-        const carrystep_seen *seen = &pump->snapshot.seen[axis];
-        carrystep_place planned, actual = carrystep_actual(seen);
-        pump->report.at[axis] = actual;
-        pump->report.placed = true;
-        if (!running) {
-            continue;
-        }
-        if (!carrystep_commanded(&pump->sent, pump->snapshot.count, pump->depth + 1u, axis, seen, &planned,
-                                 &gone_by)) {
-            all = false; /* the start has not been executed yet, or the axes have stopped */
-            continue;
-        }
-        carrystep_place error = actual - planned;
-        pump->report.error[axis] = carrystep_steps_of(error);
-        if (error >= A_STEP || error <= -A_STEP) {
-            fail(pump, CARRYSTEP_FAULT_LOST, (uint8_t)(1u << axis));
-        }
+    int64_t tick = carrystep_tick(&pump->ticks, pump->look.ticks);
+    bool running = pump->state == CARRYSTEP_PUMP_RUNNING && pump->look.count > 0;
+    bool all;
+    carrystep_places places;
+    carrystep_observe(&pump->clocks, tick, pump->look.before, pump->look.after);
+    all = carrystep_measure(&pump->sent, running ? pump->look.count : 0, pump->facts.depth + 1u, pump->how.axes,
+                            pump->look.seen, &places);
+    memcpy(pump->report.at, places.at, sizeof places.at);
+    pump->report.placed = true;
+    if (running) {
+        memcpy(pump->report.error, places.error, sizeof places.error);
+    }
+    if (running && places.lost != 0) {
+        fail(pump, CARRYSTEP_FAULT_LOST, places.lost);
     }
     if (all) {
-        const carrystep_block *last = &pump->sent.blocks[(pump->snapshot.count - 1u) % CARRYSTEP_REMEMBERED];
-        uint64_t reserve = last->before + last->axes[0].ticks - gone_by;
-        pump->report.stream = pump->stream;
-        pump->report.reserve_ns = (int64_t)(reserve * pump->report.tick_ns);
-        trim(pump, (int64_t)(pump->snapshot.made + pump->rest) - (int64_t)gone_by);
+        pump->report.stream = pump->report.fault == 0 ? pump->stream : 0;
+        pump->report.reserve_ns = (int64_t)(places.reserve * pump->report.tick_ns);
+        trim(pump, (int64_t)(pump->made + pump->rest) - (int64_t)places.gone_by);
     }
+    bool wants = __atomic_load_n(&pump->shared->index, __ATOMIC_ACQUIRE) != 0;
+    carrystep_latches_take(&pump->latches, &pump->look, &pump->session, wants);
+    pump->report.inputs = carrystep_latches_inputs(&pump->latches, &pump->look);
     if (pump->state == CARRYSTEP_PUMP_LOOKING) {
         pump->report.fault = 0;
         pump->report.culprits = 0;
@@ -199,35 +149,37 @@ static void finish_snapshot(carrystep_pump *pump)
     }
 }
 
-static void take_snapshot(carrystep_pump *pump, const carrystep_answer *answer)
+/* The place of the edge that a latch has found. */
+static void finish_record(carrystep_pump *pump)
 {
-    if (pump->snapshot.stage == 1 && snapshot_is_taken(&pump->session)) {
-        pump->snapshot.stage = 2;
-        pump->snapshot.after = pump->now;
-        pump->snapshot.made = __atomic_load_n(&pump->shared->made, __ATOMIC_ACQUIRE);
-        pump->snapshot.missing = ((uint64_t)1 << registers(pump)) - 1u;
-    }
-    if (pump->snapshot.stage != 2 || answer->written) {
+    carrystep_record record = carrystep_latches_record(&pump->latches);
+    if (record == CARRYSTEP_RECORD_NONE) {
         return;
     }
-    for (uint32_t number = 0; number < registers(pump); number++) {
-        if ((pump->snapshot.missing >> number & 1u) == 0 || snapshot_register(number) != answer->address) {
-            continue;
-        }
-        pump->snapshot.missing &= ~((uint64_t)1 << number);
-        if (number == 0) {
-            pump->snapshot.ticks = answer->data;
-        } else if (number == 1) {
-            pump->report.inputs = answer->data;
-        } else {
-            carrystep_seen *seen = &pump->snapshot.seen[(number - ALONE) / 4u];
-            uint32_t *words[] = {&seen->p_high, &seen->position, &seen->status, &seen->left};
-            *words[(number - ALONE) % 4u] = answer->data;
-        }
-        if (pump->snapshot.missing == 0) {
-            finish_snapshot(pump);
-        }
-        return;
+    pump->report.latched = record == CARRYSTEP_RECORD_PROBE ? CARRYSTEP_LATCHED_PROBE : CARRYSTEP_LATCHED_INDEX;
+    for (uint8_t axis = 0; axis < pump->how.axes; axis++) {
+        pump->report.latched_at[axis] = carrystep_actual(&pump->look.record[axis]);
+    }
+    pump->report.inputs = carrystep_latches_inputs(&pump->latches, &pump->look);
+    tell(pump);
+}
+
+static void take_answer(carrystep_pump *pump, const carrystep_answer *answer)
+{
+    bool waits = pump->look.stage == CARRYSTEP_LOOK_WRITTEN;
+    carrystep_look_event event = carrystep_look_take(&pump->look, &pump->session, pump->now, answer);
+    if (waits && pump->look.stage != CARRYSTEP_LOOK_WRITTEN) {
+        pump->made = __atomic_load_n(&pump->shared->made, __ATOMIC_ACQUIRE);
+    }
+    switch (event) {
+    case CARRYSTEP_LOOK_SNAPSHOT:
+        finish_snapshot(pump);
+        break;
+    case CARRYSTEP_LOOK_RECORD:
+        finish_record(pump);
+        break;
+    case CARRYSTEP_LOOK_NOTHING:
+        break;
     }
 }
 
@@ -243,30 +195,16 @@ static void poll(carrystep_pump *pump)
 
 static void ask(carrystep_pump *pump)
 {
-    static const uint8_t FACTS[] = {CARRYSTEP_IDENTITY, CARRYSTEP_PROTOCOL, CARRYSTEP_BUILD_LOW, CARRYSTEP_BUILD_HIGH,
-                                    CARRYSTEP_AXIS_COUNT, CARRYSTEP_TICK_NS, CARRYSTEP_QUEUE_DEPTH};
-    if (pump->fact < sizeof FACTS) {
-        if (pump->fresh && !pump->answer.written && pump->answer.address == FACTS[pump->fact]) {
-            pump->facts[pump->fact] = pump->answer.data;
-            pump->fact++;
-            pump->fresh = false;
-        }
-        if (pump->fact < sizeof FACTS) {
-            carrystep_read(&pump->session, FACTS[pump->fact]);
-            return;
-        }
+    bool all = carrystep_facts_ask(&pump->facts, &pump->session, pump->fresh ? &pump->answer : NULL);
+    pump->fresh = false;
+    if (!all) {
+        return;
     }
-    uint64_t build = (uint64_t)pump->facts[3] << 32 | pump->facts[2];
-    uint64_t required = pump->how.build != 0 ? pump->how.build : build;
-    uint32_t axes = pump->facts[4];
-    pump->report.tick_ns = pump->facts[5];
-    pump->depth = pump->facts[6];
-    if (carrystep_check(pump->facts[0], pump->facts[1], build, required) != CARRYSTEP_FINE ||
-        axes < pump->how.axes || axes > CARRYSTEP_MOST_AXES || pump->report.tick_ns == 0 ||
-        pump->depth < CARRYSTEP_LEAST_QUEUE || pump->depth > 31u) {
+    if (!carrystep_facts_fit(&pump->facts, pump->how.axes, pump->how.build)) {
         gone(pump, CARRYSTEP_FAULT_OTHER_BOARD);
         return;
     }
+    pump->report.tick_ns = pump->facts.tick_ns;
     carrystep_compare(&pump->clocks, pump->report.tick_ns);
     carrystep_trim_begin(&pump->trim, (int64_t)(pump->how.horizon_ns / pump->report.tick_ns));
     enter(pump, CARRYSTEP_PUMP_OPENING);
@@ -278,7 +216,7 @@ static void open_session(carrystep_pump *pump)
         stop(pump);
     } else if (!carrystep_opening(&pump->session) && pump->now - pump->polled >= POLL) {
         pump->polled = pump->now;
-        carrystep_open(&pump->session, pump->how.number, (uint8_t)pump->facts[4]);
+        carrystep_open(&pump->session, pump->how.number, (uint8_t)pump->facts.axes);
     }
 }
 
@@ -292,7 +230,7 @@ static void stopping(carrystep_pump *pump)
         return;
     } else if (pump->clearing && pump->fresh && !pump->answer.fault) {
         memset(&pump->sent, 0, sizeof pump->sent);
-        pump->snapshot.stage = 0;
+        pump->look.stage = CARRYSTEP_LOOK_NONE;
         carrystep_write(&pump->session, CARRYSTEP_CONTROL, 0);
         enter(pump, CARRYSTEP_PUMP_LOOKING);
     } else if (pump->fresh && pump->answer.halted && pump->now - pump->cleared >= CLEAR) {
@@ -436,7 +374,7 @@ void carrystep_pump_run(carrystep_pump *pump, uint64_t now_us)
     case CARRYSTEP_PUMP_GONE:
         break;
     }
-    read_snapshot(pump);
+    carrystep_look_read(&pump->look, &pump->session);
 }
 
 size_t carrystep_pump_transmit(carrystep_pump *pump, uint64_t now_us, uint8_t *line)
@@ -464,5 +402,5 @@ void carrystep_pump_receive(carrystep_pump *pump, uint64_t now_us, uint8_t byte)
         fail(pump, CARRYSTEP_FAULT_STOP + answer.cause, answer.culprits);
         tell(pump);
     }
-    take_snapshot(pump, &answer);
+    take_answer(pump, &answer);
 }

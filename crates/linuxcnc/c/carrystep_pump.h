@@ -11,9 +11,9 @@
 #ifndef CARRYSTEP_PUMP_H
 #define CARRYSTEP_PUMP_H
 
-#include "carrystep_feedback.h"
+#include "carrystep_facts.h"
+#include "carrystep_latches.h"
 #include "carrystep_servo.h"
-#include "carrystep_session.h"
 #include "carrystep_time.h"
 #include "carrystep_trim.h"
 
@@ -33,6 +33,8 @@ typedef struct {
     uint64_t build;      /* build id that is required; 0: any */
     uint64_t horizon_ns; /* lead of the blocks over the pins */
     uint16_t number;     /* session, 1 to 65535, random */
+    uint8_t probe_latch; /* the latch of the probe's pin, or CARRYSTEP_NO_LATCH */
+    uint8_t index_latch; /* the latch of index pulses, another one, or CARRYSTEP_NO_LATCH */
 } carrystep_pump_how;
 
 typedef struct {
@@ -44,12 +46,9 @@ typedef struct {
     uint64_t now;    /* us */
     uint64_t since;  /* us, when this state began */
     uint64_t heard;  /* us, when the last answer came */
-    uint64_t looked; /* us, when the last snapshot began */
     uint64_t polled;
     uint64_t cleared; /* us, when CLEAR was tried last */
-    uint32_t facts[9]; /* registers 0 to 8 */
-    uint32_t depth;
-    uint8_t fact;
+    carrystep_facts facts;
     carrystep_answer answer; /* the latest */
     bool fresh;              /* an answer has come since this state began */
     bool stopped;            /* STOPPING: STOP was sent */
@@ -57,16 +56,9 @@ typedef struct {
     uint32_t stream;
     uint64_t rest;           /* ticks of the segment of rest before the first block */
     carrystep_sent sent;
-    struct {
-        uint8_t stage;       /* 0: none; 1: SNAPSHOT is on its way; 2: its registers are read */
-        uint32_t count;      /* blocks sent before it */
-        uint64_t before;     /* us */
-        uint64_t after;
-        uint64_t made;
-        uint64_t missing;    /* registers not read yet, one bit each */
-        uint32_t ticks;
-        carrystep_seen seen[CARRYSTEP_MOST_AXES];
-    } snapshot;
+    carrystep_look look;
+    uint64_t made;           /* ticks of blocks made at the last snapshot */
+    carrystep_latches latches;
     carrystep_ticks ticks;
     carrystep_clocks clocks;
     carrystep_trim trim;

@@ -110,6 +110,19 @@ static uint32_t refusal(carrystep_taken taken)
     }
 }
 
+/* What a segment says of the outputs. The engine takes a bit of one that it has not for a fault. */
+static uint32_t outputs(const carrystep_servo *servo, const carrystep_servo_in *in)
+{
+    uint32_t word = servo->outputs != 0 ? CARRYSTEP_OUTPUTS(servo->outputs, in->levels & servo->outputs) : 0u;
+    if (servo->pwm) {
+        /* A duty that is no finite number is 0. */
+        double duty = in->duty > 0.0 && in->duty < 1e300 ? in->duty : 0.0;
+        double part = duty < 1.0 ? duty * 4096.0 : 4095.0;
+        word |= CARRYSTEP_DUTY(part < 4095.0 ? (uint32_t)part : 4095u);
+    }
+    return word;
+}
+
 /* Takes the commands of this period into the stream that runs. */
 static void follow(carrystep_servo *servo, const carrystep_servo_in *in)
 {
@@ -124,7 +137,7 @@ static void follow(carrystep_servo *servo, const carrystep_servo_in *in)
         }
     }
     int32_t trim = __atomic_load_n(&servo->shared->trim, __ATOMIC_ACQUIRE);
-    carrystep_taken taken = carrystep_blocks_take(&servo->blocks, steps, trim, &block);
+    carrystep_taken taken = carrystep_blocks_take(&servo->blocks, steps, outputs(servo, in), trim, &block);
     if (taken == CARRYSTEP_A_BLOCK) {
         if (!carrystep_ring_put(&servo->shared->blocks, &block)) {
             fail(servo, CARRYSTEP_FAULT_LATE, 0);
@@ -173,15 +186,51 @@ static void decide(carrystep_servo *servo, long period_ns, const carrystep_servo
     }
 }
 
+/* Takes a report that follows `before`: which joints' feedback is a place of the board now. */
+static void look(carrystep_servo *servo, uint32_t before, const carrystep_servo_in *in)
+{
+    const carrystep_report *report = &servo->report;
+    uint32_t changed = before ^ report->inputs;
+    uint32_t joints = 0;
+    const carrystep_place *at = report->at;
+    if (report->latched == CARRYSTEP_LATCHED_INDEX) {
+        joints = servo->index;
+        at = report->latched_at;
+        servo->moment.found = servo->index;
+        servo->index = 0;
+    } else if ((changed >> 16 & 1u) != 0) {
+        joints = 0xff;
+        at = report->latched == CARRYSTEP_LATCHED_PROBE ? report->latched_at : report->at;
+    } else if (changed != 0) {
+        joints = in->homing;
+    }
+    for (uint8_t axis = 0; axis < servo->axes; axis++) {
+        /* Of several reports in a period the first counts, but a latch before a snapshot. */
+        bool counts = (servo->moment.joints >> axis & 1u) == 0 || at == report->latched_at;
+        if ((joints >> axis & 1u) != 0 && counts) {
+            servo->moment.joints |= 1u << axis;
+            servo->moment.at[axis] = at[axis];
+        }
+    }
+}
+
 void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep_servo_in *in, carrystep_servo_out *out)
 {
+    uint32_t before = servo->report.inputs;
+    servo->moment.joints = 0;
+    servo->moment.found = 0;
+    servo->index = servo->stream != 0 ? in->index : 0;
     while (carrystep_ring_take(&servo->shared->reports, &servo->report)) {
+        look(servo, before, in);
+        before = servo->report.inputs;
         /* A board that has gone leaves the place where it was seen last. */
         if (servo->report.placed) {
             memcpy(servo->at, servo->report.at, sizeof servo->at);
         }
     }
     decide(servo, period_ns, in);
+    __atomic_store_n(&servo->shared->index, (uint32_t)servo->index, __ATOMIC_RELEASE);
+    out->index = (uint8_t)(in->index & ~(unsigned)servo->moment.found);
     uint32_t code = servo->fault != 0 ? servo->fault : servo->report.fault;
     bool away = servo->stream == 0 && servo->report.state != CARRYSTEP_READY;
     out->fault_code = code;
@@ -191,6 +240,10 @@ void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep
     for (uint8_t axis = 0; axis < servo->axes; axis++) {
         if (servo->stream != 0) {
             bool known = servo->report.stream == servo->stream;
+            if ((servo->moment.joints >> axis & 1u) != 0) {
+                out->feedback[axis] = carrystep_steps_of(servo->moment.at[axis]) / servo->scale[axis];
+                continue;
+            }
             out->feedback[axis] = in->command[axis] + (known ? servo->report.error[axis] / servo->scale[axis] : 0.0);
         } else if (usable(in->scale[axis])) {
             out->feedback[axis] = carrystep_steps_of(servo->at[axis]) / in->scale[axis];

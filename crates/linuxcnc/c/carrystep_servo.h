@@ -1,6 +1,11 @@
 /* What the real-time function does in each servo period: takes commands, makes blocks, and says
  * where the axes are. It never waits. The other thread (carrystep_pump.h) talks with the board.
  *
+ * LinuxCNC takes the place of a probe, an index pulse or a home switch from the feedback of the
+ * period in which it sees the input. The pulses are a horizon behind the command by then, so in this
+ * one period the feedback is the place where the board was: that of the latch, or that of the
+ * snapshot which shows the input first. In all others it is the command and the error.
+ *
  * Nothing here knows HAL, so that tests call it as HAL does. */
 #ifndef CARRYSTEP_SERVO_H
 #define CARRYSTEP_SERVO_H
@@ -43,6 +48,9 @@ typedef enum {
     CARRYSTEP_ENDING    /* the axes ramp down, and the stop is cleared */
 } carrystep_state;
 
+/* Of what edge a report has the place. */
+typedef enum { CARRYSTEP_LATCHED_NOTHING, CARRYSTEP_LATCHED_PROBE, CARRYSTEP_LATCHED_INDEX } carrystep_latched;
+
 /* What the thread tells the real-time function. */
 typedef struct {
     carrystep_state state;
@@ -53,7 +61,9 @@ typedef struct {
     bool placed;          /* `at` is known, from a snapshot of this connection */
     carrystep_place at[CARRYSTEP_MOST_AXES]; /* of the latest snapshot */
     double error[CARRYSTEP_MOST_AXES];       /* steps: place less command at the latest snapshot */
-    uint32_t inputs;      /* register INPUTS */
+    uint32_t inputs;      /* register INPUTS, the probe as carrystep_latches.h says */
+    carrystep_latched latched;
+    carrystep_place latched_at[CARRYSTEP_MOST_AXES]; /* in the tick of that edge */
     int64_t lead_ns;      /* from the engine's tick to the end of the last block made */
     int64_t reserve_ns;   /* from the engine's tick to the end of the last block that it has */
     int32_t trim;
@@ -68,6 +78,7 @@ typedef struct {
     uint64_t made;          /* ticks of the blocks of this stream; atomic */
     int32_t trim;           /* parts per 10^9; atomic */
     uint32_t end;           /* the thread shall end; atomic */
+    uint32_t index;         /* the joints that wait for an index pulse, one bit each; atomic */
     uint32_t pause_us;      /* longest time between two rounds of the thread; atomic */
     carrystep_block block_cells[CARRYSTEP_BLOCK_CELLS];
     carrystep_report report_cells[CARRYSTEP_REPORT_CELLS];
@@ -80,6 +91,8 @@ typedef struct {
     carrystep_shared *shared;
     uint8_t axes;
     uint32_t periods;
+    uint8_t outputs; /* that the build has, one bit each */
+    bool pwm;        /* whether the build has one */
     long period_ns; /* of the first call; 0 before it */
     uint32_t stream; /* that runs, or 0 */
     uint32_t streams;
@@ -87,6 +100,12 @@ typedef struct {
     uint8_t culprits;
     carrystep_report report;
     carrystep_place at[CARRYSTEP_MOST_AXES]; /* the latest known places */
+    struct {
+        uint32_t joints;  /* whose feedback is `at` in this period, one bit each */
+        uint8_t found;    /* whose index pulse was found, one bit each */
+        carrystep_place at[CARRYSTEP_MOST_AXES];
+    } moment;
+    uint8_t index;        /* the joints that wait for an index pulse, one bit each */
     carrystep_blocks blocks;
     double scale[CARRYSTEP_MOST_AXES]; /* of the stream */
 } carrystep_servo;
@@ -96,6 +115,10 @@ typedef struct {
     double command[CARRYSTEP_MOST_AXES]; /* units */
     double scale[CARRYSTEP_MOST_AXES];   /* steps per unit */
     double most[CARRYSTEP_MOST_AXES];    /* greatest speed, units/s; 0: what the engine can */
+    uint8_t homing;                      /* the joints that home, one bit each */
+    uint8_t index;                       /* the joints that wait for an index pulse, one bit each */
+    uint8_t levels;                      /* of the outputs, one bit each */
+    double duty;                         /* of the PWM, 0 to 1; beyond is taken for the nearest of both */
 } carrystep_servo_in;
 
 typedef struct {
@@ -104,9 +127,11 @@ typedef struct {
     uint8_t culprits; /* the joints that caused it, one bit each; 0: none of them alone */
     uint32_t fault_code;
     bool running;
+    uint8_t index; /* the joints that still wait for an index pulse, one bit each */
 } carrystep_servo_out;
 
-/* `axes` is 1 to CARRYSTEP_MOST_AXES, `periods` 1 to CARRYSTEP_MOST_PERIODS. */
+/* `axes` is 1 to CARRYSTEP_MOST_AXES, `periods` 1 to CARRYSTEP_MOST_PERIODS. A build that has
+ * outputs: set `outputs` and `pwm` behind this call. */
 void carrystep_servo_begin(carrystep_servo *servo, carrystep_shared *shared, uint8_t axes, uint32_t periods);
 
 /* One servo period of `period_ns`. */

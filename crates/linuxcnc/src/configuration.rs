@@ -1,11 +1,45 @@
 //! The files of a LinuxCNC configuration for one board: INI, HAL and tool table.
 
-use std::fmt::Write as _;
+mod hal;
+mod home_switch;
+mod ini;
+mod machine;
+mod rates;
+mod refused;
+
+pub use home_switch::{HomeSwitch, SwitchRefused};
+pub use machine::Wishes;
+pub use refused::MachineRefused;
+
+/// When and how LinuxCNC gives a joint its machine coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Homing {
+    /// The joint does not move: the place where it is gets this coordinate, units.
+    InPlace {
+        /// The coordinate.
+        at: f64,
+    },
+    /// LinuxCNC searches a switch: it moves onto the switch, off it, and once more slowly.
+    Switch {
+        /// Pin of the component that shows the switch, without `carrystep.0.`: `in-1-0`.
+        pin: String,
+        /// Speed of the search, units/s; its sign is the direction.
+        search: f64,
+        /// Speed of the last approach, units/s; its sign is the direction.
+        latch: f64,
+        /// Coordinate of the place where the switch closes, units.
+        at: f64,
+        /// Coordinate at which the joint rests afterwards, units.
+        rest: f64,
+        /// Whether LinuxCNC goes on, behind the switch, to the next index pulse.
+        index: bool,
+    },
+}
 
 /// A joint: axis N of the board, and the axis of this letter of LinuxCNC.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Letter of the axis, X to W.
+    /// Letter of the axis, one of [`LETTERS`].
     pub letter: char,
     /// Steps per unit; negative turns the direction. Not 0.
     pub scale: f64,
@@ -13,10 +47,38 @@ pub struct Joint {
     pub speed: f64,
     /// Greatest acceleration, units/s^2, over 0.
     pub acceleration: f64,
-    /// The lowest and the highest machine coordinate, units.
-    pub travel: (f64, f64),
+    /// The lowest and the highest machine coordinate, units; `None`: LinuxCNC does not limit it.
+    pub travel: Option<(f64, f64)>,
     /// Whether the axis turns: units are degrees.
     pub angular: bool,
+    /// How it homes.
+    pub homing: Homing,
+    /// Joints with a lower number home earlier.
+    pub sequence: u32,
+}
+
+/// The letters of LinuxCNC's axes. A, B and C turn.
+pub const LETTERS: &str = "XYZABCUVW";
+
+/// The outputs that the board has, and what LinuxCNC switches with them, by their numbers. Those
+/// without a use are the digital outputs of `M62` to `M65` with their number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OutputNets {
+    /// Number of outputs, 0 to 8.
+    pub count: u8,
+    /// Whether there is a PWM.
+    pub pwm: bool,
+    /// Active while the spindle turns.
+    pub spindle: Option<u8>,
+    /// Active while it turns counterclockwise.
+    pub spindle_reverse: Option<u8>,
+    /// Active while mist is on.
+    pub mist: Option<u8>,
+    /// Active while flood is on.
+    pub flood: Option<u8>,
+    /// Turns per minute at the greatest duty of the PWM, which follows the spindle's speed; without
+    /// it the PWM is analog output 0 of `M67` and `M68`.
+    pub spindle_rpm: Option<u32>,
 }
 
 /// A configuration.
@@ -34,107 +96,33 @@ pub struct Configuration {
     pub periods: u32,
     /// Time from a command to its pulses, ms.
     pub horizon_ms: u32,
+    /// Whether lengths are in inches; otherwise they are in mm.
+    pub inches: bool,
     /// The joints, in the order of the board's axes.
     pub joints: Vec<Joint>,
+    /// Whether each joint has a limit switch at each end.
+    pub limits: bool,
+    /// Whether the board has a probe.
+    pub probe: bool,
+    /// The latch of the edge that closes the probe.
+    pub probe_latch: Option<u8>,
+    /// The latch with a pin of its own, for index pulses.
+    pub index_latch: Option<u8>,
+    /// The board's outputs.
+    pub outputs: OutputNets,
     /// LinuxCNC's user interface.
     pub display: String,
     /// More HAL files.
     pub hal_files: Vec<String>,
 }
 
-/// Period of the servo thread, ns.
-const SERVO_NS: u32 = 1_000_000;
-
-/// How far the speed of LinuxCNC may be from the limit until the component reports a jump: corners
-/// are blended on other axes' account.
-const MARGIN: f64 = 1.1;
-
 impl Configuration {
     /// Name and text of each file.
     pub fn files(&self) -> Vec<(String, String)> {
         vec![
-            (format!("{}.ini", self.name), self.ini()),
-            (format!("{}.hal", self.name), self.hal()),
+            (format!("{}.ini", self.name), ini::text(self)),
+            (format!("{}.hal", self.name), hal::text(self)),
             (format!("{}.tbl", self.name), "T1 P1 ; no tool is measured\n".to_owned()),
         ]
-    }
-
-    fn ini(&self) -> String {
-        let name = &self.name;
-        let letters: Vec<String> =
-            self.joints.iter().map(|joint| joint.letter.to_string()).collect();
-        let straight = self.joints.iter().filter(|joint| !joint.angular);
-        let path = straight.map(|joint| joint.speed * joint.speed).sum::<f64>().sqrt();
-        let display = &self.display;
-        let mut text = format!(
-            "[EMC]\nVERSION = 1.1\nMACHINE = {name}\nDEBUG = 0\n\n\
-             [DISPLAY]\nDISPLAY = {display}\nCYCLE_TIME = 0.1\nPOSITION_FEEDBACK = ACTUAL\n\
-             MAX_FEED_OVERRIDE = 1.2\nPROGRAM_PREFIX = .\n\n\
-             [TASK]\nTASK = milltask\nCYCLE_TIME = 0.002\n\n\
-             [RS274NGC]\nPARAMETER_FILE = {name}.var\n\n\
-             [EMCMOT]\nEMCMOT = motmod\nCOMM_TIMEOUT = 4.0\nSERVO_PERIOD = {SERVO_NS}\n\n\
-             [EMCIO]\nEMCIO = io\nCYCLE_TIME = 0.1\nTOOL_TABLE = {name}.tbl\n\n\
-             [HAL]\nHALFILE = {name}.hal\n"
-        );
-        let mut line = |words: std::fmt::Arguments<'_>| {
-            let _ = text.write_fmt(words);
-            text.push('\n');
-        };
-        self.hal_files.iter().for_each(|file| line(format_args!("HALFILE = {file}")));
-        line(format_args!("\n[TRAJ]\nCOORDINATES = {}", letters.join(" ")));
-        line(format_args!("LINEAR_UNITS = mm\nANGULAR_UNITS = degree"));
-        line(format_args!("DEFAULT_LINEAR_VELOCITY = {}", path / 4.0));
-        line(format_args!("MAX_LINEAR_VELOCITY = {path}"));
-        line(format_args!("\n[KINS]\nKINEMATICS = trivkins coordinates={}", letters.concat()));
-        line(format_args!("JOINTS = {}", self.joints.len()));
-        for (number, joint) in self.joints.iter().enumerate() {
-            let limits = format!(
-                "MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}",
-                joint.speed, joint.acceleration, joint.travel.0, joint.travel.1
-            );
-            let kind = if joint.angular { "ANGULAR" } else { "LINEAR" };
-            // A step is the least following error that means something.
-            let error = 2.0 / joint.scale.abs();
-            line(format_args!("\n[AXIS_{}]\n{limits}", joint.letter));
-            line(format_args!("\n[JOINT_{number}]\nTYPE = {kind}\n{limits}"));
-            line(format_args!("SCALE = {}\nMAXVEL = {}", joint.scale, joint.speed * MARGIN));
-            line(format_args!("FERROR = {error}\nMIN_FERROR = {error}"));
-            line(format_args!("HOME = 0\nHOME_OFFSET = 0\nHOME_SEARCH_VEL = 0"));
-            line(format_args!("HOME_LATCH_VEL = 0\nHOME_SEQUENCE = 0"));
-        }
-        text
-    }
-
-    fn hal(&self) -> String {
-        let Self { port, baud, periods, horizon_ms, joints, .. } = self;
-        let count = joints.len();
-        let build = self.build.unwrap_or(0);
-        let mut text = format!(
-            "loadrt [KINS]KINEMATICS\n\
-             loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS\n\
-             loadrt carrystep port={port} baud={baud} joints={count} periods={periods} \
-             horizon={horizon_ms} build={build:x}\n\
-             addf motion-command-handler servo-thread\n\
-             addf motion-controller servo-thread\n\
-             addf carrystep.0.update servo-thread\n\n"
-        );
-        for joint in 0..count {
-            let own = format!("carrystep.0.joint.{joint}");
-            let _ = write!(
-                text,
-                "setp {own}.scale [JOINT_{joint}]SCALE\n\
-                 setp {own}.maxvel [JOINT_{joint}]MAXVEL\n\
-                 net joint-{joint}-cmd joint.{joint}.motor-pos-cmd => {own}.position-cmd\n\
-                 net joint-{joint}-fb {own}.position-fb => joint.{joint}.motor-pos-fb\n\
-                 net joint-{joint}-on joint.{joint}.amp-enable-out => {own}.enable\n\
-                 net joint-{joint}-fault {own}.fault => joint.{joint}.amp-fault-in\n\n"
-            );
-        }
-        text.push_str(
-            "net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n\
-             net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n\
-             net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed\n",
-        );
-        text
     }
 }

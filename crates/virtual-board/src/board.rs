@@ -20,13 +20,18 @@ pub struct Switches {
     pub limit_min: u8,
     /// Mask of the limits at the high ends that are reached.
     pub limit_max: u8,
+    /// Masks of the inputs of rows 2 and 3 that are active: bit 0 is the probe, and the interlock.
+    pub inputs: [u8; 2],
+    /// Mask of the latches whose own pin is active.
+    pub latch: u8,
 }
 
 impl Switches {
     /// Levels of the input pins, with the polarity of the build and the sources of its latches.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
-        let Self { estop, limit_min, limit_max } = self;
-        let pins = EngineInputs { estop, limit_min, limit_max, ..EngineInputs::default() };
+        let Self { estop, limit_min, limit_max, inputs, latch } = self;
+        let pins =
+            EngineInputs { estop, limit_min, limit_max, inputs, latch, ..EngineInputs::default() };
         pins.levels(guard).with_sources(guard)
     }
 }

@@ -124,7 +124,7 @@ const RUNS: [Run; 13] = [
     },
     Run {
         name: "linuxcnc",
-        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; pulses against the motor-pos-cmd of every servo period",
+        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; homing, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of every servo period",
         asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],
         cargo: &["--test", "real_linuxcnc"],
     },

@@ -5,7 +5,7 @@ use crate::shell::{self, TaskResult};
 use std::path::Path;
 
 /// Each program, and the Debian package that contains it.
-const NEEDED: [(&str, &str); 23] = [
+const NEEDED: [(&str, &str); 24] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -28,6 +28,7 @@ const NEEDED: [(&str, &str); 23] = [
     ("hostname", "hostname"),
     ("rs274", "linuxcnc-uspace"),
     ("halcompile", "linuxcnc-uspace-dev"),
+    ("valgrind", "valgrind"),
     ("chromium", "chromium"),
 ];
 

@@ -48,6 +48,9 @@ const STATUS: &str =
 const SERVED: &str =
     "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
 
+const LINUXCNC: &str = "passed build_id port baud periods horizon_ms notes files
+    joints joints[].axis joints[].letter joints[].home_sequence";
+
 const DRIVEN: &str = "passed port build ended stopped_by cause culprits meaning remedy planned_s run_s
     axes axes[].axis axes[].before axes[].position axes[].steps_planned axes[].unit axes[].steps_per_unit";
 
@@ -157,6 +160,14 @@ fn every_report_keeps_its_names() {
     }
     document(&folder, "plan demo/demo.toml", 0, &[PLAN, LIMITS, TIME_USE]);
     document(&folder, "check demo/demo.vcd demo/demo.toml", 0, &["passed capture", CHECK]);
+}
+
+#[test]
+fn linuxcnc_document_keeps_its_field_names() {
+    let folder = Folder::new();
+    folder.write("m.toml", crate::linuxcnc::MILL);
+    let written = document(&folder, "linuxcnc --machine m.toml --out out", 0, &[LINUXCNC]);
+    assert_eq!(written["files"], serde_json::json!(["out/m.ini", "out/m.hal", "out/m.tbl"]));
 }
 
 #[test]

@@ -39,6 +39,7 @@ mod json_names;
 mod junit;
 #[cfg(target_os = "linux")]
 mod kept_shards;
+mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod long_moves;
 mod machine_new;

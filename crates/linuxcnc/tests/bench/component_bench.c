@@ -10,6 +10,13 @@ static carrystep_shared shared;
 static carrystep_servo servo;
 static carrystep_pump pump;
 static carrystep_pump_how how;
+static struct {
+    unsigned outputs, pwm, probe, index;
+} has = {0, 0, CARRYSTEP_NO_LATCH, CARRYSTEP_NO_LATCH};
+static struct {
+    unsigned homing, index, levels;
+    double duty;
+} asks;
 static double scale[CARRYSTEP_MOST_AXES], most[CARRYSTEP_MOST_AXES];
 
 /* "begin axes periods horizon_us build scale most" */
@@ -25,17 +32,22 @@ static void begin(void)
     how.horizon_ns *= 1000u;
     how.axes = (uint8_t)axes;
     how.number = 77;
+    how.probe_latch = (uint8_t)has.probe;
+    how.index_latch = (uint8_t)has.index;
     for (unsigned axis = 0; axis < axes; axis++) {
         scale[axis] = of_all;
         most[axis] = fastest;
     }
     carrystep_share(&shared);
     carrystep_servo_begin(&servo, &shared, how.axes, periods);
+    servo.outputs = (uint8_t)has.outputs;
+    servo.pwm = has.pwm != 0;
     carrystep_pump_begin(&pump, &shared, &how, 0);
     printf("ok\n");
 }
 
-/* "servo period_ns enable command ...": "code running fault culprits lead reserve feedback ..." */
+/* "servo period_ns enable command ...": "code running fault culprits lead reserve index inputs
+ * feedback ..." */
 static void run_servo(void)
 {
     carrystep_servo_in in;
@@ -48,6 +60,10 @@ static void run_servo(void)
         exit(1);
     }
     in.enable = enable != 0;
+    in.homing = (uint8_t)asks.homing;
+    in.index = (uint8_t)asks.index;
+    in.levels = (uint8_t)asks.levels;
+    in.duty = asks.duty;
     for (unsigned axis = 0; axis < servo.axes; axis++) {
         if (scanf("%lf", &in.command[axis]) != 1) {
             exit(1);
@@ -56,8 +72,9 @@ static void run_servo(void)
         in.most[axis] = most[axis];
     }
     carrystep_servo_run(&servo, period, &in, &out);
-    printf("%" PRIu32 " %d %d %u %" PRId64 " %" PRId64, out.fault_code, out.running, out.fault, out.culprits,
-           servo.report.lead_ns, servo.report.reserve_ns);
+    asks.index = out.index;
+    printf("%" PRIu32 " %d %d %u %" PRId64 " %" PRId64 " %u %" PRIu32, out.fault_code, out.running, out.fault,
+           out.culprits, servo.report.lead_ns, servo.report.reserve_ns, out.index, servo.report.inputs);
     for (unsigned axis = 0; axis < servo.axes; axis++) {
         printf(" %.17g", out.feedback[axis]);
     }
@@ -99,6 +116,18 @@ int main(void)
         } else if (strcmp(word, "again") == 0) {
             /* What carrystep_port does when the port can be opened again. */
             carrystep_pump_begin(&pump, &shared, &how, pump.now);
+            printf("ok\n");
+        } else if (strcmp(word, "has") == 0) {
+            /* "has outputs pwm probe index": what the board has; before "begin" */
+            if (scanf("%u %u %u %u", &has.outputs, &has.pwm, &has.probe, &has.index) != 4) {
+                return 1;
+            }
+            printf("ok\n");
+        } else if (strcmp(word, "asks") == 0) {
+            /* "asks homing index levels duty": the pins of the next periods */
+            if (scanf("%u %u %u %lf", &asks.homing, &asks.index, &asks.levels, &asks.duty) != 4) {
+                return 1;
+            }
             printf("ok\n");
         } else if (strcmp(word, "scale") == 0) {
             scale[0] *= 2;

@@ -35,7 +35,7 @@ static int blocks(void)
                 return 0;
             }
         }
-        carrystep_taken taken = carrystep_blocks_take(&stream, steps, trim, &block);
+        carrystep_taken taken = carrystep_blocks_take(&stream, steps, 0, trim, &block);
         printf("%d %u", (int)taken, stream.culprit);
         if (taken == CARRYSTEP_A_BLOCK) {
             printf(" %" PRIu32, block.axes[0].ticks);

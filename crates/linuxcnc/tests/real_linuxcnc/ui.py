@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """The user of a headless LinuxCNC: LinuxCNC starts it as its user interface (DISPLAY).
 
-It records every servo period by halsampler to samples.txt, runs the programs of its environment
-variable PROGRAMS, jogs, pauses, aborts and stops, and writes what came of it to result.json."""
+It records every servo period by halsampler to samples.txt, does what its environment variable WHAT
+says with the program PROGRAM, and writes what came of it to result.json."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import time
 import linuxcnc
 
 command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
-result = {"errors": [], "programs": [], "steps": []}
+result = {"errors": [], "steps": []}
 
 
 def look():
@@ -34,9 +34,13 @@ def until(condition, seconds, what):
         time.sleep(0.005)
 
 
+def halcmd(*words):
+    done = subprocess.run(["halcmd", *words], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
 def pin(name):
-    words = ["halcmd", "getp", "carrystep.0." + name]
-    return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+    return halcmd("getp", "carrystep.0." + name)
 
 
 def ready():
@@ -77,18 +81,35 @@ def finish(program, seconds):
         raise RuntimeError(program + ": the machine is off, fault " + pin("fault-code"))
 
 
-def work():
+def home(seconds):
     until(ready, 10, "the board is ready")
     switch_on()
     mode(linuxcnc.MODE_MANUAL)
     command.home(-1)
-    until(lambda: all(stat.homed[:3]), 10, "homed")
-    programs = os.environ["PROGRAMS"].split(":")
-    for program in programs:
-        begin(program)
-        finish(program, 300)
-        result["programs"].append(os.path.basename(program))
-    first = programs[0]
+    until(lambda: all(stat.homed[:3]), seconds, "homed")
+
+
+def off():
+    time.sleep(0.3)
+    result["reserve_min_ms"] = float(pin("reserve-min-ms"))
+    result["trim_ppm"] = float(pin("trim-ppm"))
+    command.state(linuxcnc.STATE_OFF)
+    time.sleep(0.3)
+
+
+def program():
+    home(10)
+    name = os.environ["PROGRAM"]
+    begin(name)
+    finish(name, 1200)
+    off()
+
+
+def cases():
+    home(10)
+    first = os.environ["PROGRAM"]
+    begin(first)
+    finish(first, 60)
 
     begin(first)
     until(moving, 5, "motion")
@@ -127,28 +148,83 @@ def work():
     switch_on()
     begin(first)
     finish(first, 60)
-    time.sleep(0.3)
-    result["reserve_min_ms"] = float(pin("reserve-min-ms"))
-    result["trim_ppm"] = float(pin("trim-ppm"))
-    command.state(linuxcnc.STATE_OFF)
-    time.sleep(0.3)
-    result["feedback"] = [float(pin(f"joint.{joint}.position-fb")) for joint in range(3)]
+    off()
 
 
+def mdi(line, seconds):
+    mode(linuxcnc.MODE_MDI)
+    command.mdi(line)
+    time.sleep(0.1)
+    until(idle, seconds, line)
+
+
+def motor_offset():
+    """Motor place less joint place of joint 0, mm."""
+    names = ["joint.0.motor-pos-cmd", "joint.0.pos-cmd"]
+    motor, joint = [float(halcmd("getp", name)) for name in names]
+    return motor - joint
+
+
+def home_and_probe():
+    home(60)
+    until(lambda: idle() and stat.current_vel == 0, 20, "rest behind homing")
+    time.sleep(0.5)
+    # The coordinate of the switch is 0.
+    result["home_steps"] = motor_offset() * 80
+    command.teleop_enable(1)
+    command.wait_complete()
+    mdi("G21 G90 G94", 5)
+    mdi("G0 X55", 20)
+    mdi("M64 P0", 5)
+    time.sleep(0.5)
+    mdi("G38.2 X100 F300", 30)
+    stat.poll()
+    if not stat.probe_tripped:
+        raise RuntimeError("the probe was not met")
+    result["probed_steps"] = (stat.probed_position[0] + motor_offset()) * 80
+    time.sleep(0.5)
+    mdi("G0 X40", 20)
+    mdi("M65 P0", 5)
+    time.sleep(0.5)
+    off()
+
+
+def killed():
+    home(10)
+    begin(os.environ["PROGRAM"])
+    until(moving, 5, "motion")
+    open("kill", "w").close()
+    for _ in range(500):
+        if os.path.exists("killed"):
+            break
+        time.sleep(0.02)
+    time.sleep(1)
+
+
+def look_at_it():
+    until(ready, 20, "the board is ready")
+    time.sleep(0.3)
+    for joint in range(3):
+        result[f"feedback_{joint}"] = float(pin(f"joint.{joint}.position-fb"))
+
+
+what = os.environ["WHAT"]
+work = {"program": program, "cases": cases, "home_and_probe": home_and_probe, "killed": killed, "look": look_at_it}
 samples = open("samples.txt", "w")
 sampler = subprocess.Popen(["stdbuf", "-oL", "halsampler", "-t"], stdout=samples)
 try:
-    work()
+    work[what]()
     result["whole"] = True
 except Exception as error:
     look()
     result["whole"] = False
     result["failed"] = str(error)
 finally:
-    result["fault"] = int(pin("fault-code"))
-    result.setdefault("reserve_min_ms", float(pin("reserve-min-ms")))
-    result["servo_pause_ms"] = float(pin("servo-pause-ms"))
-    result["thread_pause_ms"] = float(pin("thread-pause-ms"))
+    if what != "killed":
+        result["fault"] = int(pin("fault-code"))
+        result.setdefault("reserve_min_ms", float(pin("reserve-min-ms")))
+        result["servo_pause_ms"] = float(pin("servo-pause-ms"))
+        result["thread_pause_ms"] = float(pin("thread-pause-ms"))
     sampler.terminate()
     sampler.wait()
     with open("result.json", "w") as file:
