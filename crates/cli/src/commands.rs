@@ -12,6 +12,7 @@ pub mod home;
 pub mod list_blocks;
 pub mod machine;
 pub mod offset;
+pub mod overrides;
 pub mod plan;
 pub mod plan_program;
 pub mod profile;
