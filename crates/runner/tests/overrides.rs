@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_files::{Machine, SourceText};
-use carrystep_job::{Overrides, Pace, Track};
+use carrystep_job::{Hold, Overrides, Pace, Track};
+use carrystep_link::SegmentSource as _;
 use carrystep_plan::exact::{ExactLimits, speeds, travel};
 use carrystep_program::{ProgramFile, Row, Rows, Settings};
+use carrystep_runner::{OverrideSetting, Stretches, Wait};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 use std::path::{Path, PathBuf};
@@ -89,8 +91,8 @@ fn distance(point: &[f64], from: &[f64], to: &[f64]) -> f64 {
     point.iter().zip(from).zip(&way).map(|((p, f), w)| (p - f - part * w).powi(2)).sum()
 }
 
-/// Checks rows against the limits, exactly, and their end; measures the rest.
-fn check(job: &Job, rows: &[Row]) -> Found {
+/// Checks rows against the limits, exactly, and their end.
+fn keeps(job: &Job, rows: &[Row]) {
     let machine = &job.machine;
     let mut at = job.start.clone();
     for (axis, setup) in machine.axes.iter().enumerate() {
@@ -117,12 +119,22 @@ fn check(job: &Job, rows: &[Row]) -> Found {
             .for_each(|(at, one)| *at += travel(one, one.ticks.into()));
     }
     assert_eq!(at, goal, "the end");
+}
+
+/// Checks rows of the whole program, and measures them.
+fn check(job: &Job, rows: &[Row]) -> Found {
+    keeps(job, rows);
     let marks =
         |rows: &[Row]| -> Vec<u64> { rows.iter().flat_map(|row| row.marks.clone()).collect() };
     assert_eq!(marks(rows), marks(&job.rows));
     let last = |rows: &[Row]| rows.last().map(|row| row.segments.iter().all(|one| one.last));
     assert_eq!(last(rows), last(&job.rows));
+    measure(job, rows)
+}
 
+/// Measures rows.
+fn measure(job: &Job, rows: &[Row]) -> Found {
+    let machine = &job.machine;
     let ticks: u64 = rows.iter().map(|row| u64::from(row.ticks)).sum();
     let mut found =
         Found { seconds: ticks as f64 * machine.timebase.tick_seconds(), ..Found::default() };
@@ -149,6 +161,69 @@ fn check(job: &Job, rows: &[Row]) -> Found {
         }
     }
     found
+}
+
+/// The program of the long run, which comes with LinuxCNC.
+const CHIPS: &str = "/usr/share/linuxcnc/ncfiles/3D_Chips.ngc";
+
+/// Drives a program, and holds it or changes its overrides before rows. Gives all rows, and the
+/// number of holds.
+fn driven(
+    job: &Job,
+    mut random: impl FnMut() -> u64,
+    every: u64,
+    overrides: bool,
+) -> (Vec<Row>, u64) {
+    let hold = Hold::new(&job.machine).unwrap();
+    let pace = Pace::new(&job.machine, &job.start_steps).unwrap();
+    let rows = job.rows.iter().cloned();
+    let mut stretches = Stretches::new(rows, &job.start_steps, hold, pace, 31);
+    let (mut out, mut holds, axes) = (Vec::new(), 0, job.machine.axes.len() as u8);
+    let mut asked = false;
+    while let Some(waits) = stretches.begin() {
+        holds += waits.iter().filter(|wait| matches!(wait, Wait::Hold(_))).count() as u64;
+        asked &= waits.is_empty();
+        loop {
+            if asked || random().is_multiple_of(every) {
+                stretches.hold();
+                // Where the limits forbid it, it is tried again.
+                asked = !stretches.is_held();
+            }
+            if overrides && random().is_multiple_of(every / 2 + 1) {
+                let mut percent = |most: u64| (10 + random() % (most - 9)) as u8;
+                let [feed, rapid, spindle] = [200, 100, 200].map(&mut percent);
+                stretches.set_overrides(OverrideSetting { feed, rapid, spindle });
+            }
+            let segments: Option<Vec<_>> = (0..axes).map(|axis| stretches.segment(axis)).collect();
+            let Some(segments) = segments else { break };
+            let row = job.rows[0].clone();
+            out.push(Row { ticks: segments[0].ticks, segments, feed: f64::INFINITY, ..row });
+        }
+    }
+    (out, holds)
+}
+
+#[test]
+fn holds_at_random_times_keep_the_limits_the_path_and_the_end() {
+    let long = std::env::var("CARRYSTEP_HOLDS").ok();
+    let count: u64 = long.as_deref().map_or(20, |count| count.parse().unwrap());
+    let machine = std::fs::read_to_string(jobs().join("machine.toml")).unwrap();
+    let path =
+        if long.is_some() { PathBuf::from(CHIPS) } else { jobs().join("chords_and_star.ngc") };
+    let job = job(&path, &machine);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(500);
+    for overrides in [false, true] {
+        let every = (job.rows.len() as u64 / count * 9 / 10).max(1);
+        let (rows, holds) = driven(&job, || random.next_u64(), every, overrides);
+        keeps(&job, &rows);
+        let found = measure(&job, &rows);
+        let with = if overrides { "with overrides" } else { "without overrides" };
+        eprintln!(
+            "FIGURES {holds} holds {with}: no axis over a limit, end exact, {:.5} mm off the plan",
+            found.off
+        );
+        assert!(found.off < OFF && holds > count / 4, "{holds} holds {with}: {found:?}");
+    }
 }
 
 const PROGRAMS: [&str; 5] = ["square_and_arc", "trochoid", "chords_and_star", "relief", "outputs"];

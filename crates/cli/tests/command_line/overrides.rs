@@ -32,7 +32,7 @@ fn overrides_are_refused_by_name() {
 fn program_runs_at_its_overrides_and_ends_where_it_should() {
     let folder = folder(LONG);
     let deep = "[machine]\nqueue_depth = 31\ncuts = true\n";
-    folder.write("machine.toml", &spindle(&MACHINE.replacen("[machine]\n", deep, 1)));
+    folder.write("machine.toml", spindle(&MACHINE.replacen("[machine]\n", deep, 1)));
     let board = Board::new(&folder, "--vcd a.vcd --fast");
     let mut child = begins(&folder, &board);
     moving(&folder, &mut child, &board.port);
