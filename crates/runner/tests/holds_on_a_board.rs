@@ -179,6 +179,7 @@ fn override_changes_the_pulses_soon_and_no_place() {
         changes.push((feed, changed.saturating_sub(found.asked.unwrap()) / MS));
         cuts += found.cuts;
     }
+    assert!(changes.iter().all(|&(feed, ms)| feed > 100 || ms <= FIRST_CHANGE), "{changes:?}");
     println!("(percent, ms to the first change): {changes:?}, {cuts} cuts");
     assert_eq!(cuts, 5);
 }
