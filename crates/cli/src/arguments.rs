@@ -23,8 +23,8 @@ pub use plan::PlanArguments;
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{
-    HomeArguments, PeerArguments, PortArguments, ProgramPortArguments, RunArguments,
-    StatusArguments, Stop,
+    HomeArguments, OverrideArguments, PeerArguments, PortArguments, ProgramPortArguments,
+    RunArguments, StatusArguments, Stop,
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
@@ -78,6 +78,9 @@ pub enum Subcommand {
     Hold(ProgramPortArguments),
     /// Let a program go on that is held, or that waits at M0, M1 or M6.
     Resume(ProgramPortArguments),
+    /// Change the feed, the speed of rapid moves and that of the spindle while the program of a
+    /// `run` in another terminal runs. The limits of the axes stay as they are.
+    Override(OverrideArguments),
     /// Move axes of a board, also while the program of a `run` waits at M0, M1 or M6.
     Jog(Jog),
     /// Show the work offsets of a board, or set them: the place where the machine is gets these

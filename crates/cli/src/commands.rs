@@ -13,6 +13,7 @@ pub mod linuxcnc;
 pub mod list_blocks;
 pub mod machine;
 pub mod offset;
+pub mod overrides;
 pub mod plan;
 pub mod plan_program;
 pub mod profile;

@@ -1,6 +1,6 @@
 //! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
 //! that one: `run`, `jog` and `home` listen on a local socket while they hold the port, and
-//! `carrystep stop`, `hold`, `resume` and `status` talk to them through it.
+//! `carrystep stop`, `hold`, `resume`, `override` and `status` talk to them through it.
 //!
 //! ```text
 //! claim    a lock file per device, named after its number; it contains the holder of the port
@@ -39,7 +39,7 @@ pub use crate::holder::Holder;
 use crate::interrupt;
 use carrystep_link::{BuildFacts, Status, Wish};
 use carrystep_runner::BlockAt;
-pub use program::ProgramControl;
+pub use program::{OverrideWish, ProgramControl};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::time::Duration;
@@ -61,6 +61,8 @@ pub enum SocketRequest {
     Hold,
     /// Let a program go on that waits.
     Resume,
+    /// Change the overrides of a program as the text behind the word says (an [`OverrideWish`]).
+    Override,
     /// Do what the text behind the word says (a [`PauseWish`](crate::pause::PauseWish)) while a
     /// program waits.
     Pause,
@@ -75,6 +77,12 @@ pub const NOTHING_MOVES: &str = "nothing moves";
 
 /// The answer to [`SocketRequest::Resume`] if nothing waits.
 pub const NOTHING_WAITS: &str = "nothing waits";
+
+/// The answer to [`SocketRequest::Override`] if no program runs.
+pub const NOTHING_RUNS: &str = "nothing runs";
+
+/// The answer to [`SocketRequest::Override`] if it is about a spindle whose speed no output sets.
+pub const NO_SPINDLE: &str = "no spindle";
 
 /// The answer to [`SocketRequest::Pause`] if another one is not done.
 pub const BUSY: &str = "busy";
@@ -149,6 +157,9 @@ impl Control {
                     let noted = program.as_mut().is_some_and(ProgramControl::resume);
                     if noted { TAKEN } else { NOTHING_WAITS }.to_owned()
                 }
+                SocketRequest::Override => program
+                    .as_mut()
+                    .map_or_else(|| NOTHING_RUNS.to_owned(), |program| program.overrides_as(text)),
                 SocketRequest::Pause => {
                     let noted = program.as_mut().map(|program| program.pauses(text));
                     match noted {
@@ -166,6 +177,7 @@ impl Control {
                         held_by: Some(holder.clone()),
                         waits: program.as_ref().and_then(|program| program.waits.clone()),
                         block: program.as_ref().and_then(|program| program.block),
+                        overrides: program.as_ref().map(|program| program.overrides().into()),
                         ..FoundBoard::new(status, known, None)
                     };
                     serde_json::to_string(&found).unwrap_or_default()
@@ -180,9 +192,9 @@ impl Control {
 
     /// From now on a program runs. While it moves, the first signal that ends programs holds it, the
     /// second one ends it at rest, and the third one ramps the axes down. While it rests, a signal
-    /// ends it.
-    pub fn runs_program(&mut self) {
-        self.program = Some(ProgramControl::default());
+    /// ends it. `spindle` says whether an output sets the speed of a spindle.
+    pub fn runs_program(&mut self, spindle: bool) {
+        self.program = Some(ProgramControl::new(spindle));
     }
 
     /// Notes the block in which the tool of a program is, until a stop is requested.

@@ -85,7 +85,7 @@ pub fn drive(
     // If the file cannot be written, a command that is killed leaves one that does not match.
     let _ = memory.drives(&mut board);
     if plan.program.is_some() {
-        control.runs_program();
+        control.runs_program(plan.machine.output_uses.spindle_rpm.is_some());
     }
     // The block in which the tool is, as long as nothing has stopped it.
     let block = |status: &Status| {
@@ -134,11 +134,16 @@ pub fn drive(
                     }
                 }
             }
+            let wanted = control.program().map(|program| program.overrides());
+            if let Some(wanted) = wanted.filter(|wanted| !ends && *wanted != itinerary.overrides())
+            {
+                itinerary.set_overrides(wanted, None);
+            }
             let mut source = itinerary.source();
-            let mut next_try = Instant::now();
+            let (mut next_try, mut next_change) = (Instant::now(), Instant::now());
             let mut cuts = 0;
             let streamed = board.stream(&mut *source, |progress| {
-                line.show(progress.status);
+                line.show(progress.status, itinerary);
                 ways.see(progress.status);
                 cuts = progress.queues.map_or(0, |queues| queues.cuts);
                 control.reached(block(progress.status));
@@ -146,6 +151,14 @@ pub fn drive(
                     // The axes rest while the outputs go off.
                     Wish::Stop if !ends => return Wish::Stop,
                     _ => {}
+                }
+                let wanted = control.program().map(|program| program.overrides());
+                let wanted = wanted.filter(|wanted| !ends && *wanted != itinerary.overrides());
+                if let Some(wanted) = wanted.filter(|_| Instant::now() >= next_change) {
+                    next_change = Instant::now() + TRY_AGAIN;
+                    if let Some(keep) = itinerary.set_overrides(wanted, progress.queues) {
+                        return Wish::Cut { keep };
+                    }
                 }
                 let holds = control.program().is_some_and(|program| program.holds());
                 if ends || !holds || itinerary.is_held() || Instant::now() < next_try {
@@ -208,6 +221,9 @@ pub fn drive(
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     itinerary.whole()?;
+    if let (Some(driven), Some(program)) = (&mut plan.program, control.program()) {
+        driven.overrides = program.overrides().into();
+    }
     if ended != How::Done
         && let Some(program) = &mut plan.program
     {

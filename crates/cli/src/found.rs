@@ -4,6 +4,7 @@
 use crate::holder::Holder;
 use carrystep_core::engine::Cause;
 use carrystep_link::{Answer, BuildFacts, Status};
+use carrystep_runner::OverrideSetting;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -69,6 +70,9 @@ pub struct FoundBoard {
     /// The block in which the program of that command is.
     #[serde(default)]
     pub block: Option<BlockFound>,
+    /// The overrides of the program of that command.
+    #[serde(default)]
+    pub overrides: Option<OverridesFound>,
     /// The command that `carrystep stop` has stopped, if there was one.
     #[serde(default)]
     pub stopped: Option<Holder>,
@@ -88,6 +92,37 @@ pub struct BlockFound {
 impl fmt::Display for BlockFound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "block {} (line {})", self.number, self.line)
+    }
+}
+
+/// The overrides of a program, percent; 100 each is what the program says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+pub struct OverridesFound {
+    /// Of the feed, 10 to 200.
+    pub feed: u8,
+    /// Of the speed of rapid moves, 10 to 100.
+    pub rapid: u8,
+    /// Of the speed of the spindle, 10 to 200.
+    pub spindle: u8,
+}
+
+impl From<OverrideSetting> for OverridesFound {
+    fn from(OverrideSetting { feed, rapid, spindle }: OverrideSetting) -> Self {
+        Self { feed, rapid, spindle }
+    }
+}
+
+impl OverridesFound {
+    /// Whether the program runs as it says.
+    pub fn are_none(self) -> bool {
+        self == OverrideSetting::NONE.into()
+    }
+}
+
+impl fmt::Display for OverridesFound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { feed, rapid, spindle } = *self;
+        write!(f, "{}", OverrideSetting { feed, rapid, spindle })
     }
 }
 
@@ -165,6 +200,7 @@ impl FoundBoard {
             held_by: None,
             waits: None,
             block: None,
+            overrides: None,
             stopped: None,
             axes: axes.iter().enumerate().map(axis).collect(),
         }

@@ -69,6 +69,7 @@ fn main() -> ExitCode {
         Subcommand::Run(run) => commands::run::run(run),
         Subcommand::Hold(port) => commands::hold::hold(port),
         Subcommand::Resume(port) => commands::hold::resume(port),
+        Subcommand::Override(overrides) => commands::overrides::run(overrides),
         Subcommand::Jog(jog) => commands::run::jog(jog),
         Subcommand::Offset(offset) => commands::offset::run(offset),
         Subcommand::Home(home) => commands::home::run(home),

@@ -23,14 +23,12 @@ mod transition;
 pub use curve::{Curve, CurvePlace};
 
 use crate::error::JobError;
+use crate::keep::Keep;
 use crate::limits::SHORTEST;
 use crate::rhythm::LONGEST;
 use crate::row::Row;
-use crate::turn::{Pair, quiet};
-use crate::weave::obeys;
 use carrystep_core::Segment;
 use carrystep_files::Machine;
-use carrystep_plan::exact::{ExactLimits, travel};
 use law::{Law, Way};
 use transition::rows;
 
@@ -53,9 +51,7 @@ const LONGEST_TRY: f64 = 20.0;
 /// Re-times rows of a machine's plans.
 #[derive(Debug, Clone)]
 pub struct Hold {
-    limits: Vec<ExactLimits>,
-    /// For each motor, the ticks around a reversal that have to be free of edges.
-    quiet: Vec<u32>,
+    keep: Keep,
     tick_seconds: f64,
     /// Ticks of the longest row.
     longest: u32,
@@ -83,8 +79,7 @@ impl Hold {
     pub fn new(machine: &Machine) -> Result<Self, JobError> {
         let tick_seconds = machine.timebase.tick_seconds();
         Ok(Self {
-            limits: crate::limits::exact(machine)?,
-            quiet: machine.axes.iter().map(|axis| quiet(&axis.pins, &machine.timebase)).collect(),
+            keep: Keep::new(machine)?,
             tick_seconds,
             longest: ((LONGEST / tick_seconds) as u32).max(1),
         })
@@ -115,7 +110,7 @@ impl Hold {
     /// So many planned rows are enough to stop and to go on if the motion goes on at its greatest
     /// speed and the rows last 4 ms.
     pub fn window(&self) -> usize {
-        let times = self.limits.iter().map(|one| one.speed as f64 / one.acceleration as f64);
+        let times = self.keep.limits.iter().map(|one| one.speed as f64 / one.acceleration as f64);
         let slowest = times.fold(0.0, f64::max) * self.tick_seconds;
         (AMPLE * slowest.min(LONGEST_TRY) / SHORTEST) as usize + LEAST_WINDOW
     }
@@ -133,7 +128,7 @@ impl Hold {
             let end = begin + planned as u64;
             let place = curve.place(end);
             if let Some(stop) = rows(curve, (begin, end), law, self.longest)
-                && self.keep(curve.at(curve.place(begin)), &before, &stop, &curve.segments(None))
+                && self.keep(&curve.at(curve.place(begin)), &before, &stop, &curve.segments(None))
                 && let Some((resume, next)) = self.resume(curve, place)
             {
                 return Some(Held { stop, resume, place, next });
@@ -146,7 +141,7 @@ impl Hold {
     /// The planned time of the shortest stop of a motion that goes on evenly from a planned tick,
     /// ticks: half of the time in which the law's steepest rate changes its speed.
     fn least(&self, curve: &Curve<'_>, tick: u64) -> f64 {
-        let motors = self.limits.iter().zip(curve.sample(tick as f64));
+        let motors = self.keep.limits.iter().zip(curve.sample(tick as f64));
         let times = motors.map(|(limits, motor)| motor.speed.abs() / limits.acceleration as f64);
         Law::STEEPEST / 2.0 * times.fold(0.0, f64::max)
     }
@@ -166,7 +161,7 @@ impl Hold {
                 let law = Law::over(Way::Resume, end - begin);
                 let before = curve.segments(None);
                 if let Some(rows) = rows(curve, (begin, end), law, self.longest)
-                    && self.keep(curve.at(place), &before, &rows, &curve.segments(Some(next)))
+                    && self.keep(&curve.at(place), &before, &rows, &curve.segments(Some(next)))
                 {
                     return Some((rows, next));
                 }
@@ -177,22 +172,7 @@ impl Hold {
     }
 
     /// Whether rows keep all limits, from the segments before them to those behind.
-    fn keep(&self, at: Vec<i128>, before: &[Segment], rows: &[Row], after: &[Segment]) -> bool {
-        let motors = self.limits.iter().zip(&self.quiet).zip(at).enumerate();
-        motors.into_iter().all(|(axis, ((limits, &quiet), at))| {
-            let first = before[axis];
-            let mut held =
-                i128::from(first.a) + (i128::from(first.ticks) - 1) * i128::from(first.j);
-            let (mut at, mut earlier) = (at - travel(&first, first.ticks.into()), first);
-            let segments = rows.iter().map(|row| row.segments[axis]).chain([after[axis]]);
-            segments.into_iter().all(|segment| {
-                let end = obeys(&segment, limits, held);
-                let is_quiet = Pair { at, before: &earlier, now: &segment }.is_quiet(quiet);
-                held = end.unwrap_or(held);
-                at += travel(&earlier, earlier.ticks.into());
-                earlier = segment;
-                end.is_ok() && is_quiet
-            })
-        })
+    fn keep(&self, at: &[i128], before: &[Segment], rows: &[Row], after: &[Segment]) -> bool {
+        self.keep.broken(at, before, rows, after).is_none()
     }
 }

@@ -23,19 +23,23 @@ pub(crate) struct Window {
     pub ends: bool,
 }
 
-/// The rows of a window with a hold among them.
+/// A hold among the rows of a window.
 #[derive(Debug)]
 pub(crate) struct Held {
-    /// The rows up to the rest.
-    pub before: Vec<Row>,
-    /// The rows from the rest on.
-    pub behind: Vec<Row>,
-    /// The line of the program in which the motion rests.
+    /// The row with which it begins.
+    pub from: usize,
+    /// The rows that follow those before it, up to the rest.
+    pub stop: Vec<Row>,
+    /// The rows from the rest on, up to `next`.
+    pub resume: Vec<Row>,
+    /// The row of the window that follows.
+    pub next: usize,
+    /// The line of the program in which it rests.
     pub line: u64,
 }
 
 impl Window {
-    /// The rows with a hold; `None` if none can begin with the next rows.
+    /// The hold; `None` if none can begin with the next rows.
     pub fn held(&self, hold: &Hold) -> Option<Held> {
         let curve = Curve::new(&self.rows, &self.at);
         let (from, carrystep_job::Held { stop, resume, place, next }) =
@@ -45,11 +49,6 @@ impl Window {
             return None;
         }
         let line = self.rows.get(place.row)?.line;
-        let planned = |rows: std::ops::Range<usize>| self.rows.get(rows).unwrap_or_default();
-        Some(Held {
-            before: [planned(self.first..from), &stop].concat(),
-            behind: [&resume, planned(next..self.rows.len())].concat(),
-            line,
-        })
+        Some(Held { from, stop, resume, next, line })
     }
 }

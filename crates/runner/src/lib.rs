@@ -3,7 +3,7 @@
 //! ```text
 //! rows of the planner -> stretches: what the link sends between two places at which the machine
 //!                        ^          rests and somebody must let it go on (M0, M1, M6, a hold)
-//!                  hold -'
+//!        hold, overrides -'
 //! ```
 //!
 //! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
@@ -11,9 +11,12 @@
 mod blocks;
 mod held;
 mod horizon;
+mod override_setting;
 mod reading;
+mod spindle;
 mod stretches;
 
 pub use blocks::BlockAt;
 pub use horizon::Horizon;
+pub use override_setting::OverrideSetting;
 pub use stretches::{Stretches, Wait, kept_ticks};

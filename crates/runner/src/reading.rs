@@ -7,7 +7,9 @@
 //! rewind 3                 |<-----------|               r3 is the next row that is read
 //! ```
 
+use crate::spindle::Spindle;
 use carrystep_core::{OutputChange, Segment};
+use carrystep_job::{Pace, PacePlace};
 use carrystep_program::{Row, outputs};
 use std::collections::VecDeque;
 
@@ -15,14 +17,47 @@ use std::collections::VecDeque;
 /// way there.
 const KEPT: usize = 64;
 
+/// A row that is to be read.
+#[derive(Debug, Clone)]
+pub(crate) struct NextRow {
+    pub row: Row,
+    /// Planned ticks per tick where it begins.
+    pub rate: f64,
+    /// Where it begins in the plan; `None` for the rows of a hold.
+    pub from: Option<PacePlace>,
+}
+
+impl NextRow {
+    /// A row that is not of the plan.
+    pub const fn own(row: Row) -> Self {
+        Self { row, rate: 1.0, from: None }
+    }
+}
+
+/// A row that was read.
+#[derive(Debug, Clone)]
+struct ReadRow {
+    /// The row, and P of each axis where it begins, 2^-64 step from machine zero.
+    row: (Row, Vec<i128>),
+    rate: f64,
+    from: Option<PacePlace>,
+    /// The spindle before it.
+    spindle: Spindle,
+}
+
 /// A place in the rows of a program.
 #[derive(Debug, Clone)]
 pub(crate) struct Reading {
-    /// Rows that come before those of the planner.
-    pub ahead: VecDeque<Row>,
-    /// The rows of the stretch that were read last, each with P of each axis where it begins, 2^-64
-    /// step from machine zero.
-    read: VecDeque<(Row, Vec<i128>)>,
+    /// The planned rows at the rates of the overrides.
+    pub pace: Pace,
+    /// Rows that come before those of `pace`.
+    pub ahead: VecDeque<NextRow>,
+    /// The rows of the stretch that were read last.
+    read: VecDeque<ReadRow>,
+    /// The spindle behind the rows that were read.
+    spindle: Spindle,
+    /// Planned ticks per tick in the row that was read last.
+    pub rate: f64,
     /// Number of rows of the stretch that were read.
     count: u32,
     /// P of each axis where the next row begins.
@@ -43,8 +78,11 @@ pub(crate) struct Reading {
 
 impl Reading {
     /// Nothing has been read; the rows begin at these steps from machine zero.
-    pub fn new(start_steps: &[i64]) -> Self {
+    pub fn new(start_steps: &[i64], pace: Pace) -> Self {
         Self {
+            pace,
+            spindle: Spindle::default(),
+            rate: 1.0,
             ahead: VecDeque::new(),
             read: VecDeque::new(),
             count: 0,
@@ -75,19 +113,33 @@ impl Reading {
 
     /// The row that was read last, and P of each axis where it begins.
     pub fn last(&self) -> Option<&(Row, Vec<i128>)> {
-        self.read.back()
+        self.read.back().map(|read| &read.row)
+    }
+
+    /// Where the first row that is kept begins in the plan; that of the next one if none is kept.
+    pub fn oldest(&self) -> Option<&PacePlace> {
+        let read = self.read.iter().map(|read| read.from.as_ref());
+        read.chain(self.ahead.iter().map(|next| next.from.as_ref())).flatten().next()
     }
 
     /// The rows that were read last, at most so many, with P of each axis where each begins.
     pub fn recent(&self, most: usize) -> impl Iterator<Item = &(Row, Vec<i128>)> {
-        self.read.iter().skip(self.read.len().saturating_sub(most))
+        self.read.iter().skip(self.read.len().saturating_sub(most)).map(|read| &read.row)
     }
 
     /// Reads a row, of which `ends` says whether the motion rests behind it though the planner's
-    /// goes on.
-    pub fn take(&mut self, row: Row, ends: bool, travel: impl Fn(&Segment) -> i128) {
-        let before = self.at.clone();
-        self.outputs.push_back(outputs(&row));
+    /// goes on. The spindle turns at so many percent of its speed.
+    pub fn take(
+        &mut self,
+        next: NextRow,
+        ends: bool,
+        percent: u8,
+        travel: impl Fn(&Segment) -> i128,
+    ) {
+        let NextRow { row, rate, from } = next;
+        let (before, spindle) = (self.at.clone(), self.spindle);
+        self.outputs.push_back(self.spindle.turns(outputs(&row), percent));
+        self.rate = rate;
         let places = self.at.iter_mut().zip(&mut self.segments);
         for ((at, queue), segment) in places.zip(&row.segments) {
             *at += travel(segment);
@@ -96,7 +148,7 @@ impl Reading {
         if self.read.len() == KEPT {
             self.read.pop_front();
         }
-        self.read.push_back((row, before));
+        self.read.push_back(ReadRow { row: (row, before), rate, from, spindle });
         self.count += 1;
     }
 
@@ -106,8 +158,8 @@ impl Reading {
         let first = self.count - self.read.len() as u32;
         let mut lasts = 0;
         let skipped = begun.checked_sub(first)?;
-        for (number, (row, _)) in (begun..).zip(self.read.iter().skip(skipped as usize)) {
-            lasts += u64::from(row.ticks);
+        for (number, read) in (begun..).zip(self.read.iter().skip(skipped as usize)) {
+            lasts += u64::from(read.row.0.ticks);
             if lasts >= ticks {
                 return Some(number + 1);
             }
@@ -122,9 +174,9 @@ impl Reading {
             return false;
         }
         while self.count > keep {
-            if let Some((row, at)) = self.read.pop_back() {
-                self.ahead.push_front(row);
-                self.at = at;
+            if let Some(ReadRow { row: (row, at), rate, from, spindle }) = self.read.pop_back() {
+                self.ahead.push_front(NextRow { row, rate, from });
+                (self.at, self.spindle) = (at, spindle);
             }
             self.count -= 1;
         }

@@ -11,13 +11,14 @@
 //! A row with a [`SyncPoint`] begins a stretch. The row before it is marked as the last one of its
 //! move in all axes, so that the gateware finds an empty queue there and no underrun. A hold ends a
 //! stretch early (`held.rs`): behind the rows that were read, or behind earlier ones if the board
-//! can cut the others off.
+//! can cut the others off. An override changes the rows from such a place on.
 
 use crate::blocks::{BlockAt, nearest};
 use crate::held::{Held, Window};
-use crate::reading::Reading;
+use crate::override_setting::OverrideSetting;
+use crate::reading::{NextRow, Reading};
 use carrystep_core::{OutputChange, Segment};
-use carrystep_job::Hold;
+use carrystep_job::{Hold, Pace, Paced, Track};
 use carrystep_link::{Queues, SegmentSource};
 use carrystep_plan::exact::travel;
 use carrystep_program::{Row, SyncPoint, sync_points};
@@ -64,9 +65,14 @@ pub struct Stretches<I: Iterator<Item = Row>> {
     kept: Option<u64>,
     /// Number of cuts of the stretch that the board has refused.
     refused: u32,
+    /// Number of cuts of the stretch that the board had granted when the last one was asked for.
+    granted: u32,
+    /// The planned rows that the overrides look at.
+    track: Track,
     now: Reading,
-    /// The place before a cut that the board has not decided.
-    uncut: Option<Reading>,
+    /// The place before a cut that the board has not decided, and the overrides there.
+    uncut: Option<(Reading, OverrideSetting)>,
+    overrides: OverrideSetting,
     /// Whether nothing of `rows` is wanted any more.
     ended: bool,
     /// The axes of the start that was not taken.
@@ -75,10 +81,22 @@ pub struct Stretches<I: Iterator<Item = Row>> {
 
 impl<I: Iterator<Item = Row>> Stretches<I> {
     /// The stretches of these rows, which begin at these steps from machine zero, for a board with
-    /// queues of so many segments.
-    pub fn new(rows: I, start_steps: &[i64], hold: Hold, queue: usize) -> Self {
-        let (kept, now) = (None, Reading::new(start_steps));
-        Self { rows, hold, queue, kept, refused: 0, now, uncut: None, ended: false, start: None }
+    /// queues of so many segments. `pace` begins there, too.
+    pub fn new(rows: I, start_steps: &[i64], hold: Hold, pace: Pace, queue: usize) -> Self {
+        Self {
+            rows,
+            hold,
+            queue,
+            kept: None,
+            refused: 0,
+            granted: 0,
+            track: Track::new(start_steps),
+            now: Reading::new(start_steps, pace),
+            uncut: None,
+            overrides: OverrideSetting::NONE,
+            ended: false,
+            start: None,
+        }
     }
 
     /// The same for a board that can cut its queues: each cut keeps the rows that last for so many
@@ -102,12 +120,12 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         }
         let waits = match self.now.held.take() {
             Some(line) => vec![Wait::Hold(line)],
-            None => sync_points(self.peek()?).map(Wait::SyncPoint).collect(),
+            None => sync_points(&self.peek()?.row).map(Wait::SyncPoint).collect(),
         };
         self.peek()?;
         let axes = self.now.segments.len();
         self.start = Some(((1_u16 << axes) - 1) as u8);
-        (self.uncut, self.refused) = (None, 0);
+        (self.uncut, self.refused, self.granted) = (None, 0, 0);
         self.now.begin();
         Some(waits)
     }
@@ -128,48 +146,89 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let base = before.as_ref().map_or_else(|| self.now.at.clone(), |(_, at)| at.clone());
         let mut rows: Vec<Row> = before.into_iter().map(|(row, _)| row).collect();
         let known = rows.len();
-        let within = |rows: &[Row], row: &Row| rows.is_empty() || !waits(row);
+        let mut ahead: Vec<NextRow> = Vec::new();
         let most = self.hold.window();
-        while rows.len() < most && self.peek().is_some_and(|row| within(&rows, row)) {
-            rows.extend(self.now.ahead.pop_front());
+        while rows.len() < most
+            && self.peek().is_some_and(|next| rows.is_empty() || !waits(&next.row))
+        {
+            let next = self.now.ahead.pop_front();
+            rows.extend(next.iter().map(|next| next.row.clone()));
+            ahead.extend(next);
         }
-        let ends = self.peek().is_none_or(waits);
+        let ends = self.peek().is_none_or(|next| waits(&next.row));
         let window = Window { rows, at: base, first: known, ends };
-        let rows = match window.held(&self.hold) {
-            Some(Held { before, behind, line }) => {
-                (self.now.left, self.now.held) = (Some(before.len()), Some(line));
-                [before, behind].concat()
-            }
-            None => window.rows.into_iter().skip(known).collect(),
-        };
-        rows.into_iter().rev().for_each(|row| self.now.ahead.push_front(row));
+        if let Some(Held { from, stop, resume, next, line }) = window.held(&self.hold) {
+            let planned = |rows: std::ops::Range<usize>| ahead.get(rows).unwrap_or_default();
+            let own = |rows: Vec<Row>| rows.into_iter().map(NextRow::own).collect::<Vec<_>>();
+            let before = [planned(0..from - known), &own(stop)].concat();
+            (self.now.left, self.now.held) = (Some(before.len()), Some(line));
+            ahead = [&before, &own(resume)[..], planned(next - known..ahead.len())].concat();
+        }
+        ahead.into_iter().rev().for_each(|next| self.now.ahead.push_front(next));
     }
 
     /// The same as soon as the queues of the board allow it. Returns the number of rows of the
     /// stretch behind which the board has to cut its queues: the hold follows these. `None` if
     /// nothing has to be cut; whether there is a hold now, [`Self::is_held`] says.
     pub fn hold_in(&mut self, queues: Queues) -> Option<u32> {
+        self.decide(queues);
+        if self.uncut.is_some() {
+            return None;
+        }
         let Some(keep) = self.cut(queues) else {
             self.hold();
             return None;
         };
-        // The rows that the hold looks at have to stay if the cut is refused.
-        let mut ends = self.now.ahead.iter().any(waits);
-        while self.now.ahead.len() <= self.hold.window() && !ends {
-            let Some(row) = self.rows.next().filter(|_| !self.ended) else { break };
-            ends = waits(&row);
-            self.now.ahead.push_back(row);
-        }
         let before = self.now.clone();
         if self.now.rewind(keep) {
             self.hold();
         }
         if self.is_held() {
-            self.uncut = Some(before);
+            (self.uncut, self.granted) = (Some((before, self.overrides)), queues.cuts);
             return Some(keep);
         }
         self.now = before;
         None
+    }
+
+    /// The overrides of the rows that are read from now on.
+    pub const fn overrides(&self) -> OverrideSetting {
+        self.overrides
+    }
+
+    /// Planned ticks per tick in the row that was read last.
+    pub const fn rate(&self) -> f64 {
+        self.now.rate
+    }
+
+    /// Changes the overrides from the next row of the plan on. In a hold, this is the first one
+    /// behind the resumption.
+    pub fn set_overrides(&mut self, overrides: OverrideSetting) {
+        self.overrides = overrides;
+        let held = self.now.left.unwrap_or_default();
+        let first = (held..self.now.ahead.len()).find(|&at| self.now.ahead[at].from.is_some());
+        let place = first.and_then(|first| self.now.ahead[first].from.clone());
+        self.now.ahead.truncate(first.unwrap_or(self.now.ahead.len()));
+        if self.now.pace.overrides() != overrides.motion() || place.is_some() {
+            self.now.pace.set(overrides.motion(), place.as_ref());
+        }
+    }
+
+    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
+    /// stretch behind which the board has to cut its queues. `None` if nothing has to be cut. If the
+    /// board refuses the cut, the overrides are those of before.
+    pub fn set_overrides_in(&mut self, overrides: OverrideSetting, queues: Queues) -> Option<u32> {
+        self.decide(queues);
+        if self.uncut.is_some() {
+            return None;
+        }
+        let before = (self.now.clone(), self.overrides);
+        let keep = self.cut(queues).filter(|&keep| self.now.rewind(keep));
+        self.set_overrides(overrides);
+        if keep.is_some() {
+            (self.uncut, self.granted) = (Some(before), queues.cuts);
+        }
+        keep
     }
 
     /// The number of rows of the stretch that a cut keeps; `None` if it would drop none. A host that
@@ -178,6 +237,13 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         let kept = self.kept?.checked_shl(self.refused)?;
         let may = !self.is_held() && self.uncut.is_none() && queues.begun > 0;
         self.now.behind(queues.begun, kept).filter(|&keep| may && keep < queues.sent)
+    }
+
+    /// Notes that a cut was granted.
+    fn decide(&mut self, queues: Queues) {
+        if queues.cuts > self.granted && self.uncut.is_some() {
+            (self.uncut, self.refused) = (None, 0);
+        }
     }
 
     /// What brings P of each axis to its start value where the program waits: the segments of each
@@ -217,13 +283,17 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         (self.now.held, self.now.left, self.now.whole, self.ended) = (None, None, true, true);
         self.now.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
-        self.now.ahead.push_back(Row { ticks, segments, line, block, feed, off, corner, marks });
+        let row = Row { ticks, segments, line, block, feed, off, corner, marks };
+        self.now.ahead.push_back(NextRow::own(row));
     }
 
     /// The next row, which stays.
-    fn peek(&mut self) -> Option<&Row> {
+    fn peek(&mut self) -> Option<&NextRow> {
         if self.now.ahead.is_empty() && !self.ended {
-            self.now.ahead.extend(self.rows.next());
+            let Self { rows, track, now, .. } = self;
+            if let Some(Paced { row, rate, from }) = now.pace.next(track, &mut || rows.next()) {
+                now.ahead.push_back(NextRow { row, rate, from: Some(from) });
+            }
         }
         self.now.ahead.front()
     }
@@ -231,7 +301,7 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     /// Reads the next row of the stretch.
     fn next_row(&mut self) {
         self.peek();
-        let Some(row) = self.now.ahead.pop_front().filter(|_| !self.now.whole) else {
+        let Some(next) = self.now.ahead.pop_front().filter(|_| !self.now.whole) else {
             self.now.whole = true;
             return;
         };
@@ -240,12 +310,17 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
                 *left -= 1;
                 *left == 0
             }
-            None => self.peek().is_none_or(waits),
+            None => self.peek().is_none_or(|next| waits(&next.row)),
         };
         // The last row of a program is marked by the planner. Where the rows break off because the
         // program cannot be read any more, no row is: the queues run dry, and the axes ramp down.
         let ends = self.now.whole && self.peek().is_some();
-        self.now.take(row, ends, |segment| travel(segment, segment.ticks.into()));
+        let percent = self.overrides.spindle;
+        self.now.take(next, ends, percent, |segment| travel(segment, segment.ticks.into()));
+        let earlier = self.uncut.as_ref().map_or(&self.now, |(before, _)| before);
+        if let Some(oldest) = earlier.oldest() {
+            self.now.pace.forget(&mut self.track, oldest);
+        }
     }
 }
 
@@ -286,8 +361,8 @@ impl<I: Iterator<Item = Row>> SegmentSource for Stretches<I> {
     }
 
     fn cut_refused(&mut self) {
-        if let Some(before) = self.uncut.take() {
-            self.now = before;
+        if let Some((before, overrides)) = self.uncut.take() {
+            (self.now, self.overrides) = (before, overrides);
             self.refused += 1;
         }
     }

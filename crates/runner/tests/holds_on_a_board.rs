@@ -13,11 +13,11 @@ mod support;
 
 use carrystep_core::link::Uart;
 use carrystep_files::{Machine, SourceText};
-use carrystep_job::Hold;
+use carrystep_job::{Hold, Pace};
 use carrystep_link::{Ended, Patience, Progress, Wish};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_program::{ProgramFile, Rows, Settings};
-use carrystep_runner::{Stretches, Wait, kept_ticks};
+use carrystep_runner::{OverrideSetting, Stretches, Wait, kept_ticks};
 use carrystep_virtual_board::ModelBoard;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -47,12 +47,20 @@ struct Run {
     holds: usize,
 }
 
+/// What is asked of a program.
+#[derive(Debug, Clone, Copy)]
+enum What {
+    Hold,
+    Feed(u8),
+}
+
 /// The moment of a request, ms of the board's time from configuration; and for how long the host
 /// plans its first hold, ms.
 #[derive(Clone, Copy)]
 struct Request {
     at: u64,
     plans: u64,
+    what: What,
 }
 
 fn run(path: &Path, request: Option<Request>) -> Run {
@@ -62,7 +70,9 @@ fn run(path: &Path, request: Option<Request>) -> Run {
     let file = ProgramFile::open(path, machine.clone(), &text.path, Settings::default()).unwrap();
     let rows = Rows::new(&file).unwrap().map(Result::unwrap);
     let (hold, kept) = (Hold::new(&machine).unwrap(), kept_ticks(machine.timebase.tick_ns()));
-    let stretches = Stretches::new(rows, &file.start_steps(), hold, machine.queue).with_cuts(kept);
+    let start = file.start_steps();
+    let pace = Pace::new(&machine, &start).unwrap();
+    let stretches = Stretches::new(rows, &start, hold, pace, machine.queue).with_cuts(kept);
     let stretches = RefCell::new(stretches);
     let end = End::of(ModelBoard::new(&engine, uart), uart, Faults::default(), 1);
     let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
@@ -76,11 +86,20 @@ fn run(path: &Path, request: Option<Request>) -> Run {
             let queues = progress.queues.unwrap();
             granted = queues.cuts;
             let now = end.0.borrow().board.cycle();
-            let Some(Request { at, plans }) = request else { return Wish::GoOn };
+            let Some(Request { at, plans, what }) = request else { return Wish::GoOn };
             if now < at * MS || holds > 0 || stretches.borrow().is_held() {
                 return Wish::GoOn;
             }
-            let keep = stretches.borrow_mut().hold_in(queues);
+            let keep = match what {
+                What::Hold => stretches.borrow_mut().hold_in(queues),
+                What::Feed(feed) => {
+                    let wanted = OverrideSetting { feed, ..OverrideSetting::NONE };
+                    if stretches.borrow().overrides() == wanted {
+                        return Wish::GoOn;
+                    }
+                    stretches.borrow_mut().set_overrides_in(wanted, queues)
+                }
+            };
             if asked.is_none() {
                 end.wait(plans);
             }
@@ -117,7 +136,7 @@ fn holds(name: &str, times: impl Iterator<Item = u64>, plans: u64) -> (Vec<u64>,
     let plain = run(&program(name), None);
     let (mut changes, mut cuts) = (Vec::new(), 0);
     for at in times {
-        let held = run(&program(name), Some(Request { at, plans }));
+        let held = run(&program(name), Some(Request { at, plans, what: What::Hold }));
         assert_eq!(held.positions, plain.positions, "{name}, hold at {at} ms");
         for axis in 0..3 {
             assert_eq!(pulses(&held.edges, axis), pulses(&plain.edges, axis), "{name}, {at} ms");
@@ -135,6 +154,34 @@ fn hold_changes_the_pulses_within_40_ms() {
     println!("{changes:?} ms to the first change, {cuts} cuts");
     assert!(changes.iter().all(|&ms| ms <= FIRST_CHANGE), "{changes:?} ms");
     assert_eq!(cuts, changes.len() as u32);
+}
+
+/// The first pulse that another feed changes comes about as soon as that of a hold; where the plan
+/// uses the whole acceleration, it cannot.
+#[test]
+fn override_changes_the_pulses_soon_and_no_place() {
+    let name = "square_and_arc.ngc";
+    let plain = run(&program(name), None);
+    let (mut changes, mut cuts) = (Vec::new(), 0);
+    for (at, feed) in [(600, 50), (1000, 20), (1400, 80), (1800, 200), (2200, 10)] {
+        let request = Request { at, plans: 0, what: What::Feed(feed) };
+        let found = run(&program(name), Some(request));
+        assert_eq!(found.positions, plain.positions, "{feed} % at {at} ms");
+        for axis in 0..3 {
+            let [found, plain] = [&found, &plain].map(|run| run.edges.iter());
+            let count = |edges: std::slice::Iter<'_, Edge>| {
+                let rises = edges.filter(|edge| edge.axis == axis && edge.change == Change::Rise);
+                rises.map(|edge| if edge.backward { -1 } else { 1 }).sum::<i64>()
+            };
+            assert_eq!(count(found), count(plain), "{feed} % at {at} ms, axis {axis}");
+        }
+        let changed = differ(&found.edges, &plain.edges);
+        changes.push((feed, changed.saturating_sub(found.asked.unwrap()) / MS));
+        cuts += found.cuts;
+    }
+    assert!(changes.iter().all(|&(feed, ms)| feed > 100 || ms <= FIRST_CHANGE), "{changes:?}");
+    println!("(percent, ms to the first change): {changes:?}, {cuts} cuts");
+    assert_eq!(cuts, 5);
 }
 
 /// The first cut is refused, and the next one keeps more.

@@ -33,7 +33,7 @@ struct Run {
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its
 /// `FIGURES`.
-const RUNS: [Run; 13] = [
+const RUNS: [Run; 14] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -121,6 +121,12 @@ const RUNS: [Run; 13] = [
         what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_is_its_verilog"],
+    },
+    Run {
+        name: "holds",
+        what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from the planned curve, the end",
+        asks: &[("CARRYSTEP_HOLDS", "500")],
+        cargo: &["--test", "overrides", "holds_at_random_times"],
     },
     Run {
         name: "linuxcnc",

@@ -2,7 +2,7 @@
 //! command's help.
 
 use super::program::{FromArguments, HEADING, PlannerArguments};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 
 /// The port of the board.
@@ -66,6 +66,24 @@ pub struct RunArguments {
 /// The arguments of `carrystep hold` and `resume`.
 #[derive(Debug, Args)]
 pub struct ProgramPortArguments {
+    #[command(flatten)]
+    pub port: PortArguments,
+}
+
+/// The arguments of `carrystep override`.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("what").required(true).multiple(true).args(["feed", "rapid", "spindle"])))]
+pub struct OverrideArguments {
+    /// The feed, in percent of what the program says: 10 to 200.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..=200))]
+    pub feed: Option<u8>,
+    /// The speed of rapid moves, in percent of the planned one: 10 to 100.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..=100))]
+    pub rapid: Option<u8>,
+    /// The speed of the spindle, in percent of what the program says: 10 to 200, at most the
+    /// spindle_rpm of the machine file.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..=200))]
+    pub spindle: Option<u8>,
     #[command(flatten)]
     pub port: PortArguments,
 }

@@ -1,12 +1,27 @@
-//! What the user wants of a program that a command runs: to hold it, to let it go on, to end it.
+//! What the user wants of a program that a command runs: to hold it, to let it go on, to end it, to
+//! go faster or slower.
 
+use super::{NO_SPINDLE, NOTHING_RUNS};
 use crate::found::BlockFound;
 use crate::interrupt;
+use carrystep_runner::OverrideSetting;
+use serde::{Deserialize, Serialize};
 
 /// Signals that ramp the axes down while a program moves.
 const STOP: u32 = 3;
 /// Signals that end a program as soon as it rests.
 const END: u32 = 2;
+
+/// The overrides that a user changes, percent; the others stay as they are.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct OverrideWish {
+    /// Of the feed, 10 to 200.
+    pub feed: Option<u8>,
+    /// Of rapid moves, 10 to 100.
+    pub rapid: Option<u8>,
+    /// Of the spindle, 10 to 200.
+    pub spindle: Option<u8>,
+}
 
 /// The requests for a program.
 #[derive(Debug, Default)]
@@ -18,6 +33,9 @@ pub struct ProgramControl {
     /// What is to be done while it waits, and how the last of it has ended.
     wish: Option<String>,
     pub(super) result: Option<String>,
+    overrides: OverrideSetting,
+    /// Whether an output sets the speed of a spindle.
+    spindle: bool,
     holds: bool,
     resumed: bool,
     /// The number of signals before the present motion.
@@ -27,6 +45,34 @@ pub struct ProgramControl {
 }
 
 impl ProgramControl {
+    /// No requests yet. `spindle` says whether an output sets the speed of a spindle.
+    pub fn new(spindle: bool) -> Self {
+        Self { spindle, ..Self::default() }
+    }
+
+    /// The overrides that are wanted.
+    pub const fn overrides(&self) -> OverrideSetting {
+        self.overrides
+    }
+
+    /// Notes a wish for other overrides. Returns the answer: all overrides, or the reason why they
+    /// are as before.
+    pub(super) fn overrides_as(&mut self, text: &str) -> String {
+        let Ok(OverrideWish { feed, rapid, spindle }) = serde_json::from_str(text) else {
+            return NOTHING_RUNS.to_owned();
+        };
+        if spindle.is_some() && !self.spindle {
+            return NO_SPINDLE.to_owned();
+        }
+        let old = self.overrides;
+        self.overrides = OverrideSetting {
+            feed: feed.unwrap_or(old.feed).clamp(10, 200),
+            rapid: rapid.unwrap_or(old.rapid).clamp(10, 100),
+            spindle: spindle.unwrap_or(old.spindle).clamp(10, 200),
+        };
+        self.overrides.to_string()
+    }
+
     /// The program rests from now on, and waits for this.
     pub fn rests(&mut self, waits: String) {
         (self.waits, self.resumed, self.rested) = (Some(waits), false, interrupt::count());
@@ -35,8 +81,9 @@ impl ProgramControl {
     /// The program moves on.
     pub fn moves(&mut self) {
         // A command may still ask for the result of what it wanted.
-        let (result, block) = (self.result.take(), self.block);
-        *self = Self { before: interrupt::count(), result, block, ..Self::default() };
+        let (block, overrides, spindle) = (self.block, self.overrides, self.spindle);
+        let (result, before) = (self.result.take(), interrupt::count());
+        *self = Self { before, result, block, overrides, spindle, ..Self::default() };
     }
 
     /// Notes a request for a hold; false if the program rests.

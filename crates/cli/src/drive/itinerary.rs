@@ -6,7 +6,7 @@ use carrystep_core::Segment;
 use carrystep_files::Machine;
 use carrystep_link::{Queues, SegmentSource, Wish};
 use carrystep_program::{Offsets, Point, ProgramFile};
-use carrystep_runner::{BlockAt, Wait};
+use carrystep_runner::{BlockAt, OverrideSetting, Wait};
 
 /// The figures of a plan that has been planned to its end.
 pub struct Plan<'a> {
@@ -49,6 +49,22 @@ pub trait Itinerary {
     /// Whether a hold ends the present stretch.
     fn is_held(&self) -> bool {
         false
+    }
+
+    /// The overrides of what is sent from now on.
+    fn overrides(&self) -> OverrideSetting {
+        OverrideSetting::NONE
+    }
+
+    /// Changes the overrides. Returns the number of segments of each axis behind which the board is
+    /// to cut its queues; `None` if the change comes behind them.
+    fn set_overrides(&self, _to: OverrideSetting, _queues: Option<Queues>) -> Option<u32> {
+        None
+    }
+
+    /// Planned seconds that pass in a second of the motion that was sent last.
+    fn rate(&self) -> f64 {
+        1.0
     }
 
     /// In which block of a program the tool is if the axes have moved by these steps since the

@@ -3,7 +3,7 @@
 //! The fields are names in the JSON of `carrystep run`; its schema is generated from them.
 
 use crate::control::StoppedBy;
-use crate::found::BlockFound;
+use crate::found::{BlockFound, OverridesFound};
 use carrystep_files::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -66,6 +66,8 @@ pub struct ProgramDriven {
     pub waits: u64,
     /// How often a hold has cut the queues of the board.
     pub cuts: u32,
+    /// The overrides that were in force last.
+    pub overrides: OverridesFound,
     /// The block in which the tool was when the program ended early; `--from-block` goes on there.
     pub block: Option<BlockFound>,
     /// The machine place where the program began, as `--began-at` takes it.
@@ -152,13 +154,16 @@ impl fmt::Display for Driven {
 
 impl fmt::Display for ProgramDriven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lines, soft_limits, horizon_ms, waits, cuts, block, began_at } = self;
+        let Self { lines, soft_limits, horizon_ms, waits, cuts, overrides, block, began_at } = self;
         let bounds = match &soft_limits[..] {
             [] => "no soft limits".to_owned(),
             names => format!("soft limits of {}", names.join(", ")),
         };
         let cut = if *cuts == 0 { String::new() } else { format!(", queues cut {cuts} times") };
         writeln!(f, "{lines} lines, {waits} waits{cut}, {bounds}, horizon {horizon_ms} ms")?;
+        if !overrides.are_none() {
+            writeln!(f, "overrides at the end: {overrides}")?;
+        }
         let Some(found) = block else { return Ok(()) };
         let number = found.number;
         writeln!(

@@ -9,7 +9,7 @@ use crate::pass::{Kept, RowsAhead};
 use crate::program;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_files::Axis;
-use carrystep_job::Hold;
+use carrystep_job::{Hold, Pace};
 use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, Queues, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
@@ -18,7 +18,7 @@ use carrystep_program::{
     SwitchCount,
 };
 use carrystep_report::Detail;
-use carrystep_runner::{BlockAt, Horizon, Stretches, Wait, kept_ticks};
+use carrystep_runner::{BlockAt, Horizon, OverrideSetting, Stretches, Wait, kept_ticks};
 use std::cell::{Cell, RefCell};
 
 /// The row in which the outputs of a program that is ended go off, seconds.
@@ -108,6 +108,7 @@ impl<'a> PlannedProgram<'a> {
                 horizon_ms: self.horizon.ms(),
                 waits: 0,
                 cuts: 0,
+                overrides: OverrideSetting::NONE.into(),
                 block: None,
                 began_at: began_at(self.file),
             }),
@@ -224,7 +225,9 @@ fn way<'a>(file: &ProgramFile, kept: &'a Kept) -> Result<Way<'a>, Failure> {
     let rows: Box<dyn Iterator<Item = Row> + 'a> = Box::new(kept.until_an_error(rows));
     let hold = Hold::new(file.machine()).map_err(|error| Failure::input(error.to_string()))?;
     let machine = file.machine();
-    let stretches = Stretches::new(rows, &file.start_steps(), hold, machine.queue);
+    let start = file.start_steps();
+    let pace = Pace::new(machine, &start).map_err(|error| Failure::input(error.to_string()))?;
+    let stretches = Stretches::new(rows, &start, hold, pace, machine.queue);
     if !machine.cuts {
         return Ok(stretches);
     }
@@ -317,6 +320,25 @@ impl Itinerary for ProgramStretches<'_> {
 
     fn is_held(&self) -> bool {
         self.stretches.borrow().is_held()
+    }
+
+    fn overrides(&self) -> OverrideSetting {
+        self.stretches.borrow().overrides()
+    }
+
+    fn set_overrides(&self, overrides: OverrideSetting, queues: Option<Queues>) -> Option<u32> {
+        let mut stretches = self.stretches.borrow_mut();
+        match queues {
+            Some(queues) => stretches.set_overrides_in(overrides, queues),
+            None => {
+                stretches.set_overrides(overrides);
+                None
+            }
+        }
+    }
+
+    fn rate(&self) -> f64 {
+        self.stretches.borrow().rate()
     }
 
     fn block(&self, moved: &[i32]) -> Option<BlockAt> {

@@ -45,6 +45,7 @@ mod long_moves;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
+mod overrides;
 #[cfg(unix)]
 mod pauses;
 #[cfg(target_os = "linux")]

@@ -1,11 +1,9 @@
 //! Planned rows as a curve over planned time: exact at whole ticks, and as floats between them.
 
+use crate::keep::REST;
 use crate::row::Row;
 use carrystep_core::Segment;
 use carrystep_plan::exact::travel;
-
-/// A tick at rest.
-const REST: Segment = Segment { ticks: 1, v: 0, a: 0, j: 0, last: false };
 
 /// Rows of a plan, one after the other, and where the motors are.
 #[derive(Debug, Clone)]

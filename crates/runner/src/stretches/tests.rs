@@ -34,8 +34,9 @@ fn whole(mut rows: Vec<Row>) -> Vec<Row> {
 
 fn stretches(rows: &[Row]) -> Stretches<impl Iterator<Item = Row>> {
     let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
-    let hold = Hold::new(&Machine::from_source(&text).unwrap()).unwrap();
-    Stretches::new(rows.iter().cloned(), &[0, 0], hold, 31).with_cuts(20_000)
+    let machine = Machine::from_source(&text).unwrap();
+    let (hold, pace) = (Hold::new(&machine).unwrap(), Pace::new(&machine, &[0, 0]).unwrap());
+    Stretches::new(rows.iter().cloned(), &[0, 0], hold, pace, 31).with_cuts(20_000)
 }
 
 fn taken(from: &mut impl SegmentSource, axis: u8) -> Vec<(u32, i64, bool)> {

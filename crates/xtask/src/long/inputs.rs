@@ -39,7 +39,7 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 13] = [
+pub const INPUTS: [Inputs; 14] = [
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
     (
@@ -116,6 +116,19 @@ pub const INPUTS: [Inputs; 13] = [
             "hdl-out/",
             "tests/system/a_board_is_its_verilog",
             "tests/support/board_session.rs",
+        ],
+    ),
+    (
+        "holds",
+        &[
+            "crates/core/",
+            "crates/files/",
+            "crates/gcode/",
+            "crates/job/",
+            "crates/plan/",
+            "crates/program/",
+            "crates/runner/",
+            "sim/jobs/",
         ],
     ),
     (
