@@ -12,8 +12,10 @@ mod blocks;
 mod held;
 mod horizon;
 mod reading;
+mod settling;
 mod stretches;
 
 pub use blocks::BlockAt;
 pub use horizon::Horizon;
+pub use settling::settling;
 pub use stretches::{Stretches, Wait, kept_ticks};

@@ -20,13 +20,23 @@ pub struct Switches {
     pub limit_min: u8,
     /// Mask of the limits at the high ends that are reached.
     pub limit_max: u8,
+    /// The probe touches.
+    pub probe: bool,
+    /// Mask of the general inputs that are active.
+    pub general: u8,
 }
 
 impl Switches {
     /// Levels of the input pins, with the polarity of the build and the sources of its latches.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
-        let Self { estop, limit_min, limit_max } = self;
-        let pins = EngineInputs { estop, limit_min, limit_max, ..EngineInputs::default() };
+        let Self { estop, limit_min, limit_max, probe, general } = self;
+        let mut inputs = [u8::from(probe), 0];
+        // Even numbers are in row 2 behind the probe, odd ones in row 3 behind the interlock.
+        for number in (0..8).filter(|number| general >> number & 1 == 1) {
+            inputs[number % 2] |= 1 << (1 + number / 2);
+        }
+        let inputs = [0, 1].map(|row| inputs[row] & guard.inputs[row].exist);
+        let pins = EngineInputs { estop, limit_min, limit_max, inputs, ..EngineInputs::default() };
         pins.levels(guard).with_sources(guard)
     }
 }

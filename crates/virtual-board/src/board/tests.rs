@@ -217,6 +217,8 @@ fn compare(axes: usize, on_spi: bool, milliseconds: u64) -> [u64; 4] {
                 estop: random.next_u64().is_multiple_of(8),
                 limit_min: (1 << (random.next_u64() % 16)) as u8,
                 limit_max: (1 << (random.next_u64() % 16)) as u8,
+                probe: random.next_u64().is_multiple_of(2),
+                general: random.next_u64() as u8,
             };
             board.press(switches);
             every.pins = board.pins;
