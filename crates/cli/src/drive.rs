@@ -2,14 +2,16 @@
 //! board, stops on request and reports the outcome. All checks that refuse a run come before the
 //! first segment is sent.
 
-use crate::connection::{self, ConnectedBoardError, Connection};
+use crate::connection::{self, ConnectedBoard, ConnectedBoardError, Connection};
+use crate::control::Control;
 use crate::failure::Failure;
 use crate::found;
 use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
 use carrystep_core::engine::Cause;
 use carrystep_link::{Ended, HostError, Status, Wish};
-use carrystep_program::ProgramFile;
+use carrystep_program::{Found, Input, Point, ProgramFile, Reading};
+use itinerary::Rest;
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
 pub use moves::Moves;
@@ -17,6 +19,7 @@ pub use outcome::{AxisDriven, Culprit, Driven, How};
 use pause::Pause;
 pub use place::Place;
 pub use program::PlannedProgram;
+use reading::{InputRead, Probing, read_input};
 use std::time::{Duration, Instant};
 use wait::{Keys, Waited};
 
@@ -27,6 +30,7 @@ mod outcome;
 mod pause;
 mod place;
 mod program;
+mod reading;
 mod wait;
 
 /// Time between two searches for a hold that the limits forbid now.
@@ -101,14 +105,57 @@ pub fn drive(
     let mut changed = Ok(());
     let mut follow = || -> Result<Ended, ConnectedBoardError> {
         let mut ends = false;
+        // Whether a stretch was executed, and the probe move in which the machine is.
+        let (mut is_moved, mut probe) = (false, None);
         'stretches: while let Some(waits) = itinerary.begin() {
             for at in waits {
                 line.rests();
-                plan.program.iter_mut().for_each(|program| program.waits += 1);
-                let offsets = itinerary.waits(at).unwrap_or_else(|failure| {
+                let stop = itinerary.waits(at).unwrap_or_else(|failure| {
                     changed = Err(failure);
                     None
                 });
+                let found = match stop.as_ref().and_then(|stop| Some((stop, stop.reading?))) {
+                    Some((stop, (Reading::Probe { .. }, _))) => {
+                        probe = Probing::of(stop);
+                        if let Some(Err(why)) =
+                            probe.map(|probe: Probing| probe.check(&mut board)).transpose()?
+                        {
+                            changed = Err(refused(is_moved, why));
+                            (ends, probe) = (true, None);
+                            itinerary.end();
+                            continue 'stretches;
+                        }
+                        continue;
+                    }
+                    Some((stop, (reading @ Reading::Input { input, until, seconds }, _))) => {
+                        // Others are refused before anything is sent.
+                        let Input::Digital(input) = input else { continue };
+                        let wanted = (input, until, seconds);
+                        match read_input(&mut board, &mut control, &at.to_string(), wanted)? {
+                            InputRead::Value(Some(value)) if value == reading.assumed() => continue,
+                            InputRead::Value(value) => Some((stop.at, Found::Input(value))),
+                            InputRead::Ends => {
+                                itinerary.end();
+                                ends = true;
+                                continue 'stretches;
+                            }
+                        }
+                    }
+                    None => None,
+                };
+                if let Some((at, found)) = found {
+                    match again(itinerary, &mut board, &mut control, at, found) {
+                        Ok(rest) => plan.goes_on(rest, &mut line, &start, &board),
+                        Err(failure) => {
+                            changed = Err(failure);
+                            ends = true;
+                            itinerary.end();
+                        }
+                    }
+                    continue 'stretches;
+                }
+                let offsets = stop.map(|stop| stop.offsets);
+                plan.program.iter_mut().for_each(|program| program.waits += 1);
                 if let Some(offsets) = offsets.clone().filter(|_| itinerary.keeps()) {
                     memory.set_work(offsets);
                     // At the end the file is written again.
@@ -119,11 +166,7 @@ pub fn drive(
                 match wait::wait(&mut board, &mut control, keys, (at, &mut pause))? {
                     Waited::GoesOn(None) => {}
                     Waited::GoesOn(Some(rest)) => {
-                        let now = board.status().positions;
-                        let gone = now.iter().zip(start.positions);
-                        let gone = gone.map(|(now, from)| i64::from(now.wrapping_sub(from)));
-                        plan.steps = gone.zip(rest.steps).map(|(gone, left)| gone + left).collect();
-                        plan.seconds = line.plans(rest.seconds);
+                        plan.goes_on(rest, &mut line, &start, &board);
                         continue 'stretches;
                     }
                     Waited::Ends => {
@@ -134,10 +177,15 @@ pub fn drive(
                     }
                 }
             }
+            // A probe moves at the feed of the program.
+            let scales = !ends && probe.is_none();
             let wanted = control.program().map(|program| program.overrides());
-            if let Some(wanted) = wanted.filter(|wanted| !ends && *wanted != itinerary.overrides())
+            if let Some(wanted) = wanted.filter(|wanted| scales && *wanted != itinerary.overrides())
             {
                 itinerary.set_overrides(wanted, None);
+            }
+            if let Some(probe) = &probe {
+                probe.arm(&mut board)?;
             }
             let mut source = itinerary.source();
             let (mut next_try, mut next_change) = (Instant::now(), Instant::now());
@@ -153,7 +201,7 @@ pub fn drive(
                     _ => {}
                 }
                 let wanted = control.program().map(|program| program.overrides());
-                let wanted = wanted.filter(|wanted| !ends && *wanted != itinerary.overrides());
+                let wanted = wanted.filter(|wanted| scales && *wanted != itinerary.overrides());
                 if let Some(wanted) = wanted.filter(|_| Instant::now() >= next_change) {
                     next_change = Instant::now() + TRY_AGAIN;
                     if let Some(keep) = itinerary.set_overrides(wanted, progress.queues) {
@@ -168,9 +216,38 @@ pub fn drive(
                 next_try = Instant::now() + TRY_AGAIN;
                 itinerary.hold(progress.queues).map_or(Wish::GoOn, |keep| Wish::Cut { keep })
             })?;
+            drop(source);
             plan.program.iter_mut().for_each(|program| program.cuts += cuts);
             if streamed == Ended::Stopped {
                 return Ok(Ended::Stopped);
+            }
+            is_moved = true;
+            if let Some((probing, file)) = probe.zip(itinerary.program()) {
+                let hit = board.end_seek()?;
+                if hit.is_none() && itinerary.is_held() {
+                    // The rest of the move follows behind the hold.
+                    continue;
+                }
+                probe = None;
+                line.rests();
+                let probed = match hit {
+                    Some(states) => {
+                        Ok(probing.tripped(&mut board, &line, (file, &zero), &states)?)
+                    }
+                    None => probing.untripped(),
+                };
+                let rest = probed
+                    .map_err(Failure::Run)
+                    .and_then(|(at, found)| again(itinerary, &mut board, &mut control, at, found));
+                match rest {
+                    Ok(rest) => plan.goes_on(rest, &mut line, &start, &board),
+                    Err(failure) => {
+                        changed = Err(failure);
+                        ends = true;
+                        itinerary.end();
+                    }
+                }
+                continue;
             }
             if !ends {
                 control.reached(block(board.status()));
@@ -257,4 +334,40 @@ pub fn drive(
         program: plan.program,
         axes,
     })
+}
+
+/// What cannot be executed any more: a mistake of the input if nothing has moved.
+fn refused(is_moved: bool, why: String) -> Failure {
+    if is_moved { Failure::Run(why) } else { Failure::input(why) }
+}
+
+/// Plans the rest of a program from what was found.
+///
+/// # Errors
+/// It cannot be executed from there.
+fn again(
+    itinerary: &dyn Itinerary,
+    board: &mut ConnectedBoard,
+    control: &mut Control,
+    at: Point,
+    found: Found,
+) -> Result<Rest, Failure> {
+    let status = *board.status();
+    let mut wish = || {
+        let ends = control.program().is_some_and(|program| program.ends());
+        if ends { Wish::Stop } else { control.wish(&status) }
+    };
+    itinerary
+        .resume(at, None, found, &mut wish)
+        .map_err(|failure| Failure::Run(format!("the machine rests: {}", failure.message())))
+}
+
+impl Plan<'_> {
+    /// The rest was planned again, from where the board is.
+    fn goes_on(&mut self, rest: Rest, line: &mut Line<'_>, start: &Status, board: &ConnectedBoard) {
+        let gone = board.status().positions.into_iter().zip(start.positions);
+        let gone = gone.map(|(now, from)| i64::from(now.wrapping_sub(from)));
+        self.steps = gone.zip(rest.steps).map(|(gone, left)| gone + left).collect();
+        self.seconds = line.plans(rest.seconds);
+    }
 }

@@ -2,7 +2,8 @@
 //! operates through standard input.
 //!
 //! ```text
-//! estop 1     presses the e-stop, `estop 0` releases it; likewise `min x 1`, `max x 0`
+//! estop 1     presses the e-stop, `estop 0` releases it; likewise `min x 1`, `max x 0`, `probe 1`,
+//!             and `input 2 1` for general input 2
 //! end         ends the board, as Ctrl-C does
 //! ```
 
@@ -14,16 +15,21 @@ use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 
 /// The lines that the panel knows, each as an example.
-pub const KNOWN: &str = "estop 1, min x 1, max x 0, end";
+pub const KNOWN: &str = "estop 1, min x 1, max x 0, probe 1, input 0 1, end";
+
+/// The greatest number of general inputs.
+const GENERAL: u8 = 8;
 
 /// One end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Min,
     Max,
+    /// The plate of the probe: it is touched at this position and below.
+    Plate,
 }
 
-/// A limit switch at a position, in steps.
+/// A limit switch or a plate at a position, in steps.
 #[derive(Debug, Clone, Copy)]
 struct Limit {
     axis: usize,
@@ -53,11 +59,22 @@ pub struct Look {
 }
 
 impl SwitchPanel {
-    /// The panel of a machine with the given limit switches, each `AXIS=STEPS`.
+    /// The panel of a machine with the given limit switches and plates of the probe, each
+    /// `AXIS=STEPS`.
     ///
     /// # Errors
-    /// An option is malformed, names no axis, or the machine has no inputs for limits.
-    pub fn new(machine: &Machine, min: &[String], max: &[String]) -> Result<Self, Failure> {
+    /// An option is malformed, names no axis, or the machine has no inputs for it.
+    pub fn new(
+        machine: &Machine,
+        min: &[String],
+        max: &[String],
+        plates: &[String],
+    ) -> Result<Self, Failure> {
+        if !(plates.is_empty() || has_probe(machine)) {
+            return Err(Failure::input(
+                "--probe is a plate for the probe, and the machine has none: probe in [machine.inputs]",
+            ));
+        }
         if machine.guard.limits == LimitWiring::None && !(min.is_empty() && max.is_empty()) {
             return Err(Failure::input(
                 "--min and --max are limit switches, and the machine has no input for them: [machine.guard] limits is \"none\"",
@@ -65,7 +82,9 @@ impl SwitchPanel {
         }
         let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
         let mut limits = Vec::new();
-        for (end, option, texts) in [(End::Min, "--min", min), (End::Max, "--max", max)] {
+        let options =
+            [(End::Min, "--min", min), (End::Max, "--max", max), (End::Plate, "--probe", plates)];
+        for (end, option, texts) in options {
             for text in texts {
                 let read = text.split_once('=').and_then(|(name, steps)| {
                     let axis = axes.iter().position(|axis| axis == name)?;
@@ -106,7 +125,8 @@ impl SwitchPanel {
             match limit.end {
                 End::Min if position(limit.axis) <= limit.steps => switches.limit_min |= bit,
                 End::Max if position(limit.axis) >= limit.steps => switches.limit_max |= bit,
-                End::Min | End::Max => {}
+                End::Plate if position(limit.axis) <= limit.steps => switches.touch_probe(true),
+                End::Min | End::Max | End::Plate => {}
             }
         }
         Look { switches: wired(switches, self.wiring), ends, unknown }
@@ -125,6 +145,16 @@ impl SwitchPanel {
                 self.hand.estop = level;
                 return true;
             }
+            ["probe", _] => {
+                self.hand.touch_probe(level);
+                return true;
+            }
+            ["input", number, _] => {
+                let number = number.parse().ok().filter(|number| *number < GENERAL);
+                let Some(number) = number else { return false };
+                self.hand.set_input(number, level);
+                return true;
+            }
             ["min", _, _] => &mut self.hand.limit_min,
             ["max", _, _] => &mut self.hand.limit_max,
             _ => return false,
@@ -133,6 +163,11 @@ impl SwitchPanel {
         *bits = *bits & !(1 << axis) | u8::from(level) << axis;
         true
     }
+}
+
+/// Whether a machine has an input for a probe.
+pub fn has_probe(machine: &Machine) -> bool {
+    machine.guard.inputs[0].exist & 1 == 1
 }
 
 /// The levels of the inputs in this wiring. If several switches share a wire, each of them closes
@@ -166,8 +201,8 @@ mod tests {
 
     #[test]
     fn switches_drive_the_inputs_of_their_wiring() {
-        let pressed =
-            Switches { estop: true, limit_min: 0b0010, limit_max: 0b0100, ..Switches::default() };
+        let (limit_min, limit_max) = (0b0010, 0b0100);
+        let pressed = Switches { estop: true, limit_min, limit_max, ..Switches::default() };
         let wires = |wiring| {
             let Switches { estop, limit_min, limit_max, .. } = wired(pressed, wiring);
             (estop, limit_min, limit_max)

@@ -8,6 +8,7 @@ mod error;
 mod homing;
 mod latches;
 mod motion;
+mod seek;
 mod session;
 mod snapshot;
 mod state;
@@ -17,6 +18,7 @@ pub use error::{HomingFault, HostError};
 pub use homing::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 pub use latches::{Latches, MOST_LATCHES};
 pub use motion::{Ended, Progress, Queues, Wish};
+pub use seek::SeekSource;
 #[cfg(feature = "std")]
 pub use session::random_session;
 pub use snapshot::{AxisState, Snapshot};

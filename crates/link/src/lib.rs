@@ -40,7 +40,7 @@ pub use frame::{Answer, Body, FrameError, Refusal, Request};
 #[cfg(feature = "std")]
 pub use host::random_session;
 pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
-pub use host::{AxisState, Snapshot};
+pub use host::{AxisState, SeekSource, Snapshot};
 pub use host::{Clock, Ended, Host, HostError, Moment, Patience, Progress, Queues, Status, Wish};
 pub use line::{Exchanged, Line};
 pub use session::{Session, SessionLost, Timing, WriteError};

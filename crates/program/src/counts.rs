@@ -1,8 +1,9 @@
 //! What a program asks for, counted while it is read.
 
-use crate::event::{Event, ProgrammedMove};
+use crate::event::{Event, ProgrammedMove, Reading};
 use crate::letter::LINEAR;
 use crate::switch::SwitchCount;
+use carrystep_gcode::Input;
 
 /// Figures of a program.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,6 +28,8 @@ pub struct Counts {
     pub tolerance_mm: Option<[f64; 2]>,
     /// What is switched, in the order of [`Switch::ALL`](crate::Switch::ALL).
     pub switches: Vec<SwitchCount>,
+    /// The inputs that M66 reads, each with the first line that reads it.
+    pub inputs: Vec<(Input, u64)>,
     moves_now: bool,
 }
 
@@ -52,6 +55,14 @@ impl Counts {
                         self.switches.push(SwitchCount { switch: *switch, count: 1, line: *line });
                         self.switches.sort_by_key(|known| known.switch);
                     }
+                }
+            }
+            Event::Reading { reading, line } => {
+                self.lines = self.lines.max(*line);
+                if let Reading::Input { input, .. } = reading
+                    && self.inputs.iter().all(|(known, _)| known != input)
+                {
+                    self.inputs.push((*input, *line));
                 }
             }
             Event::End { line } => self.lines = self.lines.max(*line),

@@ -3,7 +3,7 @@
 use crate::letter::LINEAR;
 use crate::switch::Switch;
 use carrystep_core::OutputChange;
-use carrystep_gcode::{AXES, Arc, Point};
+use carrystep_gcode::{AXES, Arc, Input, Point, Until};
 use carrystep_job::Tolerance;
 
 /// A part of what a program does. Places are x, y, z in mm, then a, b, c in degrees.
@@ -35,11 +35,49 @@ pub enum Event {
         /// Line of the program.
         line: u64,
     },
+    /// What follows can depend on what was read here, at rest.
+    Reading {
+        /// What is read.
+        reading: Reading,
+        /// Line of the program.
+        line: u64,
+    },
     /// The end of the program.
     End {
         /// The last line that was read.
         line: u64,
     },
+}
+
+/// What a program reads, and then goes on with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reading {
+    /// G38.2 to G38.5: the place at which the last move was ended by the probe.
+    Probe {
+        /// True: the probe closes (G38.2, G38.3). False: it opens (G38.4, G38.5).
+        contact: bool,
+        /// Whether it is an error if the move was not ended (G38.2, G38.4).
+        required: bool,
+    },
+    /// M66.
+    Input {
+        /// The input.
+        input: Input,
+        /// What is waited for.
+        until: Until,
+        /// Longest time of waiting, s.
+        seconds: f64,
+    },
+}
+
+impl Reading {
+    /// The value of an input that a plan assumes; 0 for a probe.
+    pub const fn assumed(&self) -> f64 {
+        match self {
+            Self::Input { until: Until::Rise | Until::High, .. } => 1.0,
+            Self::Input { .. } | Self::Probe { .. } => 0.0,
+        }
+    }
 }
 
 /// A straight move, an arc or a helix.

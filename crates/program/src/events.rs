@@ -3,8 +3,8 @@
 
 use crate::entry::Entry;
 use crate::error::{Fault, ProgramError};
-use crate::event::{Event, ProgrammedMove};
-use crate::file::{ProgramFile, Resumed};
+use crate::event::{Event, ProgrammedMove, Reading};
+use crate::file::{Found, ProgramFile, Resumed};
 use crate::letter::LINEAR;
 use crate::letters::Letters;
 use crate::outputs::{Effect, ProgramOutputs};
@@ -42,7 +42,7 @@ pub struct Events {
     block: u64,
     /// The axes of which it is not known where the program began. They must not move.
     unknown: [bool; AXES],
-    /// Number of places to wait at so far, and what was changed at some of them.
+    /// Number of places to wait at or to read something so far, and what was changed at some of them.
     waits: u64,
     resumed: Vec<Resumed>,
     mode: PathMode,
@@ -198,11 +198,11 @@ impl Events {
             Canon::Traverse { to } => self.go(line, to, None, None)?,
             Canon::Feed { to, pace } => self.go(line, to, None, Some(pace))?,
             Canon::Arc(arc) => self.go(line, arc.to, Some(arc), Some(arc.pace))?,
-            Canon::Probe { to, pace, .. } => {
-                let switch = Switch::Probe;
-                self.waiting.push_back(Event::Switch { switch, line });
+            Canon::Probe { to, pace, contact, required } => {
+                self.switch(Switch::Probe, line);
                 self.go(line, to, None, Some(pace))?;
                 self.waiting.push_back(rest);
+                self.reads(Reading::Probe { contact, required }, line);
             }
             Canon::Dwell { seconds } => self.waiting.push_back(Event::Rest { seconds, line }),
             Canon::Path(mode) => self.mode = mode,
@@ -222,7 +222,10 @@ impl Events {
                 let effect = self.outputs.analog(index, value)?;
                 self.change(effect, with_motion, Switch::Output, line);
             }
-            Canon::ReadInput { .. } => self.switch(Switch::Input, line),
+            Canon::ReadInput { input, until, seconds } => {
+                self.switch(Switch::Input, line);
+                self.reads(Reading::Input { input, until, seconds }, line);
+            }
             Canon::ChangeTool { .. } => self.wait(Switch::ToolChange, line)?,
             Canon::Pause { .. } => self.wait(Switch::Pause, line)?,
             Canon::End => self.waiting.push_back(Event::End { line }),
@@ -254,16 +257,39 @@ impl Events {
     fn wait(&mut self, switch: Switch, line: u64) -> Result<(), Fault> {
         self.switch(switch, line);
         self.waits += 1;
-        let Some(resumed) = self.resumed.iter().find(|resumed| resumed.number == self.waits) else {
-            return Ok(());
-        };
-        if self.steps.is_amid_line() {
+        if self.changed().is_some() && self.steps.is_amid_line() {
             return Err(Fault::ResumedAmidLine);
         }
-        self.steps.set_offsets(&resumed.offsets);
-        self.steps.set_place(resumed.at);
-        self.at = resumed.at;
+        self.resume();
         Ok(())
+    }
+
+    /// Something is read. What was found is in force for the next line: of the line itself, only
+    /// steps are left that have no place, or that were computed before.
+    fn reads(&mut self, reading: Reading, line: u64) {
+        self.waiting.push_back(Event::Reading { reading, line });
+        self.waits += 1;
+        self.resume();
+    }
+
+    /// What was changed at the place that was reached last.
+    fn changed(&self) -> Option<&Resumed> {
+        self.resumed.iter().find(|resumed| resumed.number == self.waits)
+    }
+
+    /// Goes on with what was changed and found at the place that was reached last.
+    fn resume(&mut self) {
+        let Some(Resumed { at, offsets, found, .. }) = self.changed().cloned() else { return };
+        match found {
+            Found::Nothing => {}
+            Found::Probe { at, tripped } => self.steps.probed(at, tripped),
+            Found::Input(value) => self.steps.input_read(value),
+        }
+        offsets.iter().for_each(|offsets| self.steps.set_offsets(offsets));
+        if at != self.at || !matches!(found, Found::Input(_)) {
+            self.steps.set_place(at);
+            self.at = at;
+        }
     }
 
     fn go(

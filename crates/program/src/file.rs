@@ -39,17 +39,35 @@ pub struct Settings {
     pub resumed: Vec<Resumed>,
 }
 
-/// What was changed while a program waited, so that the rest of it begins at another place or with
-/// other offsets.
+/// What was changed or found where a program has stopped, so that the rest of it begins at another
+/// place, with other offsets, or otherwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resumed {
-    /// The number of the place at which it has waited, counted from 1 in the order in which they
-    /// are executed.
+    /// The number of the place at which it has waited or read something, counted from 1 in the order
+    /// in which they are executed.
     pub number: u64,
     /// The machine place: x, y, z in mm, then a, b, c in degrees.
     pub at: Point,
-    /// Work offsets and tool length.
-    pub offsets: Offsets,
+    /// Work offsets and tool length; `None` if they stay as they are.
+    pub offsets: Option<Offsets>,
+    /// What the program has read there.
+    pub found: Found,
+}
+
+/// What a program has read where it has stopped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Found {
+    /// It was a pause or a tool change.
+    Nothing,
+    /// The machine place at which the probe has tripped, or the target if it has not.
+    Probe {
+        /// x, y, z in mm, then a, b, c in degrees.
+        at: Point,
+        /// Whether it has tripped.
+        tripped: bool,
+    },
+    /// The value of an input; `None` if it did not become what was wanted in time.
+    Input(Option<f64>),
 }
 
 impl Default for Settings {

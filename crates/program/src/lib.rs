@@ -36,19 +36,21 @@ mod switch;
 mod sync;
 
 pub use blocks::{Blocks, TimedBlock};
-pub use carrystep_gcode::{AXIS_LETTERS, Modes, Offsets, PathMode, Plane, Point, Turn};
+pub use carrystep_gcode::{
+    AXIS_LETTERS, Input, Modes, Offsets, PathMode, Plane, Point, Turn, Until,
+};
 pub use carrystep_job::Row;
 pub use counts::Counts;
 pub use entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 pub use error::{Fault, ProgramError};
-pub use event::{Event, ProgrammedMove};
+pub use event::{Event, ProgrammedMove, Reading};
 pub use events::{DEFAULT_TOLERANCE, Events};
-pub use file::{ProgramFile, Resumed, Settings, is_program};
+pub use file::{Found, ProgramFile, Resumed, Settings, is_program};
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
 pub use marks::Marks;
-pub use pause::offsets_at;
+pub use pause::{Stop, stop_at};
 pub use rows::Rows;
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::{Switch, SwitchCount};

@@ -2,10 +2,11 @@
 
 use crate::counts::Counts;
 use crate::error::{Fault, ProgramError};
-use crate::event::{Event, ProgrammedMove};
+use crate::event::{Event, ProgrammedMove, Reading};
 use crate::events::Events;
 use crate::file::ProgramFile;
 use crate::letters::Letters;
+use crate::switch::Switch;
 use crate::sync::SyncPoint;
 use carrystep_files::Machine;
 use carrystep_gcode::{Offsets, Point};
@@ -147,11 +148,22 @@ impl Rows {
                 self.waits.extend(SyncPoint::of(switch, line));
                 // What was switched before a wait is switched when the wait begins: the spindle
                 // does not turn in a tool change.
-                let dwell = if is_wait(event) && self.is_marked { SWITCHING } else { 0.0 };
+                let stops = SyncPoint::of(switch, line).is_some();
+                let dwell = if stops && self.is_marked { SWITCHING } else { 0.0 };
                 self.is_marked &= dwell == 0.0;
                 (Some(rest(dwell, line)), None)
             }
-            Event::End { .. } => (None, None),
+            Event::Reading { reading: Reading::Probe { .. }, line } => {
+                // The probe move ends here, so that what follows is a stretch of its own.
+                self.waits.push(SyncPoint { switch: Switch::Probe, line });
+                (Some(rest(0.0, line)), None)
+            }
+            Event::Reading { reading: Reading::Input { .. }, .. } => (None, None),
+            Event::End { line } => {
+                // Something may follow an input that is not what the plan assumes.
+                let reads = self.waits.iter().any(|wait| wait.switch == Switch::Input);
+                (None, reads.then(|| rest(SWITCHING, line)))
+            }
         };
         let mut items: Vec<Item> = first.into_iter().collect();
         if let Some(then) = then {
@@ -179,9 +191,12 @@ impl Rows {
     }
 }
 
-/// Whether whoever runs the program waits there.
-pub(crate) fn is_wait(event: &Event) -> bool {
-    matches!(*event, Event::Switch { switch, line } if SyncPoint::of(switch, line).is_some())
+/// Whether whoever runs the program waits or reads something there, so that the place has a number.
+pub(crate) const fn is_wait(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::Switch { switch: Switch::Pause | Switch::ToolChange, .. } | Event::Reading { .. }
+    )
 }
 
 impl Iterator for Rows {

@@ -13,10 +13,12 @@ mod held;
 mod horizon;
 mod override_setting;
 mod reading;
+mod settling;
 mod spindle;
 mod stretches;
 
 pub use blocks::BlockAt;
 pub use horizon::Horizon;
 pub use override_setting::OverrideSetting;
+pub use settling::settling;
 pub use stretches::{Stretches, Wait, kept_ticks};

@@ -17,6 +17,7 @@ use crate::blocks::{BlockAt, nearest};
 use crate::held::{Held, Window};
 use crate::override_setting::OverrideSetting;
 use crate::reading::{NextRow, Reading};
+use crate::settling::settling;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::{Hold, Pace, Paced, Track};
 use carrystep_link::{Queues, SegmentSource};
@@ -47,9 +48,6 @@ impl fmt::Display for Wait {
         }
     }
 }
-
-/// Half a step in units of 2^-64 step.
-const HALF_STEP: i128 = 1 << 63;
 
 /// The rows of a program, stretch by stretch: as a [`SegmentSource`], it gives the segments of the
 /// stretch that was begun last. Memory holds only the rows of which an axis has not taken its
@@ -247,30 +245,9 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     }
 
     /// What brings P of each axis to its start value where the program waits: the segments of each
-    /// axis, `ticks` in all. No axis makes a step, because each stays within half a step of the whole
-    /// number that its position register shows.
+    /// axis, `ticks` in all ([`settling`]).
     pub fn settling(&self, ticks: u32) -> Vec<Vec<Segment>> {
-        let ticks = ticks.max(1);
-        let axis = |&at: &i128| {
-            let whole = (at + HALF_STEP) >> 64 << 64;
-            let (left, count) = (whole - at, i128::from(ticks));
-            let (v, more) = (left.div_euclid(count), left.rem_euclid(count));
-            // `more` ticks with one unit more, and then the others.
-            let parts = [(more, v + 1), (count - more, v)];
-            let parts = parts.into_iter().filter(|(ticks, _)| *ticks > 0);
-            let mut segments: Vec<Segment> = parts
-                .map(|(ticks, v)| Segment {
-                    ticks: ticks as u32,
-                    v: v as i64,
-                    a: 0,
-                    j: 0,
-                    last: false,
-                })
-                .collect();
-            segments.iter_mut().last().into_iter().for_each(|segment| segment.last = true);
-            segments
-        };
-        self.now.at.iter().map(axis).collect()
+        settling(&self.now.at, ticks)
     }
 
     /// Drops what is left of the program, and ends it with this change of outputs, at rest. The

@@ -27,9 +27,26 @@ pub struct Switches {
 }
 
 impl Switches {
+    /// The probe touches, or does not.
+    pub fn touch_probe(&mut self, touches: bool) {
+        self.set(0, 0, touches);
+    }
+
+    /// A general input, from 0 on, is active or not. Even numbers are in row 2 behind the probe, odd
+    /// ones in row 3 behind the interlock.
+    pub fn set_input(&mut self, number: u8, active: bool) {
+        self.set(usize::from(number % 2), 1 + number / 2, active);
+    }
+
+    fn set(&mut self, row: usize, bit: u8, active: bool) {
+        let mask = 1_u8.checked_shl(bit.into()).unwrap_or(0);
+        self.inputs[row] = self.inputs[row] & !mask | if active { mask } else { 0 };
+    }
+
     /// Levels of the input pins, with the polarity of the build and the sources of its latches.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
         let Self { estop, limit_min, limit_max, inputs, latch } = self;
+        let inputs = [0, 1].map(|row| inputs[row] & guard.inputs[row].exist);
         let pins =
             EngineInputs { estop, limit_min, limit_max, inputs, latch, ..EngineInputs::default() };
         pins.levels(guard).with_sources(guard)

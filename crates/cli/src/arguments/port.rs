@@ -164,6 +164,10 @@ pub struct VirtualBoard {
     /// A limit switch at the high end of an axis, at this position in steps.
     #[arg(long = "max", value_name = "AXIS=STEPS")]
     pub max: Vec<String>,
+    /// A plate for the probe: the probe touches it where this axis is at this position in steps, or
+    /// below.
+    #[arg(long = "probe", value_name = "AXIS=STEPS")]
+    pub probe: Vec<String>,
     /// One JSON document at the end; the port is printed on standard error.
     #[arg(long)]
     pub json: bool,

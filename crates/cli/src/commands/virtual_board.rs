@@ -65,7 +65,7 @@ fn serve(
 ) -> Result<(), Failure> {
     let build = machine.engine();
     let (uart, id) = connection::wanted(machine, &arguments.machine)?;
-    let panel = SwitchPanel::new(machine, &arguments.min, &arguments.max)?;
+    let panel = SwitchPanel::new(machine, &arguments.min, &arguments.max, &arguments.probe)?;
     let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
     let terminal =
         Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;

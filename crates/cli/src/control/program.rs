@@ -38,6 +38,8 @@ pub struct ProgramControl {
     spindle: bool,
     holds: bool,
     resumed: bool,
+    /// Whether it waits for an input, and not for somebody.
+    reads: bool,
     /// The number of signals before the present motion.
     before: u32,
     /// The number of signals when the present rest began.
@@ -76,6 +78,13 @@ impl ProgramControl {
     /// The program rests from now on, and waits for this.
     pub fn rests(&mut self, waits: String) {
         (self.waits, self.resumed, self.rested) = (Some(waits), false, interrupt::count());
+        self.reads = false;
+    }
+
+    /// The program rests from now on, and waits for an input. Nobody else can let it go on.
+    pub fn reads(&mut self, waits: String) {
+        self.rests(waits);
+        self.reads = true;
     }
 
     /// The program moves on.
@@ -92,10 +101,10 @@ impl ProgramControl {
         self.waits.is_none()
     }
 
-    /// Notes what is to be done while it waits; `None` if it moves, and false if something else is
+    /// Notes what is to be done while it waits; `None` if it moves or waits for an input, and false if something else is
     /// not done yet.
     pub(super) fn pauses(&mut self, text: &str) -> Option<bool> {
-        self.waits.as_ref()?;
+        self.waits.as_ref().filter(|_| !self.reads)?;
         let is_free = self.wish.is_none();
         if is_free {
             (self.wish, self.result) = (Some(text.to_owned()), None);
@@ -118,10 +127,11 @@ impl ProgramControl {
         (self.waits, self.resumed) = (Some(waits), false);
     }
 
-    /// Notes that the program may go on; false if it moves.
+    /// Notes that the program may go on; false if it moves, or waits for an input.
     pub(super) fn resume(&mut self) -> bool {
-        self.resumed |= self.waits.is_some();
-        self.waits.is_some()
+        let waits = self.waits.is_some() && !self.reads;
+        self.resumed |= waits;
+        waits
     }
 
     /// Whether the moving program is to come to rest.

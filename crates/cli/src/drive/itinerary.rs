@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use carrystep_core::Segment;
 use carrystep_files::Machine;
 use carrystep_link::{Queues, SegmentSource, Wish};
-use carrystep_program::{Offsets, Point, ProgramFile};
+use carrystep_program::{Found, Offsets, Point, ProgramFile, Stop};
 use carrystep_runner::{BlockAt, OverrideSetting, Wait};
 
 /// The figures of a plan that has been planned to its end.
@@ -76,12 +76,12 @@ pub trait Itinerary {
     /// Drops what is left, except that all outputs go off in a last stretch.
     fn end(&self) {}
 
-    /// Notes that the board rests at one of the places before the stretch, and waits. Returns the
-    /// work offsets that are in force there; `None` in a hold.
+    /// Notes that the board rests at one of the places before the stretch. Returns what is in force
+    /// there, and what is read; `None` in a hold.
     ///
     /// # Errors
     /// The file has changed.
-    fn waits(&self, _at: Wait) -> Result<Option<Offsets>, Failure> {
+    fn waits(&self, _at: Wait) -> Result<Option<Stop>, Failure> {
         Ok(None)
     }
 
@@ -106,8 +106,8 @@ pub trait Itinerary {
         Vec::new()
     }
 
-    /// Plans the rest of a program that waits from this machine place, in mm and degrees, and with
-    /// these offsets. Then [`Itinerary::begin`] begins it. `wish` is called now and then; a stop ends
+    /// Plans the rest of a program that waits or has read something from this machine place, in mm
+    /// and degrees, with these offsets if any were set. Then [`Itinerary::begin`] begins it. `wish` is called now and then; a stop ends
     /// the planning.
     ///
     /// # Errors
@@ -115,7 +115,8 @@ pub trait Itinerary {
     fn resume(
         &self,
         _at: Point,
-        _offsets: Offsets,
+        _offsets: Option<Offsets>,
+        _found: Found,
         _wish: &mut dyn FnMut() -> Wish,
     ) -> Result<Rest, Failure> {
         Err(Failure::Run("only programs go on from another place".into()))

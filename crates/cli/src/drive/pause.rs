@@ -13,11 +13,11 @@ use crate::pause::{PauseResult, PauseWish};
 use crate::work;
 use carrystep_core::Segment;
 use carrystep_link::{Answer, Ended, HostError, SegmentSource, Status, Wish};
-use carrystep_program::{AXIS_LETTERS, Offsets, Point, ProgramFile};
+use carrystep_program::{AXIS_LETTERS, Found, Offsets, Point, ProgramFile};
 use std::collections::VecDeque;
 
 /// Time in which P of the axes goes to its start value, s.
-const SETTLING: f64 = 0.004;
+pub(super) const SETTLING: f64 = 0.004;
 
 /// A program that waits.
 pub(super) struct Pause<'a> {
@@ -111,7 +111,8 @@ impl<'a> Pause<'a> {
         else {
             return Ok(None);
         };
-        self.itinerary.resume(self.place(file, status), offsets, wish).map(Some)
+        let place = self.place(file, status);
+        self.itinerary.resume(place, Some(offsets), Found::Nothing, wish).map(Some)
     }
 
     fn execute(
@@ -223,13 +224,13 @@ fn stream<'s>(
 }
 
 /// Segments of all axes, which start together.
-struct Parts {
+pub(super) struct Parts {
     segments: Vec<VecDeque<Segment>>,
     start: Option<u8>,
 }
 
 impl Parts {
-    fn new(segments: Vec<Vec<Segment>>) -> Self {
+    pub fn new(segments: Vec<Vec<Segment>>) -> Self {
         let start = Some(((1_u16 << segments.len()) - 1) as u8);
         Self { segments: segments.into_iter().map(VecDeque::from).collect(), start }
     }

@@ -3,6 +3,7 @@
 use super::itinerary::{Itinerary, Plan, Rest};
 use super::outcome::ProgramDriven;
 use super::place::Place;
+use super::reading;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::pass::{Kept, RowsAhead};
@@ -14,8 +15,8 @@ use carrystep_link::supply::{Starved, Supply};
 use carrystep_link::{Command, Queues, SegmentSource, Wish};
 use carrystep_plan::exact::travel;
 use carrystep_program::{
-    AXIS_LETTERS, AxisSurvey, Offsets, Point, ProgramFile, Resumed, Row, Rows, Survey, Switch,
-    SwitchCount,
+    AXIS_LETTERS, AxisSurvey, Found, Offsets, Point, ProgramFile, Resumed, Row, Rows, Stop, Survey,
+    Switch, SwitchCount,
 };
 use carrystep_report::Detail;
 use carrystep_runner::{BlockAt, Horizon, OverrideSetting, Stretches, Wait, kept_ticks};
@@ -65,7 +66,7 @@ impl<'a> PlannedProgram<'a> {
         let (survey, _) =
             planned.map_err(|error| if interrupt::is_asked() { stopped() } else { error })?;
         let first = look.finish()?;
-        refuse_blind(file, &survey)?;
+        reading::refuse_missing(file, &survey)?;
         let named = |(axis, soft): (&Axis, &bool)| soft.then(|| axis.name.clone());
         let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
         let horizon = Horizon::of_queue(machine.queue as u64);
@@ -75,7 +76,10 @@ impl<'a> PlannedProgram<'a> {
 
     /// What the program switches and the machine does not, each with its first line.
     pub fn unswitched(&self) -> impl Iterator<Item = String> + '_ {
-        let waits = |one: &&SwitchCount| !matches!(one.switch, Switch::Pause | Switch::ToolChange);
+        let waits = |one: &&SwitchCount| {
+            use Switch::{Input, Pause, Probe, ToolChange};
+            !matches!(one.switch, Pause | ToolChange | Probe | Input)
+        };
         self.survey.counts.switches.iter().filter(waits).map(
             |SwitchCount { switch, line, .. }| {
                 format!("line {line}: {switch}: {}", switch.instead())
@@ -202,19 +206,6 @@ fn starved(file: &ProgramFile, Starved { axis, at_ms, late_us, baud }: Starved) 
     ))
 }
 
-/// Refuses what `run` cannot do.
-fn refuse_blind(file: &ProgramFile, survey: &Survey) -> Result<(), Failure> {
-    let switches = &survey.counts.switches;
-    let blind = switches.iter().find(|one| matches!(one.switch, Switch::Probe | Switch::Input));
-    blind.map_or(Ok(()), |SwitchCount { switch, line, .. }| {
-        Err(Failure::input(format!(
-            "{}: line {line}: `run` cannot do this yet: {switch} ({})",
-            file.path().display(),
-            switch.instead()
-        )))
-    })
-}
-
 /// Rows, wherever they come from.
 type Way<'a> = Stretches<Box<dyn Iterator<Item = Row> + 'a>>;
 
@@ -257,14 +248,14 @@ impl Itinerary for ProgramStretches<'_> {
         self.stretches.borrow_mut().begin()
     }
 
-    fn waits(&self, at: Wait) -> Result<Option<Offsets>, Failure> {
+    fn waits(&self, at: Wait) -> Result<Option<Stop>, Failure> {
         if let Wait::SyncPoint(_) = at {
             self.passed.set(self.passed.get() + 1);
         }
         if let Wait::Hold(_) = at {
             return Ok(None);
         }
-        Ok(Some(carrystep_program::offsets_at(&self.now.borrow(), self.passed.get())?))
+        Ok(Some(carrystep_program::stop_at(&self.now.borrow(), self.passed.get())?))
     }
 
     fn offsets(&self) -> Option<Offsets> {
@@ -286,15 +277,16 @@ impl Itinerary for ProgramStretches<'_> {
     fn resume(
         &self,
         at: Point,
-        offsets: Offsets,
+        offsets: Option<Offsets>,
+        found: Found,
         wish: &mut dyn FnMut() -> Wish,
     ) -> Result<Rest, Failure> {
-        let change = Resumed { number: self.passed.get(), at, offsets };
+        let change = Resumed { number: self.passed.get(), at, offsets, found };
         let file = self.now.borrow().resumed(change);
         let mut look = RowsLook::new(&file);
         let survey = Survey::new(&file, |row| look.see(row, &mut *wish))?;
         look.finish()?;
-        refuse_blind(&file, &survey)?;
+        reading::refuse_missing(&file, &survey)?;
         let stretches = way(&file, self.kept)?;
         *self.stretches.borrow_mut() = stretches;
         *self.offsets.borrow_mut() = survey.offsets.clone();

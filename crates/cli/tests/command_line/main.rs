@@ -52,6 +52,8 @@ mod pauses;
 #[path = "../support/peak.rs"]
 mod peak;
 mod plots;
+#[cfg(unix)]
+mod probes;
 mod profile;
 mod program_outputs;
 mod programs;

@@ -238,7 +238,10 @@ fn mistakes_are_found_before_anything_moves() {
     assert!(ran.stderr.contains("job.ngc:3"), "{}", ran.stderr);
     folder.write("probe.ngc", "G21 F1000\nG1 X3\nG38.2 Z-1 F100\nM2\n");
     for (command, why) in [
-        ("run probe.ngc --machine machine.toml", "line 3: `run` cannot do this yet: probe"),
+        (
+            "run probe.ngc --machine machine.toml",
+            "line 3: G38 needs a probe, and the machine has none",
+        ),
         ("run job.ngc", "a G-code program needs a machine"),
         ("run job.ngc --machine machine.toml --fit-ns 5", "--fit-ns is not available"),
         ("run none.ngc --machine machine.toml", "none.ngc"),

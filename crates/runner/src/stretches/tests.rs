@@ -1,6 +1,7 @@
 //! Stretches without a board: what each axis takes, in which order, and what a hold changes of it.
 
 use super::*;
+use crate::settling::HALF_STEP;
 use carrystep_files::{Machine, SourceText};
 use carrystep_program::Switch;
 

@@ -217,6 +217,7 @@ fn compare(axes: usize, on_spi: bool, milliseconds: u64) -> [u64; 4] {
                 estop: random.next_u64().is_multiple_of(8),
                 limit_min: (1 << (random.next_u64() % 16)) as u8,
                 limit_max: (1 << (random.next_u64() % 16)) as u8,
+                inputs: [0; 2].map(|_: u8| random.next_u64() as u8),
                 ..Switches::default()
             };
             board.press(switches);

@@ -131,12 +131,8 @@ impl<B: Make> World<B> {
             LimitWiring::Each => (min | max, 0),
             LimitWiring::One => (u8::from(min | max != 0), 0),
         };
-        self.board.press(Switches {
-            estop: self.estop,
-            limit_min,
-            limit_max,
-            ..Switches::default()
-        });
+        let estop = self.estop;
+        self.board.press(Switches { estop, limit_min, limit_max, ..Switches::default() });
     }
 
     fn pass(&mut self) {
