@@ -58,7 +58,7 @@ pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("core.il"), &sample.netlist).expect("a file");
     let mut script = String::new();
-    for (side, change) in [("gold", ""), ("gate", &format!("mutate {}\n", mutant.command))] {
+    for (side, change) in [("gold", ""), ("gate", &made(&mutant.command))] {
         // Writing to a string cannot fail.
         let _ = write!(script, "read_rtlil core.il\n{change}hierarchy -check -top {top}\n");
         let _ = cut.iter().try_for_each(|memory| writeln!(script, "blackbox {memory}"));
@@ -70,6 +70,23 @@ pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
     std::fs::write(folder.path().join("equal.ys"), script).expect("a file");
     yosys(folder.path(), "script equal.ys");
     holds(folder.path(), if top == TOP { LIMIT_OF_ENGINE } else { LIMIT })
+}
+
+/// The commands that make a mutant. A register whose output becomes a constant loses its value at
+/// configuration, because yosys refuses a constant with another one.
+fn made(command: &str) -> String {
+    let option = |name: &str| {
+        let words: Vec<&str> = command.split(' ').collect();
+        words.windows(2).find(|pair| pair[0] == name).map_or("", |pair| pair[1])
+    };
+    let (module, wire) = (option("-module"), option("-wire"));
+    let is_constant = option("-mode").starts_with("const") && option("-port") == "Q";
+    let unset = if is_constant && !wire.is_empty() {
+        format!("setattr -unset init {module}/w:{wire}\n")
+    } else {
+        String::new()
+    };
+    format!("mutate {command}\n{unset}")
 }
 
 /// Makes one system in gates whose single output signals a difference. Undriven wires become
