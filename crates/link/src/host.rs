@@ -159,15 +159,24 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.line
     }
 
-    /// Reads the state and all positions.
+    /// Reads the state and all positions. Positions are read one after the other; if the state tells
+    /// that the axes rest, all of them were read at rest.
     ///
     /// # Errors
     /// [`HostError`] if the connection fails.
     pub fn read_status(&mut self) -> Result<Status, HostError<L::Error>> {
-        for axis in 0..self.axes() {
-            self.register(of_axis(map::POSITION, axis))?;
+        let rests = |answer: &Answer| answer.idle || answer.halted;
+        loop {
+            self.register(of_axis(map::POSITION, 0))?;
+            let rested = rests(&self.status.answer);
+            for axis in 1..self.axes() {
+                self.register(of_axis(map::POSITION, axis))?;
+            }
+            // The axes may have come to rest meanwhile.
+            if rested || self.axes() < 2 || !rests(&self.status.answer) {
+                return Ok(self.status);
+            }
         }
-        Ok(self.status)
     }
 
     /// Reads a register.
