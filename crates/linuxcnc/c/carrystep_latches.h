@@ -1,10 +1,13 @@
 /* When a latch of the board is armed, and which of its records counts: for the probe, and for index
  * pulses. A latch keeps the place of the first edge since it was armed.
  *
- * The probe is shown as closed only together with the record of the edge that closed it. Its latch
- * is armed while the probe is open. An edge behind which the pin is not active any more was noise,
- * and a closed probe without an edge was closed before the latch was armed; two snapshots, 20 ms,
- * decide. An active pin whose level has not been accepted yet (debounce time) is waited for. */
+ * The latch of the probe is armed while the probe is open. The component shows the probe as closed
+ * when it has read the record of the edge that closed it. Two successive snapshots, one about
+ * every 10 ms, decide the other cases:
+ *
+ *     latch has an edge, pin inactive    noise: the latch is armed again
+ *     latch has no edge, probe closed    it was closed before the latch was armed: shown as closed
+ *     pin active, level not accepted     the debounce time is not over: wait */
 #ifndef CARRYSTEP_LATCHES_H
 #define CARRYSTEP_LATCHES_H
 

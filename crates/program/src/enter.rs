@@ -13,9 +13,9 @@ use carrystep_files::{InputError, Machine};
 use carrystep_gcode::{AXES, AXIS_LETTERS, Arc, Canon, Point, Turn};
 use std::path::Path;
 
-/// Whether the place of a block depends on where the program began is found by executing the blocks
-/// before it a second time, from a place that is so far from the first one, mm and degrees. It lies
-/// 10 m higher, so that the highest z of both differs if it depends on the beginning.
+/// The blocks before an entry are executed twice, from two places at which the program may have begun.
+/// They are so far apart, mm and degrees. If the place of the entry differs, it depends on where the
+/// program began. Z differs by 10 m, so that the highest z differs, too, if it depends on that.
 const ELSEWHERE: Point = [1.37, 2.61, 10_003.19, 4.43, 5.87, 7.01];
 
 /// The index of z.

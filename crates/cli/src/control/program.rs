@@ -101,8 +101,8 @@ impl ProgramControl {
         self.waits.is_none()
     }
 
-    /// Notes what is to be done while it waits; `None` if it moves or waits for an input, and false if something else is
-    /// not done yet.
+    /// Notes what another command wants done while the program waits. `None` if the program moves or
+    /// waits for an input; false if what was wanted before is not done yet.
     pub(super) fn pauses(&mut self, text: &str) -> Option<bool> {
         self.waits.as_ref().filter(|_| !self.reads)?;
         let is_free = self.wish.is_none();

@@ -106,9 +106,9 @@ pub trait Itinerary {
         Vec::new()
     }
 
-    /// Plans the rest of a program that waits or has read something from this machine place, in mm
-    /// and degrees, with these offsets if any were set. Then [`Itinerary::begin`] begins it. `wish` is called now and then; a stop ends
-    /// the planning.
+    /// Plans the rest of a program that waits, or that has read something. It begins at this machine
+    /// place, in mm and degrees, with these offsets if any were set. Then [`Itinerary::begin`] begins
+    /// it. `wish` is called now and then; a stop ends the planning.
     ///
     /// # Errors
     /// The rest cannot be executed from there; then nothing has changed.

@@ -106,7 +106,8 @@ fn outputs_and_latches_have_their_nets() {
     assert!(!read(&folder, "out/mill.hal").contains("_latch"), "no latch, no parameter");
     let inputs = "[machine.inputs]\nlatches = [{ edge = \"falling\", source = \"probe\" }, \
         { edge = \"rising\" }, { edge = \"rising\", source = \"probe\" }]";
-    let outputs = "[machine.outputs]\ncount = 5\npwm_divider = 1\nspindle = 2\nflood = 0\nspindle_rpm = 24000";
+    let outputs = "[machine.outputs]\ncount = 5\npwm_divider = 1\n\
+                   spindle = 2\nflood = 0\nspindle_rpm = 24000";
     let text = MILL.replace("[machine.inputs]", &format!("{outputs}\n{inputs}"));
     let (folder, ran) = write(&text, "");
     assert_eq!(ran.status, 0, "{}", ran.stderr);

@@ -1,9 +1,10 @@
-//! The rows come back to the plan's own.
+//! Aligns the rows with those of the plan where the rate comes back to 1.
 //!
-//! Where the plan uses a limit to the end, only its own rows are lawful: samples between the ends of
-//! planned rows would smear its changes of jerk over two rows, and overshoot. So where the rate is 1
-//! behind another one, rows begin where planned ones do. The time before is made a whole number of
-//! rows: the rate there is made a little smaller, most in the middle.
+//! Where the plan uses the whole of a limit, only its own rows keep that limit. Rows that begin
+//! between planned ones spread each change of jerk over two rows, and their jerk reaches up to 1.55
+//! times the limit. So where the rate has come back to 1, each row must begin where a planned one
+//! does. For that the stretch before has to last a whole number of rows: its rate is made a little
+//! smaller, most in the middle of the stretch.
 
 use super::place::Place;
 use super::rates::Rates;

@@ -26,9 +26,8 @@ pub struct Wishes {
 impl Configuration {
     /// The configuration of a machine, and what its user should know.
     ///
-    /// A joint without a home switch at a general input homes where it is. Where the axis has a `home` table, the place gets the coordinate
-    /// at which `carrystep home` leaves the axis, so that LinuxCNC agrees with a machine that was
-    /// homed by it.
+    /// A joint without a home switch at a general input homes where it is. If its axis has a `home`
+    /// table, LinuxCNC gives this place the coordinate at which `carrystep home` leaves the axis.
     ///
     /// # Errors
     /// [`MachineRefused`] if LinuxCNC or the component cannot have this machine.

@@ -19,7 +19,10 @@ pub enum MachineRefused {
         axis: String,
     },
     /// Two axes have one letter.
-    #[error("two axes have the letter {letter}: LinuxCNC does not tell {letter} from {small}", small = .letter.to_ascii_lowercase())]
+    #[error(
+        "two axes have the letter {letter}: LinuxCNC does not tell {letter} from {small}",
+        small = .letter.to_ascii_lowercase()
+    )]
     Twice {
         /// The letter.
         letter: char,
@@ -76,7 +79,8 @@ pub enum MachineRefused {
     },
     /// The queues do not hold the horizon.
     #[error(
-        "the board's queues do not hold the segments of this horizon: at most {most_ms} ms with this queue_depth"
+        "the board's queues do not hold the segments of this horizon: at most {most_ms} ms with \
+         this queue_depth"
     )]
     LongHorizon {
         /// The longest one.
