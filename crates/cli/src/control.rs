@@ -176,6 +176,7 @@ impl Control {
                     let found = FoundBoard {
                         held_by: Some(holder.clone()),
                         waits: program.as_ref().and_then(|program| program.waits.clone()),
+                        waits_for_input: program.as_ref().is_some_and(|program| program.reads),
                         block: program.as_ref().and_then(|program| program.block),
                         overrides: program.as_ref().map(|program| program.overrides().into()),
                         ..FoundBoard::new(status, known, None)

@@ -64,9 +64,13 @@ pub struct FoundBoard {
     pub remedy: Option<String>,
     /// The command that holds the port, if this report comes from it and not from the board.
     pub held_by: Option<Holder>,
-    /// What the program of that command waits for, at rest; `carrystep resume` lets it go on.
+    /// What the program of that command waits for, at rest; `carrystep resume` lets it go on, unless
+    /// it waits for an input.
     #[serde(default)]
     pub waits: Option<String>,
+    /// Whether it waits for an input of the board.
+    #[serde(default)]
+    pub waits_for_input: bool,
     /// The block in which the program of that command is.
     #[serde(default)]
     pub block: Option<BlockFound>,
@@ -201,6 +205,7 @@ impl FoundBoard {
             waits: None,
             block: None,
             overrides: None,
+            waits_for_input: false,
             stopped: None,
             axes: axes.iter().enumerate().map(axis).collect(),
         }
@@ -221,10 +226,18 @@ impl fmt::Display for FoundBoard {
             writeln!(f, "{holder} drives it")?;
         }
         if let Some(waits) = &self.waits {
-            writeln!(f, "it waits: {waits}; `carrystep resume` lets it go on")?;
+            let until = if self.waits_for_input {
+                "its input lets it go on"
+            } else {
+                "`carrystep resume` lets it go on"
+            };
+            writeln!(f, "it waits: {waits}; {until}")?;
         }
         if let Some(block) = &self.block {
             writeln!(f, "it is in {block}")?;
+        }
+        if let Some(overrides) = self.overrides.filter(|overrides| !overrides.are_none()) {
+            writeln!(f, "overrides: {overrides}")?;
         }
         let culprits: Vec<&str> =
             self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();

@@ -39,7 +39,7 @@ pub struct ProgramControl {
     holds: bool,
     resumed: bool,
     /// Whether it waits for an input, and not for somebody.
-    reads: bool,
+    pub(super) reads: bool,
     /// The number of signals before the present motion.
     before: u32,
     /// The number of signals when the present rest began.

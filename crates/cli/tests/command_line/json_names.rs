@@ -41,7 +41,7 @@ const RUN: &str = "passed core level clocks run_s faults positions files";
 
 const STATUS: &str =
     "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
-    meaning remedy held_by stopped ticks waits block moving overrides
+    meaning remedy held_by stopped ticks waits waits_for_input block moving overrides
     axes axes[].axis axes[].position axes[].place axes[].machine axes[].discarded axes[].seeking
     axes[].culprit";
 

@@ -43,6 +43,8 @@ fn program_runs_at_its_overrides_and_ends_where_it_should() {
         assert!(ran.stdout.contains(&told), "{}", ran.stdout);
     }
     assert_eq!(status(&folder, &board)["overrides"]["feed"], 30);
+    let told = folder.run(&format!("status --port {}", board.port)).stdout;
+    assert!(told.contains("overrides: feed 30 %, rapid 100 %, spindle 100 %"), "{told}");
     passed(&hold(&folder, &board));
     waits(&folder, &board, &mut child);
     // In a hold, too, and twice.

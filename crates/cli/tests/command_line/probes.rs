@@ -163,6 +163,9 @@ fn input_that_a_program_waits_for_lets_it_go_on() {
     board.press("input 1 1");
     let mut child = begins(&folder, &board);
     assert_eq!(waits(&folder, &board, &mut child), "input in line 2 (M66)");
+    let told = folder.run(&format!("status --port {}", board.port)).stdout;
+    let wanted = "it waits: input in line 2 (M66); its input lets it go on";
+    assert!(told.contains(wanted), "{told}");
     // Nobody but the input lets it go on.
     assert_eq!(resume(&folder, &board).status, 2);
     board.press("input 0 1");
