@@ -4,7 +4,7 @@
 
 use crate::edge::PinSink;
 use crate::vcd_own::OwnCapture;
-use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
+use crate::wave_format::{Format, MILLION, SCOPE, SIGNALS, VERSION};
 use crate::waves::{WaveWriter, Waves};
 use fst_writer::{
     FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType,
@@ -144,7 +144,8 @@ impl Format for FstFormat<'_> {
         self.body()?.signal_change(id, text).map_err(told)
     }
 
-    fn real(&mut self, id: FstSignalId, value: f64) -> io::Result<()> {
+    fn real(&mut self, id: FstSignalId, millionths: f64) -> io::Result<()> {
+        let value = millionths / MILLION;
         self.body()?.signal_change(id, &value.to_le_bytes()).map_err(told)
     }
 

@@ -5,15 +5,16 @@
 //! because the library formats them bit by bit and character by character.
 
 use crate::edge::PinSink;
-use crate::ideal::rounded;
 use crate::vcd_own::{self, OwnCapture};
-use crate::wave_format::{Format, SCOPE, SIGNALS, VERSION};
+use crate::wave_format::{Format, MILLION, SCOPE, SIGNALS, VERSION};
 use crate::waves::{WaveWriter, Waves};
 use std::io::{self, BufWriter, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType};
 
-/// Bytes that are collected before they are written.
+/// Bytes of lines that are collected before they are written.
 const BUFFER: usize = 1 << 16;
+/// The longest line: a vector, which has 64 digits.
+const LINE: usize = 128;
 
 /// Returns a writer of a VCD, which writes the header with the first change.
 pub fn vcd_writer<'a>(out: impl Write + 'a, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
@@ -22,15 +23,16 @@ pub fn vcd_writer<'a>(out: impl Write + 'a, waves: Waves<'a>) -> Box<dyn PinSink
 
 /// The same without a parameter, so that all of it is compiled with this crate.
 fn boxed<'a>(out: Box<dyn Write + 'a>, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
-    let out = vcd::Writer::new(BufWriter::with_capacity(BUFFER, out));
-    Box::new(WaveWriter::new(VcdFormat { out, line: Vec::new() }, waves))
+    let out = vcd::Writer::new(BufWriter::new(out));
+    let lines = Vec::with_capacity(BUFFER + LINE);
+    Box::new(WaveWriter::new(VcdFormat { out, lines }, waves))
 }
 
 /// A VCD file that is being written.
 struct VcdFormat<'a> {
     out: vcd::Writer<BufWriter<Box<dyn Write + 'a>>>,
-    /// The line that is being put together.
-    line: Vec<u8>,
+    /// Lines of values that have not been given to `out`.
+    lines: Vec<u8>,
 }
 
 /// What stands behind a value: the identifier of its signal, and the end of the line.
@@ -38,6 +40,16 @@ struct VcdFormat<'a> {
 struct Tail {
     text: [u8; 8],
     length: usize,
+}
+
+/// The end of a line without a signal.
+const NO_SIGNAL: Tail = Tail { text: *b"\n       ", length: 1 };
+
+/// Adds the first `length` of these bytes. A copy of constant length takes a fraction of the time.
+fn add<const N: usize>(lines: &mut Vec<u8>, text: &[u8; N], length: usize) {
+    let end = lines.len() + length;
+    lines.extend_from_slice(text);
+    lines.truncate(end);
 }
 
 impl Tail {
@@ -48,17 +60,24 @@ impl Tail {
         place.copy_from_slice(line.as_bytes());
         Ok(Self { text, length: line.len() })
     }
-
-    fn bytes(&self) -> &[u8] {
-        &self.text[..self.length]
-    }
 }
 
 impl VcdFormat<'_> {
-    /// Ends the line and writes it.
-    fn finish(&mut self, tail: &[u8]) -> io::Result<()> {
-        self.line.extend_from_slice(tail);
-        self.out.writer().write_all(&self.line)
+    /// Ends the line.
+    fn finish(&mut self, tail: &Tail) -> io::Result<()> {
+        add(&mut self.lines, &tail.text, tail.length);
+        if self.lines.len() < BUFFER {
+            return Ok(());
+        }
+        self.flush()
+    }
+
+    /// Gives all lines to `out`.
+    #[cold]
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.writer().write_all(&self.lines)?;
+        self.lines.clear();
+        Ok(())
     }
 }
 
@@ -106,45 +125,47 @@ impl Format for VcdFormat<'_> {
         values: impl FnOnce(&mut Self) -> io::Result<()>,
     ) -> io::Result<()> {
         self.time(ps)?;
+        self.flush()?;
         self.out.begin(SimulationCommand::Dumpvars)?;
         values(self)?;
+        self.flush()?;
         self.out.end()
     }
 
     fn time(&mut self, ps: u64) -> io::Result<()> {
-        self.line.clear();
-        self.line.push(b'#');
-        self.line.extend_from_slice(itoa::Buffer::new().format(ps).as_bytes());
-        self.finish(b"\n")
+        self.lines.push(b'#');
+        self.lines.extend_from_slice(itoa::Buffer::new().format(ps).as_bytes());
+        self.finish(&NO_SIGNAL)
     }
 
     fn bit(&mut self, id: Tail, level: bool) -> io::Result<()> {
-        self.line.clear();
-        self.line.push(b'0' + u8::from(level));
-        self.finish(id.bytes())
+        self.lines.push(b'0' + u8::from(level));
+        self.finish(&id)
     }
 
     /// Writes the value without its leading zeros, which every reader restores.
     fn vector(&mut self, id: Tail, value: u64, _: u32) -> io::Result<()> {
-        self.line.clear();
-        self.line.push(b'b');
-        let shown = (u64::BITS - value.leading_zeros()).max(1) as usize;
-        let digits = value.to_be_bytes().map(|byte| BINARY[usize::from(byte)]);
-        let digits = digits.as_flattened();
-        self.line.extend_from_slice(&digits[digits.len() - shown..]);
-        self.line.push(b' ');
-        self.finish(id.bytes())
+        self.lines.push(b'b');
+        // 0 has one digit.
+        let hidden = value.leading_zeros().min(u64::BITS - 1);
+        let mut digits = [0; u64::BITS as usize];
+        for (digits, byte) in digits.chunks_exact_mut(8).zip((value << hidden).to_be_bytes()) {
+            digits.copy_from_slice(&BINARY[usize::from(byte)]);
+        }
+        add(&mut self.lines, &digits, (u64::BITS - hidden) as usize);
+        self.lines.push(b' ');
+        self.finish(&id)
     }
 
-    fn real(&mut self, id: Tail, value: f64) -> io::Result<()> {
-        self.line.clear();
-        self.line.push(b'r');
-        decimal(&mut self.line, value)?;
-        self.line.push(b' ');
-        self.finish(id.bytes())
+    fn real(&mut self, id: Tail, millionths: f64) -> io::Result<()> {
+        self.lines.push(b'r');
+        decimal(&mut self.lines, millionths)?;
+        self.lines.push(b' ');
+        self.finish(&id)
     }
 
     fn end(&mut self) -> io::Result<()> {
+        self.flush()?;
         self.out.comment(vcd_own::END)?;
         self.out.flush()
     }
@@ -165,31 +186,27 @@ const BINARY: [[u8; 8]; 256] = {
     all
 };
 
-/// Writes a number with at most six decimals as the standard library does: the shortest text that
-/// reads as this float. Up to 10^9 this is the whole number of millionths without trailing zeros.
-fn decimal(line: &mut Vec<u8>, value: f64) -> io::Result<()> {
-    const MILLION: u64 = 1_000_000;
-    let millionths = rounded(value.abs() * MILLION as f64);
-    let is_short = millionths < 1e15 && millionths / MILLION as f64 == value.abs();
-    if !is_short {
-        return write!(line, "{value}");
+/// Writes a whole number of millionths as the standard library writes the quotient: the shortest text
+/// that reads as this float. Up to 10^9 this is the number without trailing zeros.
+fn decimal(line: &mut Vec<u8>, millionths: f64) -> io::Result<()> {
+    const ONE: u64 = MILLION as u64;
+    if millionths.abs() >= 1e15 {
+        return write!(line, "{}", millionths / MILLION);
     }
-    if value.is_sign_negative() {
+    if millionths < 0.0 {
         line.push(b'-');
     }
-    let millionths = millionths as u64;
-    let (whole, mut rest) = (millionths / MILLION, millionths % MILLION);
-    line.extend_from_slice(itoa::Buffer::new().format(whole).as_bytes());
-    if rest == 0 {
-        return Ok(());
+    let (whole, rest) = (millionths.abs() as u64 / ONE, millionths.abs() as u64 % ONE);
+    let mut digits = itoa::Buffer::new();
+    line.extend_from_slice(digits.format(whole).as_bytes());
+    // The digit 1 before the six decimals keeps their leading zeros; the point replaces it.
+    if let Some(decimals) = digits.format(ONE + rest).as_bytes().first_chunk::<7>()
+        && let Some(last) = decimals[1..].iter().rposition(|&digit| digit != b'0')
+    {
+        let point = line.len();
+        add(line, decimals, last + 2);
+        line[point] = b'.';
     }
-    let mut digits = [b'.'; 7];
-    for digit in digits[1..].iter_mut().rev() {
-        *digit = b'0' + (rest % 10) as u8;
-        rest /= 10;
-    }
-    let shown = digits.iter().rposition(|&digit| digit != b'0').unwrap_or(0);
-    line.extend_from_slice(&digits[..=shown]);
     Ok(())
 }
 
@@ -205,10 +222,14 @@ mod tests {
             cut in 0_u32..16,
             any in any::<f64>(),
         ) {
-            for value in [(whole / 10_i64.pow(cut)) as f64 / 1e6, any, whole as f64] {
+            let any = any.round() + 0.0;
+            for millionths in [(whole / 10_i64.pow(cut)) as f64, any] {
                 let mut line = Vec::new();
-                decimal(&mut line, value).unwrap();
-                prop_assert_eq!(String::from_utf8(line).unwrap(), value.to_string());
+                decimal(&mut line, millionths).unwrap();
+                prop_assert_eq!(
+                    String::from_utf8(line).unwrap(),
+                    (millionths / MILLION).to_string()
+                );
             }
         }
     }

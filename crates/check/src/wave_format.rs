@@ -22,6 +22,9 @@ pub(crate) const SCOPE: &str = "carrystep";
 /// The program that wrote the file, with its version.
 pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
 
+/// Millionths in 1.
+pub(crate) const MILLION: f64 = 1e6;
+
 /// A file format of waveforms, with times in ps.
 pub(crate) trait Format {
     /// The identifier of a signal.
@@ -67,11 +70,11 @@ pub(crate) trait Format {
     /// The error of the system if the file cannot be written.
     fn vector(&mut self, id: Self::Id, value: u64, bits: u32) -> io::Result<()>;
 
-    /// Writes a real number.
+    /// Writes a real number in millionths: finite, whole and not minus zero.
     ///
     /// # Errors
     /// The error of the system if the file cannot be written.
-    fn real(&mut self, id: Self::Id, value: f64) -> io::Result<()>;
+    fn real(&mut self, id: Self::Id, millionths: f64) -> io::Result<()>;
 
     /// Completes the file.
     ///

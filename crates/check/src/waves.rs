@@ -11,7 +11,7 @@ use crate::ideal::{rounded, tick_ps};
 use crate::speed_register::SpeedRegister;
 use crate::vcd_own::OwnCapture;
 use crate::view::{Place, View};
-use crate::wave_format::{Format, SIGNALS};
+use crate::wave_format::{Format, MILLION, SIGNALS};
 use carrystep_core::{Segment, StartPhase, Timebase};
 use carrystep_profile::{Timeline, Walk};
 use std::io;
@@ -57,6 +57,8 @@ pub(crate) struct WaveWriter<'a, F: Format> {
     ids: Vec<[F::Id; SIGNALS.len()]>,
     /// Index of the next sample of the regular grid.
     grid: u64,
+    /// No sample is before this time, ps.
+    next: u64,
     /// The last time in the file, ps; `None` until the header is written.
     time: Option<u64>,
 }
@@ -94,6 +96,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
             view,
             ids: Vec::new(),
             grid: 0,
+            next: 0,
             time: None,
         }
     }
@@ -138,7 +141,10 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         if self.time.is_none() {
             self.header()?;
         }
-        while let Some(sample) = self.next_sample().filter(|&at| at <= ps) {
+        while self.next <= ps {
+            let next = self.next_sample();
+            self.next = next.unwrap_or(u64::MAX);
+            let Some(sample) = next.filter(|&at| at <= ps) else { break };
             self.stamp(sample)?;
             let on_grid = self.grid_time() == Some(sample);
             self.grid += u64::from(on_grid);
@@ -278,10 +284,9 @@ fn vector<F: Format>(out: &mut F, id: F::Id, value: i64, bits: u32) -> io::Resul
 /// Writes a real with six decimals. This keeps files small; VCD readers accept at most 32
 /// characters.
 fn real<F: Format>(out: &mut F, id: F::Id, value: f64) -> io::Result<()> {
-    const DIGITS: f64 = 1e6;
-    let short = rounded(value * DIGITS) / DIGITS;
+    let millionths = rounded(value * MILLION);
     // Minus zero and values that are not finite are written as 0.
-    out.real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
+    out.real(id, if millionths.is_finite() && millionths != 0.0 { millionths } else { 0.0 })
 }
 
 impl<F: Format> PinSink for WaveWriter<'_, F> {
