@@ -22,10 +22,22 @@ const HALVINGS: u32 = 14;
 /// Length of the parts near a corner, as a part of the tolerance.
 const FINE: f64 = 0.2;
 
+/// How far back on a piece the curve may seem to go, in tolerances. One that never goes back seems
+/// to do so by at most two.
+const BACK: f64 = 3.0;
+
+/// A piece on which the curve may be.
+#[derive(Debug, Clone, Copy)]
+struct On {
+    number: u64,
+    /// The farthest place of this piece that was nearest to the curve, as a length along it.
+    farthest: f64,
+}
+
 /// The pieces on which the curve may be at one place, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Cover {
-    on: Vec<u64>,
+    on: Vec<On>,
     /// The nearest place.
     place: Place,
 }
@@ -41,18 +53,18 @@ pub(crate) struct Miss {
 impl Cover {
     /// The curve is at a place of the path.
     pub fn at(place: Place) -> Self {
-        Self { on: vec![place.piece], place }
+        Self { on: vec![On { number: place.piece, farthest: 0.0 }], place }
     }
 
     /// The first piece on which the curve may be.
     pub fn oldest(&self) -> u64 {
-        self.on.first().map_or(self.place.piece, |on| self.place.piece.min(*on))
+        self.on.first().map_or(self.place.piece, |on| self.place.piece.min(on.number))
     }
 
     /// A place of the last piece on which the curve, at rest at a point, may be; where that piece
     /// ends there, the start of the next one.
     pub fn leaving<const N: usize>(&self, point: &Point<N>, path: &Path<N>) -> Place {
-        let number = self.on.last().map_or(self.place.piece, |on| *on);
+        let number = self.on.last().map_or(self.place.piece, |on| on.number);
         let Some(piece) = path.piece(number) else { return self.place };
         let along = self.near(point, number, piece, path).0;
         if piece.length - along < NOTHING && number + 1 < path.end() {
@@ -72,7 +84,7 @@ impl Cover {
     ) -> Option<Miss> {
         let result = self.part(cubic, end, path, (0.0, 1.0), HALVINGS);
         if result.is_some() {
-            self.on = vec![end.piece];
+            self.on = vec![On { number: end.piece, farthest: 0.0 }];
         }
         self.place = end;
         result
@@ -87,29 +99,28 @@ impl Cover {
         left: u32,
     ) -> Option<Miss> {
         if let [only] = self.on[..]
-            && self.covers(cubic, only, path)
+            && self.covers(cubic, only.number, path)
             && !self.near_corner(cubic, path)
         {
             // By far the most frequent case.
-            self.enter(&cubic[3], path);
             self.place = end;
-            return None;
+            return self.enter(&cubic[3], to, path);
         }
-        let covers = |on: &u64| self.covers(cubic, *on, path);
-        let kept: Vec<u64> = self.on.iter().copied().filter(covers).collect();
+        let covers = |on: &On| self.covers(cubic, on.number, path);
+        let kept: Vec<On> = self.on.iter().copied().filter(covers).collect();
         let corner = self.near_corner(cubic, path);
         let chain = corner && self.chain(cubic, end, path);
         if chain || (!kept.is_empty() && !corner) {
             self.on = kept;
-            if chain && self.on.last().is_none_or(|last| *last < end.piece) {
-                self.on.push(end.piece);
+            if chain && self.on.last().is_none_or(|last| last.number < end.piece) {
+                self.on.push(On { number: end.piece, farthest: 0.0 });
             }
-            self.enter(&cubic[3], path);
+            let miss = self.enter(&cubic[3], to, path);
             self.place = end;
-            return None;
+            return miss;
         }
         if left == 0 {
-            return Some(Miss { phase: from, piece: *self.on.last()? });
+            return Some(Miss { phase: from, piece: self.on.last()?.number });
         }
         let [first, second] = halves(cubic);
         let middle = path.nearest(&first[3], self.place, end).map_or(end, |near| near.place);
@@ -152,11 +163,11 @@ impl Cover {
 
     /// Whether the curve may go on to another piece near a cubic that is too long to tell where.
     fn near_corner<const N: usize>(&self, cubic: &[Point<N>; 4], path: &Path<N>) -> bool {
-        let Some(on) = self.on.last().and_then(|&on| path.piece(on)) else { return false };
+        let Some(on) = self.on.last().and_then(|on| path.piece(on.number)) else { return false };
         let size = cubic[1..].iter().map(|b| relative(&from_to(&cubic[0], b), on, path));
         let size = size.fold(0.0, f64::max);
         size > FINE
-            && self.on.iter().any(|&number| {
+            && self.on.iter().any(|&On { number, .. }| {
                 number + 1 < path.end()
                     && path.piece(number).is_some_and(|piece| {
                         let off = relative(&from_to(&piece.end, &cubic[0]), piece, path);
@@ -169,7 +180,7 @@ impl Cover {
     /// end, is near the cubic as a whole.
     fn chain<const N: usize>(&self, cubic: &[Point<N>; 4], end: Place, path: &Path<N>) -> bool {
         let start = self.place;
-        if !self.on.contains(&start.piece) {
+        if !self.on.iter().any(|on| on.number == start.piece) {
             return false;
         }
         let (Some(first), Some(last)) = (path.at(start), path.at(end)) else { return false };
@@ -207,30 +218,43 @@ impl Cover {
         true
     }
 
-    /// The curve is at a point: from the pieces on which it is, it may go on to later ones.
-    fn enter<const N: usize>(&mut self, point: &Point<N>, path: &Path<N>) {
-        let Some(&first) = self.on.first() else { return };
-        let last = self.on[self.on.len() - 1];
+    /// The curve is at a point, `phase` of the cubic: from the pieces on which it is, it may go on to
+    /// later ones. Where it comes back, it has left the piece on which it came.
+    fn enter<const N: usize>(
+        &mut self,
+        point: &Point<N>,
+        phase: f64,
+        path: &Path<N>,
+    ) -> Option<Miss> {
+        let (first, last) = (self.on.first()?.number, self.on.last()?.number);
         let leaves = |piece: &Piece<N>| {
             relative(&from_to(&piece.end, point), piece, path) <= MOST_REACH * FULL
         };
-        if first == last && path.piece(first).is_some_and(|piece| !leaves(piece)) {
-            return;
-        }
         let (mut bridge, mut now) = (false, Vec::with_capacity(self.on.len() + 1));
+        let mut before = self.on.iter().peekable();
         for number in first..path.end() {
             if number > last && !bridge {
                 break;
             }
-            let Some(piece) = path.piece(number) else { break };
-            let was = self.on.contains(&number);
-            if was || (bridge && self.near(point, number, piece, path).1 <= FULL) {
-                now.push(number);
-                bridge = true;
-            }
-            bridge = bridge && leaves(piece);
+            let piece = path.piece(number)?;
+            let was = before.next_if(|on| on.number == number);
+            let (along, off) = self.near(point, number, piece, path);
+            let is = match was {
+                Some(was) if along < was.farthest => {
+                    let back = from_to(&piece.at(along), &piece.at(was.farthest));
+                    (relative(&back, piece, path) <= BACK).then_some(*was)
+                }
+                None if !bridge || off > FULL => None,
+                _ => Some(On { number, farthest: along }),
+            };
+            now.extend(is);
+            bridge = (bridge || is.is_some()) && leaves(piece);
+        }
+        if now.is_empty() {
+            return Some(Miss { phase, piece: last });
         }
         self.on = now;
+        None
     }
 }
 
@@ -262,4 +286,52 @@ pub(crate) fn bezier<const N: usize>(c: &[Point<N>; 4]) -> [Point<N>; 4] {
             }
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::Tolerance;
+
+    /// Length of a stroke, in tolerances.
+    const STROKE: f64 = 10.0;
+    /// Number of strokes.
+    const STROKES: u64 = 40;
+    /// Cubics in a stroke.
+    const PARTS: u64 = 20;
+
+    /// Follows the path to and fro, as far as `reach` of a stroke; the greatest number of pieces on
+    /// which the curve may be.
+    fn followed(path: &Path<1>, reach: impl Fn(u64) -> f64) -> Result<usize, Miss> {
+        let mut cover = Cover::at(Place::default());
+        let (mut most, mut at) = (0, 0.0);
+        for number in 0..STROKES {
+            for part in 1..=PARTS {
+                let along = part as f64 / PARTS as f64 * STROKE;
+                let to = if number % 2 == 0 { along } else { STROKE - along };
+                let to = to.min(reach(number) * STROKE);
+                let cubic = std::array::from_fn(|k| [at + k as f64 / 3.0 * (to - at)]);
+                at = to;
+                cover.follow(&cubic, Place { piece: number, along }, path).map_or(Ok(()), Err)?;
+                most = most.max(cover.on.len());
+            }
+            assert!(cover.oldest() + 1 >= number, "{:?}", (number, &cover));
+        }
+        Ok(most)
+    }
+
+    #[test]
+    fn curve_that_comes_back_has_left_the_piece_on_which_it_came() {
+        let mut path = Path::new(1);
+        let tolerance = Tolerance { linear: 1.0, rotary: 1.0 };
+        for number in 0..STROKES {
+            let [from, to] = if number % 2 == 0 { [0.0, STROKE] } else { [STROKE, 0.0] };
+            path.push(Piece::new([from], [to], None, 1.0, tolerance, number, 1));
+        }
+        let most = followed(&path, |_| 1.0);
+        assert!(most.as_ref().is_ok_and(|most| *most <= 3), "{most:?}");
+        assert!(followed(&path, |_| 0.95).is_ok());
+        // It turns long before the corner.
+        assert!(followed(&path, |number| if number < 20 { 1.0 } else { 0.5 }).is_err());
+    }
 }

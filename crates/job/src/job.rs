@@ -1,6 +1,7 @@
 //! A job for a fixed number of axes: checks items, cuts them into pieces, and passes the pieces
 //! through the stages to rows.
 
+use crate::confined::Confined;
 use crate::element::{Arc, Element, Item};
 use crate::emitted::{Emitted, Passed};
 use crate::error::JobError;
@@ -68,6 +69,7 @@ pub(crate) struct Job<const N: usize> {
     pending: Option<Element>,
     /// Marks behind it.
     pending_marks: Vec<u64>,
+    confined: Confined<N>,
     /// Where the stored path ends, and where the program says that it ends.
     at: Point<N>,
     programmed: Point<N>,
@@ -122,6 +124,7 @@ impl<const N: usize> Job<N> {
             rhythm,
             tick_seconds,
             pending: None,
+            confined: Confined::new(linear, start),
             pending_marks: Vec::new(),
             at,
             programmed: start,
@@ -145,7 +148,12 @@ impl<const N: usize> Jobs for Job<N> {
                     None => self.programmed,
                 };
                 refuse(element, &from, &self.targets, self.linear)?;
-                self.flush(None)?;
+                let to = coordinates(&element.to, element.line)?;
+                if self.confined.rests_before(element, &from, &to) {
+                    self.land()?;
+                } else {
+                    self.flush(None)?;
+                }
                 self.pending = Some(element.clone());
             }
             Item::Rest { dwell, line } => {
@@ -234,6 +242,7 @@ impl<const N: usize> Job<N> {
             None => (self.at, self.line),
         };
         let end = self.targets.letters(&self.targets.steps(&to, line)?);
+        self.confined = Confined::new(self.linear, to);
         self.flush(Some(end))?;
         self.work.push_back(Work::Land);
         Ok(())

@@ -20,6 +20,7 @@
 
 mod attempt;
 mod banded;
+mod confined;
 mod cover;
 mod element;
 mod emitted;
