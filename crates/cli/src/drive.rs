@@ -11,7 +11,7 @@ use crate::work;
 use carrystep_core::engine::Cause;
 use carrystep_link::{Ended, HostError, Status};
 use carrystep_program::ProgramFile;
-use course::{Course, Ways};
+use course::Course;
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
 pub use moves::{Moves, OffsetAtEnd};
@@ -21,6 +21,7 @@ pub use probing::{ProbeMove, Probed, probe};
 pub use program::PlannedProgram;
 use std::time::Instant;
 use wait::Keys;
+use ways::Ways;
 
 mod course;
 mod itinerary;
@@ -35,6 +36,7 @@ mod reading;
 mod settle;
 mod touch;
 mod wait;
+mod ways;
 
 /// Executes a plan and returns the report. An axis moves further toward a limit that it has met
 /// only if `into_limit` is set.
@@ -66,8 +68,11 @@ pub fn drive(
     let start = *board.status();
     let (mut ways, seconds) = (Ways::default(), plan.seconds);
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
-    // If the file cannot be written, a command that is killed leaves one that does not match.
-    let _ = memory.drives(&mut board);
+    let drives = memory.drives(&mut board);
+    if let (Err(error), true, None) = (&drives, itinerary.keeps(), itinerary.program()) {
+        return Err(memory::not_kept(error));
+    }
+    // Otherwise, a command that is killed leaves a file that does not match.
     if plan.program.is_some() {
         control.runs_program(plan.machine.output_uses.spindle_rpm.is_some());
     }

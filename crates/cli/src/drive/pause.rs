@@ -6,6 +6,7 @@ use super::moves::Moves;
 use super::place::{named_point, point_at};
 use super::settle::{Parts, settling_ticks};
 use super::touch::{Touched, go, is_closed, touch};
+use super::ways::Ways;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
@@ -22,6 +23,7 @@ use carrystep_program::{Found, Offsets, Point, ProgramFile};
 pub(super) struct Pause<'a> {
     itinerary: &'a dyn Itinerary,
     memory: &'a mut BoardMemory,
+    ways: &'a mut Ways,
     axes: &'a [String],
     /// Machine place of the registers' zero, steps.
     zero: &'a [i64],
@@ -60,13 +62,14 @@ impl<'a> Pause<'a> {
     /// registers' zero in steps.
     pub fn new(
         itinerary: &'a dyn Itinerary,
-        memory: &'a mut BoardMemory,
+        (memory, ways): (&'a mut BoardMemory, &'a mut Ways),
         (axes, zero): (&'a [String], &'a [i64]),
         offsets: Option<Offsets>,
     ) -> Self {
         Self {
             itinerary,
             memory,
+            ways,
             axes,
             zero,
             offsets,
@@ -160,7 +163,7 @@ impl<'a> Pause<'a> {
                 self.changed = true;
                 let way = planned.itinerary();
                 way.begin();
-                stream(board, control, way.source(), "jog")?;
+                self.stream(board, control, way.source(), "jog")?;
                 let Some(then) = then else { return Ok(()) };
                 let at = self.place(file, board.status());
                 self.set(board, work::set(&offsets, at, &then)?)
@@ -205,7 +208,9 @@ impl<'a> Pause<'a> {
         self.changed = true;
         let began = board.status().positions[number];
         let moves = (&planned, !wanted.away);
-        let touched = match touch(board, machine, moves, &mut |status| wish(control, status))? {
+        let ways = &mut *self.ways;
+        let touched = match touch(board, machine, moves, &mut |status| wish(control, ways, status))?
+        {
             Touched::At(steps) => steps,
             Touched::Missed => return Err(Refused::Missed(wanted.missed())),
             Touched::Stopped => return Err(Refused::Stopped("probe move")),
@@ -220,7 +225,7 @@ impl<'a> Pause<'a> {
         let back = Moves::unwatched(back.file(machine)?.into())?;
         let way = back.itinerary();
         way.begin();
-        stream(board, control, way.source(), "way back from the touched place")
+        self.stream(board, control, way.source(), "way back from the touched place")
     }
 
     fn set(&mut self, board: &mut ConnectedBoard, offsets: Offsets) -> Result<(), Refused> {
@@ -241,10 +246,26 @@ impl<'a> Pause<'a> {
             && let Some(file) = self.itinerary.program()
         {
             let parts = self.itinerary.settling(settling_ticks(file.machine()));
-            stream(board, control, Box::new(Parts::new(parts)), "jog")?;
+            self.stream(board, control, Box::new(Parts::new(parts)), "jog")?;
             self.settled = true;
         }
         Ok(())
+    }
+
+    /// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then the
+    /// program is ended.
+    fn stream<'s>(
+        &mut self,
+        board: &mut ConnectedBoard,
+        control: &mut Control,
+        source: Box<dyn SegmentSource + 's>,
+        what: &'static str,
+    ) -> Result<(), Refused> {
+        let ways = &mut *self.ways;
+        match go(board, source, &mut |status| wish(control, ways, status))? {
+            Ended::Stopped => Err(Refused::Stopped(what)),
+            Ended::Done | Ended::SeekEnded => Ok(()),
+        }
     }
 
     /// The machine place of the board, mm and degrees.
@@ -262,22 +283,9 @@ impl<'a> Pause<'a> {
     }
 }
 
-/// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then the
-/// program is ended.
-fn stream<'s>(
-    board: &mut ConnectedBoard,
-    control: &mut Control,
-    source: Box<dyn SegmentSource + 's>,
-    what: &'static str,
-) -> Result<(), Refused> {
-    match go(board, source, &mut |status| wish(control, status))? {
-        Ended::Stopped => Err(Refused::Stopped(what)),
-        Ended::Done | Ended::SeekEnded => Ok(()),
-    }
-}
-
-/// What the user wants of a move in a pause.
-fn wish(control: &mut Control, status: &Status) -> Wish {
+/// What the user wants of a move in a pause, which has this state now.
+fn wish(control: &mut Control, ways: &mut Ways, status: &Status) -> Wish {
+    ways.see(status);
     let ends = control.program().is_some_and(|program| program.ends());
     if ends { Wish::Stop } else { control.wish(status) }
 }

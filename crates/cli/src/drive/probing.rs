@@ -198,8 +198,11 @@ impl Session<'_> {
         if self.board.enable_while(|progress| watch(progress.status))? == Ended::Stopped {
             return Err(Halt::Stopped);
         }
-        // If the file cannot be written, a command that is killed leaves one that does not match.
-        let _ = self.memory.drives(self.board);
+        // Otherwise, a command that is killed leaves a file that does not match.
+        let drives = self.memory.drives(self.board);
+        if wish.target.is_some() {
+            drives.map_err(|error| memory::not_kept(&error))?;
+        }
         let began = self.board.status().positions[number];
         let steps = match touch(self.board, machine, (planned, !wish.away), watch)? {
             Touched::At(steps) => steps,

@@ -290,6 +290,55 @@ fn limit_that_a_probe_move_meets_is_named_and_remembered() {
 }
 
 #[test]
+fn limit_that_is_met_in_a_pause_is_remembered_with_the_direction_of_the_pause() {
+    for meets in ["jog z -5", "probe z -5 --feed 600"] {
+        let folder = with_switches("G21 G90 F1500\nG1 Z1\nM0\nG1 X2\nM2\n");
+        // One input for both ends does not say which of them was met.
+        let machine = std::fs::read_to_string(folder.path("machine.toml")).unwrap();
+        folder.write("machine.toml", machine.replace("\"pair\"", "\"each\""));
+        let board = Board::new(&folder, "--fast --min z=-200");
+        let unhomed = format!("run job.ngc --unhomed {}", "--machine machine.toml");
+        let mut child = drives(&folder, &unhomed, &board.port);
+        waits(&folder, &board, &mut child);
+        assert_eq!(command(&folder, &board, meets).status, 1, "{meets}");
+        let ended = document(child);
+        assert_eq!(ended["culprits"], json!([{"axis": "z", "direction": -1}]));
+        passed(&command(&folder, &board, "stop --clear"));
+        refused(&command(&folder, &board, "jog z -1"), "the limit switch of axis z is closed");
+        passed(&command(&folder, &board, "jog z 2"));
+    }
+}
+
+#[test]
+fn offset_that_cannot_be_kept_is_refused_before_anything_moves() {
+    let folder = folder("M2\n");
+    let board = Board::new(&folder, "--fast --probe z=-100");
+    let lines = ["probe z -1 --feed 60 --set G54", "jog z 1 --set G54"];
+    for line in lines {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_carrystep"));
+        command.args(line.split(' ')).args(["--machine", "machine.toml", "--port", &board.port]);
+        // Nobody can make a folder there.
+        command.env("CARRYSTEP_STATE", "/proc/carrystep").current_dir(folder.path(""));
+        let ran = command.output().unwrap();
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert_eq!(ran.status.code(), Some(1), "{line}: {said}");
+        assert!(said.contains("the work offsets cannot be kept"), "{line}: {said}");
+    }
+    assert_eq!(at(&folder, &board), [0, 0, 0]);
+    passed(&command(&folder, &board, lines[1]));
+    let before = at(&folder, &board);
+    // A file that is cut in two stays.
+    let file = std::fs::read_dir(folder.state()).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &text[..text.len() / 2]).unwrap();
+    for line in lines {
+        refused(&command(&folder, &board, line), "it is not whole");
+    }
+    assert_eq!(std::fs::read(&file).unwrap(), text[..text.len() / 2]);
+    assert_eq!(at(&folder, &board), before);
+}
+
+#[test]
 fn interrupt_in_a_probe_move_ramps_down_and_says_so() {
     let folder = folder(PAUSES);
     let board = Board::new(&folder, "--fast");
@@ -297,6 +346,7 @@ fn interrupt_in_a_probe_move_ramps_down_and_says_so() {
     while at_or(&folder, &board, &[0; 3])[2] == 0 {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
     }
+    refused(&command(&folder, &board, "probe z -1 --feed 60"), "is in use by `carrystep probe`");
     signal(&child, "-INT");
     let found = document(child);
     assert_eq!((&found["ended"], &found["stopped_by"]), (&"stopped".into(), &"interrupt".into()));
@@ -313,6 +363,7 @@ fn interrupt_in_a_probe_move_ramps_down_and_says_so() {
     waits(&folder, &board, &mut program);
     let probes = drives(&folder, LONG_PROBE, &board.port);
     while at_or(&folder, &board, &[0, 0, rest + 400])[2] == rest + 400 {}
+    refused(&command(&folder, &board, "probe z -1 --feed 60"), "is not done yet");
     signal(&probes, "-INT");
     let ended = probes.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(1));
