@@ -77,9 +77,8 @@ pub fn probe(
     let ProbeMove { machine, letters, wish, unhomed } = *wanted;
     let number = wish.axis(machine)?;
     let file = wish.way().file(machine)?;
-    let place =
-        Place::find(machine, letters, &memory, &connection.board.status().positions, unhomed)?;
     let positions = connection.board.status().positions;
+    let place = Place::find(machine, letters, &memory, &positions, unhomed)?;
     jog::within_travel(&file, &place.bounded_steps(&positions))?;
     let planned = Moves::unwatched(file.into())?;
     {
@@ -202,6 +201,10 @@ impl Session<'_> {
         let drives = self.memory.drives(self.board);
         if wish.target.is_some() {
             drives.map_err(|error| memory::not_kept(&error))?;
+        }
+        // The drivers may have taken seconds to get their power.
+        if is_closed(self.board)? != wish.away {
+            return Err(Failure::input(wish.already()).into());
         }
         let began = self.board.status().positions[number];
         let steps = match touch(self.board, machine, (planned, !wish.away), watch)? {

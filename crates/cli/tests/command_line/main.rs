@@ -74,6 +74,8 @@ mod terminal;
 #[cfg(unix)]
 mod touch_off;
 #[cfg(unix)]
+mod touch_off_failures;
+#[cfg(unix)]
 mod virtual_boards;
 mod windows;
 #[cfg(unix)]
