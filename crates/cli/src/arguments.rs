@@ -18,7 +18,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser};
 pub use linuxcnc::LinuxcncArguments;
 pub use machine::{MachineArguments, MachineCommand, MachineNew};
-pub use place::{Jog, OffsetArguments};
+pub use place::{Jog, OffsetArguments, ProbeArguments};
 pub use plan::PlanArguments;
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
@@ -81,8 +81,12 @@ pub enum Subcommand {
     /// Change the feed, the speed of rapid moves and that of the spindle while the program of a
     /// `run` in another terminal runs. The limits of the axes stay as they are.
     Override(OverrideArguments),
-    /// Move axes of a board, also while the program of a `run` waits at M0, M1 or M6.
+    /// Move axes of a board, also while the program of a `run` waits at M0, M1 or M6, and set the
+    /// work offset of the place where they rest.
     Jog(Jog),
+    /// Touch off: move an axis until the probe closes, and set the work offset or the length of the
+    /// tool; also while the program of a `run` waits at M0, M1 or M6.
+    Probe(ProbeArguments),
     /// Show the work offsets of a board, or set them: the place where the machine is gets these
     /// coordinates. Programs on the board begin with them.
     Offset(OffsetArguments),
@@ -92,8 +96,8 @@ pub enum Subcommand {
     Home(HomeArguments),
     /// Show the state of a board, the positions of its axes, and the cause of a stop.
     Status(StatusArguments),
-    /// Stop all axes of a board, also while `run`, `jog` or `home` in another terminal drives it;
-    /// resume after a stop (--clear), switch the drivers off (--off).
+    /// Stop all axes of a board, also while `run`, `jog`, `probe` or `home` in another terminal
+    /// drives it; resume after a stop (--clear), switch the drivers off (--off).
     Stop(Stop),
     /// Run a virtual board: the gateware of a machine behind a pseudo-terminal, for `run` and the
     /// other commands. Lines on standard input press and release switches (`estop 1`, `min x 1`,

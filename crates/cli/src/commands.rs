@@ -16,6 +16,7 @@ pub mod offset;
 pub mod overrides;
 pub mod plan;
 pub mod plan_program;
+pub mod probe;
 pub mod profile;
 pub mod run;
 pub mod run_program;

@@ -1,5 +1,5 @@
 //! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
-//! that one: `run`, `jog` and `home` listen on a local socket while they hold the port, and
+//! that one: `run`, `jog`, `probe` and `home` listen on a local socket while they hold the port, and
 //! `carrystep stop`, `hold`, `resume`, `override` and `status` talk to them through it.
 //!
 //! ```text

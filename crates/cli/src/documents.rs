@@ -46,6 +46,7 @@ documents! {
     "plan-move", 1: plan::PlannedLine<'_>;
     "plan-program", 1: plan_program::PlannedProgram;
     "plan-row", 1: plan_program::PlannedRow<'_>;
+    "probe", 1: drive::Probed;
     "profile", 1: profile::Profiles<'_>;
     "simulate", 1: job::RunResult;
     "simulate-program", 1: program_run::ProgramResult;

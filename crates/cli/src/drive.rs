@@ -7,18 +7,21 @@ use crate::failure::Failure;
 use crate::found;
 use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
+use crate::work;
 use carrystep_core::engine::Cause;
 use carrystep_link::{Ended, HostError, Status};
 use carrystep_program::ProgramFile;
-use course::{Course, Ways};
+use course::Course;
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
-pub use moves::Moves;
+pub use moves::{Moves, OffsetAtEnd};
 pub use outcome::{AxisDriven, Culprit, Driven, How};
 pub use place::Place;
+pub use probing::{ProbeMove, Probed, probe};
 pub use program::PlannedProgram;
 use std::time::Instant;
 use wait::Keys;
+use ways::Ways;
 
 mod course;
 mod itinerary;
@@ -27,9 +30,13 @@ mod moves;
 mod outcome;
 mod pause;
 mod place;
+mod probing;
 mod program;
 mod reading;
+mod settle;
+mod touch;
 mod wait;
+mod ways;
 
 /// Executes a plan and returns the report. An axis moves further toward a limit that it has met
 /// only if `into_limit` is set.
@@ -61,8 +68,11 @@ pub fn drive(
     let start = *board.status();
     let (mut ways, seconds) = (Ways::default(), plan.seconds);
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
-    // If the file cannot be written, a command that is killed leaves one that does not match.
-    let _ = memory.drives(&mut board);
+    let drives = memory.drives(&mut board);
+    if let (Err(error), true, None) = (&drives, itinerary.keeps(), itinerary.program()) {
+        return Err(memory::not_kept(error));
+    }
+    // Otherwise, a command that is killed leaves a file that does not match.
     if plan.program.is_some() {
         control.runs_program(plan.machine.output_uses.spindle_rpm.is_some());
     }
@@ -97,8 +107,12 @@ pub fn drive(
     };
     let end = *board.status();
     ways.see(&end);
+    let mut set = None;
     if ended == How::Done && itinerary.keeps() {
-        itinerary.offsets().into_iter().for_each(|offsets| memory.set_work(offsets));
+        let offsets = itinerary.offsets(&end);
+        // What a program sets is a part of the program; behind a jog it is what was wanted.
+        set = offsets.as_ref().filter(|_| itinerary.program().is_none()).map(work::named);
+        offsets.into_iter().for_each(|offsets| memory.set_work(offsets));
     }
     let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
@@ -116,7 +130,10 @@ pub fn drive(
         }
     }
     // If the file cannot be written, the old one no longer matches the board and is ignored.
-    let _ = memory.keep(&mut board);
+    let kept = memory.keep(&mut board);
+    if let (Err(error), Some(_)) = (&kept, &set) {
+        return Err(memory::not_kept(error));
+    }
     let culprit = |(number, axis): (usize, &String)| Culprit {
         axis: axis.clone(),
         direction: ways.last[number],
@@ -159,6 +176,7 @@ pub fn drive(
         planned_s: plan.seconds,
         run_s: begun.elapsed().as_secs_f64(),
         program: plan.program,
+        offsets: set,
         axes,
     })
 }

@@ -2,8 +2,10 @@
 //! within `travel` where machine zero is known.
 
 use crate::failure::Failure;
+use crate::work::{OffsetWish, Target};
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Machine, MoveFile, SourceText, decimal};
+use carrystep_gcode::AXIS_LETTERS;
 use serde::{Deserialize, Serialize};
 
 /// What a user wants to move.
@@ -30,13 +32,28 @@ impl JogWish {
         if let Some(failure) = self.nothing_to_do(&file) {
             return Err(failure);
         }
-        let length =
-            self.distances.iter().map(|(_, distance)| distance.powi(2)).sum::<f64>().sqrt();
-        let by_feed = self.feed.map(|feed| length * 60.0 / feed);
+        let by_feed = self.feed.map(|feed| self.seconds_at(machine, feed));
         match by_feed.filter(|&by_feed| self.time.is_none() && by_feed > seconds(&file)) {
             Some(by_feed) => self.timed(machine, Some(by_feed)),
             None => Ok(file),
         }
+    }
+
+    /// The duration in s with which the speed along the line is at most the feed, units per minute.
+    /// An axis that has this time accelerates at its limit, and goes at most at its part of the feed.
+    fn seconds_at(&self, machine: &Machine, feed: f64) -> f64 {
+        let length =
+            self.distances.iter().map(|(_, distance)| distance.powi(2)).sum::<f64>().sqrt();
+        let seconds = |(name, distance): &(String, f64)| {
+            let axis = &machine.axes[machine.axis_index(name)?];
+            let scale = decimal::to_f64(&axis.steps_per_unit);
+            let accel = decimal::to_f64(&axis.accel_limit) / scale;
+            let distance = distance.abs();
+            // A short move does not reach its part of the feed.
+            let speed = (feed / 60.0 * distance / length).min((distance * accel).sqrt());
+            (speed > 0.0).then(|| distance / speed + speed / accel)
+        };
+        self.distances.iter().filter_map(seconds).fold(0.0, f64::max)
     }
 
     fn timed(&self, machine: &Machine, time: Option<f64>) -> Result<MoveFile, Failure> {
@@ -66,6 +83,59 @@ impl JogWish {
              move. One step of {name} is {step} of its units"
         )))
     }
+}
+
+/// A word of `--set`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SetWord {
+    /// What is set.
+    Target(Target),
+    /// A letter by its number, and its coordinate.
+    Value(usize, f64),
+}
+
+impl std::str::FromStr for SetWord {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Ok(target) = text.parse() {
+            return Ok(Self::Target(target));
+        }
+        let (name, value) = text.split_once('=').unwrap_or((text, "0"));
+        let is = |letter: &char| name.eq_ignore_ascii_case(&letter.to_string());
+        let value = value.parse::<f64>().ok().filter(|value| value.abs() <= 1e9);
+        AXIS_LETTERS.iter().position(is).zip(value).map_or_else(
+            || {
+                Err("expected a system, G54 to G59.3, G92 or G43.1, then axes: --set G54 x=0,z=1.5"
+                    .to_owned())
+            },
+            |(letter, value)| Ok(Self::Value(letter, value)),
+        )
+    }
+}
+
+/// What the words of `--set` say. If they name no axis, those of the jog get 0.
+///
+/// # Errors
+/// The first word is no system, another one is, or no axis is named.
+pub fn offset_of(words: &[SetWord], jogged: &[(String, f64)]) -> Result<OffsetWish, Failure> {
+    let wrong = || Failure::input("--set needs one system, and then axes: `--set G54 x=0,z=1.5`");
+    let Some((&SetWord::Target(target), values)) = words.split_first() else { return Err(wrong()) };
+    let value = |word: &SetWord| match *word {
+        SetWord::Value(letter, value) => Ok((letter, value)),
+        SetWord::Target(_) => Err(wrong()),
+    };
+    let mut values = values.iter().map(value).collect::<Result<Vec<_>, _>>()?;
+    if values.is_empty() {
+        for (name, _) in jogged {
+            let is = |letter: &char| name.eq_ignore_ascii_case(&letter.to_string());
+            let letter = AXIS_LETTERS.iter().position(is).ok_or_else(|| {
+                Failure::input(format!("'{name}' is no axis of a program: x, y, z, a, b or c"))
+            })?;
+            values.push((letter, 0.0));
+        }
+    }
+    if values.is_empty() { Err(wrong()) } else { Ok(OffsetWish { target, values }) }
 }
 
 /// The time of a planned move, s; 0 if it cannot be planned, which is reported later.

@@ -33,6 +33,7 @@ mod operated;
 mod output;
 mod pass;
 mod pause;
+mod probe;
 mod program;
 mod program_run;
 mod program_table;
@@ -71,6 +72,7 @@ fn main() -> ExitCode {
         Subcommand::Resume(port) => commands::hold::resume(port),
         Subcommand::Override(overrides) => commands::overrides::run(overrides),
         Subcommand::Jog(jog) => commands::run::jog(jog),
+        Subcommand::Probe(probe) => commands::probe::run(probe),
         Subcommand::Offset(offset) => commands::offset::run(offset),
         Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),

@@ -79,6 +79,13 @@ fn dropped(port: &str) -> Failure {
     ))
 }
 
+/// The failure for offsets that were set, and that cannot be written.
+pub fn not_kept(error: &io::Error) -> Failure {
+    Failure::Run(format!(
+        "the work offsets cannot be kept: {error}; CARRYSTEP_STATE names another folder"
+    ))
+}
+
 /// The work offsets that are kept of the board of a machine at a port, without a look at the board.
 /// `name` is the path of the machine file.
 ///

@@ -1,12 +1,14 @@
-//! What other commands ask of a program that waits: to jog, to show work offsets, to set them. The
-//! command that drives the board does it.
+//! What other commands ask of a program that waits: to jog, to probe, to show work offsets, to set
+//! them. The command that drives the board does it.
 
 use crate::connection;
 use crate::control::{self, ANSWER, BUSY, Holder, NOTHING_WAITS, Reply, SocketRequest};
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::jog::JogWish;
 use crate::output;
-use crate::work::{NamedOffset, Target};
+use crate::probe::ProbeWish;
+use crate::work::{NamedOffset, OffsetWish};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -19,10 +21,12 @@ const LOOK: Duration = Duration::from_millis(10);
 /// What is asked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PauseWish {
-    /// A jog.
-    Jog(JogWish),
+    /// A jog, and what is set behind it.
+    Jog(JogWish, Option<OffsetWish>),
+    /// A move that the probe ends.
+    Probe(ProbeWish),
     /// The machine place gets these coordinates.
-    Set(Target, Vec<(usize, f64)>),
+    Set(OffsetWish),
     /// All offsets are zero.
     Clear,
     /// The offsets as they are.
@@ -30,7 +34,7 @@ pub enum PauseWish {
 }
 
 /// How it has ended; `--json` prints it as it is.
-#[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, JsonSchema, Serialize, Deserialize)]
 pub struct PauseResult {
     /// It was done.
     pub passed: bool,
@@ -38,6 +42,13 @@ pub struct PauseResult {
     pub error: Option<String>,
     /// The axes moved, and were stopped on request.
     pub stopped: bool,
+    /// The axes moved, and the probe has not ended their move.
+    #[serde(default)]
+    pub missed: bool,
+    /// Machine place at which the probe has ended a move, by letters as in `place`: that of the tick
+    /// in which the gateware accepted its level.
+    #[serde(default)]
+    pub touched: Option<BTreeMap<char, f64>>,
     /// What the program waits for.
     pub waits: String,
     /// Machine coordinates of the axes in mm and degrees, by their letters.
@@ -49,9 +60,10 @@ pub struct PauseResult {
 impl fmt::Display for PauseResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "the program waits: {}", self.waits)?;
-        f.write_str("machine place:")?;
-        self.place.iter().try_for_each(|(letter, at)| write!(f, " {letter} {at:.4}"))?;
-        f.write_str("\n")?;
+        if let Some(touched) = &self.touched {
+            writeln!(f, "the probe has ended the move at machine{}", Coordinates(touched))?;
+        }
+        writeln!(f, "machine place:{}", Coordinates(&self.place))?;
         if self.offsets.is_empty() {
             return f.write_str("no work offsets\n");
         }
@@ -59,10 +71,24 @@ impl fmt::Display for PauseResult {
     }
 }
 
+/// Coordinates with their letters.
+pub struct Coordinates<'a>(pub &'a BTreeMap<char, f64>);
+
+impl fmt::Display for Coordinates<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|(letter, at)| write!(f, " {letter} {at:.4}"))
+    }
+}
+
 /// Asks the command that drives the board at this port, and prints the result. Returns false if no
-/// program waits there.
+/// program waits there. Ctrl-C stops what moves, and with it the program.
 pub fn ask(port: &str, wish: &PauseWish, json: bool) -> Result<bool, Failure> {
     let Some(mut caller) = control::call(port) else { return Ok(false) };
+    let moves = matches!(wish, PauseWish::Jog(..) | PauseWish::Probe(_));
+    if moves {
+        // From here on Ctrl-C requests a stop and does not end the process.
+        interrupt::watch();
+    }
     let text = serde_json::to_string(wish).map_err(|error| Failure::Run(error.to_string()))?;
     let hangs = |holder: &Holder| {
         Failure::Run(connection::hangs(port, holder, SocketRequest::Pause, "answer"))
@@ -70,14 +96,19 @@ pub fn ask(port: &str, wish: &PauseWish, json: bool) -> Result<bool, Failure> {
     match caller.ask_with(SocketRequest::Pause, &text, ANSWER) {
         Reply::Line(line) if line == NOTHING_WAITS || line.is_empty() => return Ok(false),
         Reply::Line(line) if line == BUSY => {
-            let message = "another jog or offset is not done yet: wait for its end";
+            let message = "another jog, probe or offset is not done yet: wait for its end";
             return Err(Failure::input(message));
         }
         Reply::Line(_) => {}
         Reply::Ended => return Ok(false),
         Reply::Silent => return Err(hangs(&caller.holder)),
     }
+    let mut stops = false;
     let line = loop {
+        if moves && interrupt::is_asked() && !std::mem::replace(&mut stops, true) {
+            // The answer to this only says that it was heard.
+            let _ = caller.ask(SocketRequest::Stop, ANSWER);
+        }
         match caller.ask(SocketRequest::Result, ANSWER) {
             Reply::Line(line) if line.is_empty() => std::thread::sleep(LOOK),
             Reply::Line(line) => break line,
@@ -92,7 +123,7 @@ pub fn ask(port: &str, wish: &PauseWish, json: bool) -> Result<bool, Failure> {
         Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))
     })?;
     match &result.error {
-        Some(error) if result.stopped => return Err(Failure::Run(error.clone())),
+        Some(error) if result.stopped || result.missed => return Err(Failure::Run(error.clone())),
         Some(error) => return Err(Failure::input(error.clone())),
         None if json => output::print_json(&result)?,
         None => output::print(&result.to_string())?,

@@ -2,7 +2,9 @@
 //! them.
 
 use crate::failure::Failure;
-use carrystep_gcode::{AXIS_LETTERS, Interpreter, Offsets, Options, Point};
+use carrystep_files::Machine;
+use carrystep_gcode::{AXIS_LETTERS, Interpreter, Offsets, Options, Point, Tool, ToolTable};
+use carrystep_program::Letters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -124,6 +126,32 @@ pub enum Target {
     All,
     /// G43.1: the length of the tool.
     Tool,
+    /// The length of the tool with which the place has the coordinates in this system, G54 to
+    /// G59.3: its number, from 1.
+    ToolIn(u8),
+}
+
+/// What a user wants to set where the machine is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OffsetWish {
+    /// What gets the values.
+    pub target: Target,
+    /// Letters by their numbers, with mm or degrees.
+    pub values: Vec<(usize, f64)>,
+}
+
+impl OffsetWish {
+    /// Refuses letters that the machine does not have.
+    ///
+    /// # Errors
+    /// The first of them.
+    pub fn check(&self, machine: &Machine, letters: &Letters) -> Result<(), Failure> {
+        let strange = self.values.iter().find(|(letter, _)| letters.axis(*letter).is_none());
+        strange.map_or(Ok(()), |&(letter, _)| {
+            let (name, axes) = (AXIS_LETTERS[letter], machine.axis_names());
+            Err(Failure::input(format!("the machine has no axis {name}: the axes are {axes}")))
+        })
+    }
 }
 
 impl std::str::FromStr for Target {
@@ -141,30 +169,34 @@ impl std::str::FromStr for Target {
     }
 }
 
-/// The offsets with which the machine place gets these coordinates: letters by their numbers, with
-/// mm or degrees. The rules are those of G10 L20, G92 and G43.1 in programs.
+/// The offsets with which the machine place gets the wanted coordinates. The rules are those of G10
+/// L20, G92, G43.1 and G10 L10 in programs.
 ///
 /// # Errors
 /// An offset beyond what a program may have.
-pub fn set(
-    offsets: &Offsets,
-    at: Point,
-    target: Target,
-    values: &[(usize, f64)],
-) -> Result<Offsets, Failure> {
-    let mut line = match target {
-        Target::System(number) => format!("G10 L20 P{number}"),
-        Target::All => "G92".to_owned(),
-        Target::Tool => "G43.1".to_owned(),
-    };
-    for &(letter, value) in values {
+pub fn set(offsets: &Offsets, at: Point, wish: &OffsetWish) -> Result<Offsets, Failure> {
+    let mut words = String::new();
+    for &(letter, value) in &wish.values {
         // Programs have no exponents, and fifteen digits are finer than any offset. Writing to a
         // string cannot fail.
-        let _ = write!(line, " {}{value:.15}", AXIS_LETTERS[letter]);
+        let _ = write!(words, " {}{value:.15}", AXIS_LETTERS[letter]);
     }
-    let options = Options { start: at, offsets: offsets.clone(), ..Options::default() };
+    let mut options = Options { start: at, offsets: offsets.clone(), ..Options::default() };
+    let text = match wish.target {
+        Target::System(number) => format!("G10 L20 P{number}{words}"),
+        Target::All => format!("G92{words}"),
+        Target::Tool => format!("G43.1{words}"),
+        Target::ToolIn(number) => {
+            // The other axes keep the offset that is in effect.
+            let mut table = ToolTable::default();
+            table.set(1, Tool { offset: offsets.tool, ..Tool::default() });
+            options.tools = Some(table);
+            let system = SYSTEMS[usize::from(number).clamp(1, SYSTEMS.len()) - 1];
+            format!("{system}\nG10 L10 P1{words}\nG43 H1")
+        }
+    };
     let refused = |error: carrystep_gcode::GcodeError| Failure::input(format!("offset: {error}"));
-    let mut program = Interpreter::new(Cursor::new(line), "offset", &options).map_err(refused)?;
+    let mut program = Interpreter::new(Cursor::new(text), "offset", &options).map_err(refused)?;
     program.by_ref().try_for_each(|step| step.map(drop)).map_err(refused)?;
     Ok(program.offsets())
 }
@@ -180,14 +212,21 @@ mod tests {
     #[test]
     fn offset_gives_the_place_its_coordinate() {
         let at = [10.0, -2.0, 1.0, 0.0, 0.0, 0.0];
-        let one = set(&Offsets::default(), at, Target::System(2), &[(0, 3.0), (2, 0.0)]).unwrap();
+        let set = |before: &Offsets, target, values: &[(usize, f64)]| {
+            set(before, at, &OffsetWish { target, values: values.to_vec() }).unwrap()
+        };
+        let one = set(&Offsets::default(), Target::System(2), &[(0, 3.0), (2, 0.0)]);
         assert_eq!(described(&one), ["G55 x 7 z 1"]);
         // The tool length counts, as it does in programs.
-        let tool = set(&one, at, Target::Tool, &[(2, 0.25)]).unwrap();
-        let two = set(&tool, at, Target::System(1), &[(2, 0.0)]).unwrap();
+        let tool = set(&one, Target::Tool, &[(2, 0.25)]);
+        let two = set(&tool, Target::System(1), &[(2, 0.0)]);
         assert_eq!(described(&two), ["G54 z 0.75", "G55 x 7 z 1", "tool length z 0.25"]);
-        let all = set(&two, at, Target::All, &[(1, 5.0)]).unwrap();
+        let all = set(&two, Target::All, &[(1, 5.0)]);
         assert_eq!(described(&all).get(2).map(String::as_str), Some("G92 y -7"));
+        // With this length, z of the place is 2.5 in G55, and in G92 as well.
+        let length = set(&all, Target::ToolIn(2), &[(2, 2.5)]);
+        assert_eq!(described(&length).last().map(String::as_str), Some("tool length z -2.5"));
+        assert_eq!(described(&length)[..3], described(&all)[..3]);
         assert_eq!(WorkRecord::from(&all).offsets(), Some(all));
     }
 

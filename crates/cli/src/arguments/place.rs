@@ -1,17 +1,18 @@
-//! The arguments of the commands that change where the tool is, and how its place is called: `jog`
-//! and `offset`. The docstrings of the fields are the command's help.
+//! The arguments of the commands that change where the tool is, and how its place is called: `jog`,
+//! `probe` and `offset`. The docstrings of the fields are the command's help.
 
 use super::port::PortArguments;
 use super::program::place;
+use crate::jog::SetWord;
 use crate::work::Target;
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 
 /// The arguments of `carrystep jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its name.
-    #[arg(value_name = "AXIS", requires = "distance", required_unless_present = "axes")]
+    #[arg(value_name = "AXIS", requires = "distance", required_unless_present_any = ["axes", "set"])]
     pub axis: Option<String>,
     /// Distance in units of the axis; negative is backward.
     #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
@@ -32,6 +33,11 @@ pub struct Jog {
     /// The machine.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
+    /// Then set a work offset: the place where the axes rest gets these coordinates, in mm or
+    /// degrees, in G54 to G59.3 or G92: --set G54 x=0,z=1.5. Without axes, those of the jog get 0;
+    /// without a jog, nothing moves. G43.1 is the length of the tool.
+    #[arg(long, value_names = ["SYSTEM", "AXIS=VALUE"], num_args = 1.., value_delimiter = ',')]
+    pub set: Vec<SetWord>,
     /// Duration of the move; default: as fast as the axis' limits allow.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
@@ -44,6 +50,83 @@ pub struct Jog {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
+}
+
+/// The arguments of `carrystep probe`.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("sets").args(["set", "tool"])))]
+pub struct ProbeArguments {
+    /// The axis, by its name.
+    #[arg(value_name = "AXIS")]
+    pub axis: String,
+    /// How far it moves at most, in units of the axis; negative is backward.
+    #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
+    pub distance: f64,
+    /// Greatest speed, units of the axis per minute. The slower, the truer the place.
+    #[arg(long, value_name = "UNITS", value_parser = feed)]
+    pub feed: f64,
+    /// Move until the probe opens, and not until it closes.
+    #[arg(long)]
+    pub away: bool,
+    /// Then go back this far from the touched place, in units of the axis, but not beyond the place
+    /// where the move began.
+    #[arg(long, value_name = "UNITS", value_parser = length, allow_negative_numbers = true, conflicts_with = "away")]
+    pub retract: Option<f64>,
+    /// Set the work offset of G54 to G59.3, or G92, so that the touched place is 0, or on a plate the
+    /// work below it.
+    #[arg(long, value_name = "SYSTEM", value_parser = system_or_g92)]
+    pub set: Option<Target>,
+    /// Set the length of the tool (G43.1) so that the touched place is 0, or on a plate the work below
+    /// it, in G54 to G59.3, which stays as it is.
+    #[arg(long, value_name = "SYSTEM", value_parser = tool_in)]
+    pub tool: Option<Target>,
+    /// How thick the plate is that the tool touches, in units of the axis.
+    #[arg(
+        long,
+        value_name = "UNITS",
+        value_parser = length,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        requires = "sets"
+    )]
+    pub plate: f64,
+    /// Probe although the machine has limit switches and is not homed, and ignore `travel`. The place
+    /// where it begins is zero, so nothing can be set.
+    #[arg(long, conflicts_with = "sets")]
+    pub unhomed: bool,
+    /// The machine.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: PathBuf,
+    #[command(flatten)]
+    pub port: PortArguments,
+    /// One JSON document instead of the text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Reads a coordinate system, or G92.
+fn system_or_g92(text: &str) -> Result<Target, String> {
+    match text.parse()? {
+        Target::Tool | Target::ToolIn(_) => {
+            Err("--tool G54 sets the length of the tool so that this place is 0 in G54".to_owned())
+        }
+        target @ (Target::System(_) | Target::All) => Ok(target),
+    }
+}
+
+/// Reads the coordinate system that a tool is measured in.
+fn tool_in(text: &str) -> Result<Target, String> {
+    match text.parse() {
+        Ok(Target::System(number)) => Ok(Target::ToolIn(number)),
+        _ => Err("expected the coordinate system of the touched place: G54 to G59, G59.1 to G59.3"
+            .to_owned()),
+    }
+}
+
+/// Reads a length that is not negative.
+fn length(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=1e6).contains(value));
+    value.ok_or_else(|| "expected a length from 0 to 1000000".to_owned())
 }
 
 /// Reads the distance of an axis.

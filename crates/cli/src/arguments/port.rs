@@ -121,7 +121,7 @@ pub struct Stop {
     #[command(flatten)]
     pub peer: PeerArguments,
     /// Then clear the stop and its cause: the queues are emptied, the positions stay. A `run`,
-    /// `jog` or `home` that is stopped clears its own stop.
+    /// `jog`, `probe` or `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
     /// Then switch the drivers off. If segments of a stopped move wait, this needs --clear too.

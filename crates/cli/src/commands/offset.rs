@@ -1,19 +1,19 @@
 //! `carrystep offset`: shows and sets the work offsets that are kept of a board.
 
-use crate::arguments::OffsetArguments;
+use crate::arguments::{OffsetArguments, PortArguments};
 use crate::connection;
 use crate::drive::Place;
 use crate::failure::Failure;
-use crate::memory::BoardMemory;
+use crate::memory::{self, BoardMemory};
 use crate::output;
 use crate::pause::{self, PauseWish};
-use crate::work::{self, NamedOffset};
+use crate::work::{self, NamedOffset, OffsetWish};
 use carrystep_files::Machine;
-use carrystep_gcode::{AXIS_LETTERS, Offsets};
-use carrystep_program::{Letters, ProgramError};
+use carrystep_program::{Letters, Offsets, ProgramError};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
+use std::path::Path;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -38,55 +38,63 @@ impl fmt::Display for ShownOffsets {
 /// Shows the offsets, after it has set them if the arguments say so.
 pub fn run(arguments: &OffsetArguments) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
-    let fault = |fault| ProgramError::new(&arguments.machine, 0, fault);
-    let letters = Letters::new(&machine).map_err(fault)?;
-    check(arguments, &machine, &letters)?;
     let wish = match arguments.set {
         None if arguments.clear => PauseWish::Clear,
         None => PauseWish::Show,
-        Some(target) => PauseWish::Set(target, arguments.values.clone()),
+        Some(_) if arguments.values.is_empty() => {
+            let message = "--set needs values: `carrystep offset --set G54 x=0,z=1.5`";
+            return Err(Failure::input(message));
+        }
+        Some(target) => PauseWish::Set(OffsetWish { target, values: arguments.values.clone() }),
     };
-    if pause::ask(&arguments.port.name, &wish, arguments.json)? {
+    change(&machine, &arguments.machine, &wish, (&arguments.port, arguments.json))
+}
+
+/// Does what is wanted of the offsets, and shows them: by itself, or through the command whose
+/// program waits. `name` is the path of the machine file.
+///
+/// # Errors
+/// The wish names axes that the machine does not have, or it cannot be met where the machine is.
+pub fn change(
+    machine: &Machine,
+    name: &Path,
+    wish: &PauseWish,
+    (port, json): (&PortArguments, bool),
+) -> Result<(), Failure> {
+    let letters = Letters::new(machine).map_err(|fault| ProgramError::new(name, 0, fault))?;
+    if let PauseWish::Set(wish) = wish {
+        wish.check(machine, &letters)?;
+    }
+    if pause::ask(&port.name, wish, json)? {
         return Ok(());
     }
-    let mut connection =
-        connection::to_machine(&arguments.port, &machine, &arguments.machine, "offset")?;
+    let mut connection = connection::to_machine(port, machine, name, "offset")?;
     let mut memory = BoardMemory::recall(&mut connection);
     memory.usable()?;
-    let offsets = match arguments.set {
-        None if arguments.clear => Offsets::default(),
-        None => memory.work()?.clone(),
-        Some(target) => {
+    let new = match wish {
+        PauseWish::Clear => Some(Offsets::default()),
+        PauseWish::Set(wish) => {
             let status = *connection.board.status();
             if !status.answer.idle && !status.answer.halted {
                 let message = "axes move, of another host: an offset needs a machine at rest";
                 return Err(Failure::input(message));
             }
-            let place = Place::find(&machine, &letters, &memory, &status.positions, false)?;
+            let place = Place::find(machine, &letters, &memory, &status.positions, false)?;
             let before = memory.work().cloned().unwrap_or_default();
-            work::set(&before, place.start, target, &arguments.values)?
+            Some(work::set(&before, place.start, wish)?)
         }
+        PauseWish::Show | PauseWish::Jog(..) | PauseWish::Probe(_) => None,
     };
-    if arguments.set.is_some() || arguments.clear {
-        memory.set_work(offsets.clone());
+    let offsets = match &new {
+        Some(offsets) => offsets.clone(),
+        None => memory.work()?.clone(),
+    };
+    if let Some(offsets) = new {
+        memory.set_work(offsets);
         connection::open(&mut connection)?;
-        memory
-            .keep(&mut connection.board)
-            .map_err(|error| Failure::Run(format!("the work offsets cannot be kept: {error}")))?;
+        memory.keep(&mut connection.board).map_err(|error| memory::not_kept(&error))?;
     }
-    let port = arguments.port.name.clone();
-    let shown = ShownOffsets { passed: true, port, offsets: work::named(&offsets) };
-    if arguments.json { output::print_json(&shown) } else { output::print(&shown.to_string()) }
-}
-
-/// Refuses `--set` without values, and axes that the machine does not have.
-fn check(arguments: &OffsetArguments, machine: &Machine, letters: &Letters) -> Result<(), Failure> {
-    if arguments.set.is_some() && arguments.values.is_empty() {
-        return Err(Failure::input("--set needs values: `carrystep offset --set G54 x=0,z=1.5`"));
-    }
-    let strange = arguments.values.iter().find(|(letter, _)| letters.axis(*letter).is_none());
-    strange.map_or(Ok(()), |&(letter, _)| {
-        let (name, axes) = (AXIS_LETTERS[letter], machine.axis_names());
-        Err(Failure::input(format!("the machine has no axis {name}: the axes are {axes}")))
-    })
+    let shown =
+        ShownOffsets { passed: true, port: port.name.clone(), offsets: work::named(&offsets) };
+    if json { output::print_json(&shown) } else { output::print(&shown.to_string()) }
 }

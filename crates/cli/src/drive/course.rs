@@ -14,6 +14,7 @@ use super::line::Line;
 use super::pause::Pause;
 use super::reading::{InputRead, Probing, read_input};
 use super::wait::{self, Keys, Waited};
+use super::ways::Ways;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
@@ -26,26 +27,6 @@ use std::time::{Duration, Instant};
 /// Time between two searches for a hold that the limits forbid now, and between two changes of
 /// overrides.
 const TRY_AGAIN: Duration = Duration::from_millis(20);
-
-/// The direction in which each axis was last seen moving.
-#[derive(Default)]
-pub(super) struct Ways {
-    positions: Option<[i32; 8]>,
-    /// 1, -1, or 0 if the axis has not moved.
-    pub last: [i8; 8],
-}
-
-impl Ways {
-    pub fn see(&mut self, status: &Status) {
-        let before = self.positions.replace(status.positions).unwrap_or(status.positions);
-        for (last, (before, now)) in self.last.iter_mut().zip(before.iter().zip(status.positions)) {
-            match now.wrapping_sub(*before).signum() {
-                0 => {}
-                way => *last = way as i8,
-            }
-        }
-    }
-}
 
 /// What follows a place at which a program waits or reads something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,7 +144,7 @@ impl Course<'_, '_> {
             let _ = self.memory.drives(self.board);
         }
         let places = (self.axes, &*self.zero);
-        let mut pause = Pause::new(self.itinerary, self.memory, places, offsets);
+        let mut pause = Pause::new(self.itinerary, (self.memory, self.ways), places, offsets);
         let keys = (&mut self.keys, &self.line);
         match wait::wait(self.board, self.control, keys, (at, &mut pause))? {
             Waited::GoesOn(None) => Ok(Next::Stretch),

@@ -4,7 +4,7 @@ use super::outcome::ProgramDriven;
 use crate::failure::Failure;
 use carrystep_core::Segment;
 use carrystep_files::Machine;
-use carrystep_link::{Queues, SegmentSource, Wish};
+use carrystep_link::{Queues, SegmentSource, Status, Wish};
 use carrystep_program::{Found, Offsets, Point, ProgramFile, Stop};
 use carrystep_runner::{BlockAt, OverrideSetting, Wait};
 
@@ -85,8 +85,9 @@ pub trait Itinerary {
         Ok(None)
     }
 
-    /// The work offsets behind the whole way; `None` if they stay as they were before.
-    fn offsets(&self) -> Option<Offsets> {
+    /// The work offsets behind the whole way, where the board has this state; `None` if they stay as
+    /// they were before.
+    fn offsets(&self, _end: &Status) -> Option<Offsets> {
         None
     }
 

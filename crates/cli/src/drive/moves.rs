@@ -1,14 +1,17 @@
 //! The moves of a file as a board is driven through them.
 
 use super::itinerary::{Itinerary, Plan};
+use super::place::point_at;
 use crate::failure::Failure;
 use crate::job;
+use crate::work::{self, OffsetWish};
 use carrystep_core::Segment;
 use carrystep_files::MoveSource;
 use carrystep_link::supply::Supply;
-use carrystep_link::{Command, SegmentSource};
+use carrystep_link::{Command, SegmentSource, Status};
 use carrystep_plan::{AxisTotals, PlannedMove, Survey};
 use carrystep_profile::Reader;
+use carrystep_program::{Letters, Offsets};
 use carrystep_runner::Wait;
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -34,11 +37,11 @@ impl Moves {
         Self::planned(source, |source, see| job::survey(source, see))
     }
 
-    /// The same while a program waits, whatever signals have come before.
+    /// The same, whatever signals have come before: while a program waits, they concern the program.
     ///
     /// # Errors
     /// As [`Moves::new`].
-    pub fn in_a_pause(source: MoveSource) -> Result<Self, Failure> {
+    pub fn unwatched(source: MoveSource) -> Result<Self, Failure> {
         Self::planned(source, |source, see| Survey::new(source, see))
     }
 
@@ -88,7 +91,35 @@ impl Moves {
     /// The way there, which is planned again while it is sent.
     pub fn itinerary(&self) -> MovesOnce<'_> {
         let moves = RefCell::new(PlannedMoves::new(&self.survey));
-        MovesOnce { survey: &self.survey, begun: Cell::new(false), moves }
+        MovesOnce { survey: &self.survey, begun: Cell::new(false), moves, sets: None }
+    }
+
+    /// The same, and where it ends an offset is set.
+    pub fn itinerary_and(&self, sets: Option<OffsetAtEnd>) -> MovesOnce<'_> {
+        MovesOnce { sets, ..self.itinerary() }
+    }
+}
+
+/// A work offset that is set where moves end.
+pub struct OffsetAtEnd {
+    /// What is wanted.
+    pub wish: OffsetWish,
+    /// The offsets before.
+    pub before: Offsets,
+    /// The letters of the machine's axes.
+    pub letters: Letters,
+    /// Of each axis, the machine place of its register's zero in steps.
+    pub zero: Vec<i64>,
+}
+
+impl OffsetAtEnd {
+    /// The offsets if the moves end at these positions.
+    ///
+    /// # Errors
+    /// An offset beyond what a program may have.
+    pub fn at(&self, positions: &[i32]) -> Result<Offsets, Failure> {
+        let positions: Vec<f64> = positions.iter().map(|&at| at.into()).collect();
+        work::set(&self.before, point_at(&self.letters, &self.zero, &positions), &self.wish)
     }
 }
 
@@ -97,6 +128,7 @@ pub struct MovesOnce<'a> {
     survey: &'a Survey,
     begun: Cell<bool>,
     moves: RefCell<PlannedMoves>,
+    sets: Option<OffsetAtEnd>,
 }
 
 impl Itinerary for MovesOnce<'_> {
@@ -106,6 +138,15 @@ impl Itinerary for MovesOnce<'_> {
 
     fn source(&self) -> Box<dyn SegmentSource + '_> {
         Box::new(&self.moves)
+    }
+
+    fn offsets(&self, end: &Status) -> Option<Offsets> {
+        // The same offset was computed for the planned end before anything has moved.
+        self.sets.as_ref().and_then(|sets| sets.at(&end.positions).ok())
+    }
+
+    fn keeps(&self) -> bool {
+        self.sets.is_some()
     }
 
     fn whole(&self) -> Result<(), Failure> {

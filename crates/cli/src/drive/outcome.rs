@@ -4,6 +4,7 @@
 
 use crate::control::StoppedBy;
 use crate::found::{BlockFound, OverridesFound};
+use crate::work::NamedOffset;
 use carrystep_files::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -49,6 +50,9 @@ pub struct Driven {
     /// The G-code program, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub program: Option<ProgramDriven>,
+    /// The work offsets that are not zero, if a jog has set some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub offsets: Option<Vec<NamedOffset>>,
     /// Each axis.
     pub axes: Vec<AxisDriven>,
 }
@@ -118,6 +122,7 @@ impl fmt::Display for Driven {
             )?;
         }
         self.program.iter().try_for_each(|program| write!(f, "{program}"))?;
+        self.offsets.iter().flatten().try_for_each(|offset| writeln!(f, "{offset}"))?;
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
             (How::Done, false) => {

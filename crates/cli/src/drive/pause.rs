@@ -1,28 +1,29 @@
-//! A pause of a program: other commands jog and set work offsets, and behind it the rest of the
+//! A pause of a program: other commands jog, probe and set work offsets, and behind it the rest of the
 //! program is planned from the real place if anything was changed.
 
 use super::itinerary::{Itinerary, Rest};
 use super::moves::Moves;
+use super::place::{named_point, point_at};
+use super::settle::{Parts, settling_ticks};
+use super::touch::{Touched, go, is_closed, touch};
+use super::ways::Ways;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
-use crate::jog;
+use crate::jog::{self, JogWish};
 use crate::limits::ClosedLimits;
 use crate::memory::BoardMemory;
 use crate::pause::{PauseResult, PauseWish};
+use crate::probe::ProbeWish;
 use crate::work;
-use carrystep_core::Segment;
-use carrystep_link::{Answer, Ended, HostError, SegmentSource, Status, Wish};
-use carrystep_program::{AXIS_LETTERS, Found, Offsets, Point, ProgramFile};
-use std::collections::VecDeque;
-
-/// Time in which P of the axes goes to its start value, s.
-pub(super) const SETTLING: f64 = 0.004;
+use carrystep_link::{Ended, SegmentSource, Status, Wish};
+use carrystep_program::{Found, Offsets, Point, ProgramFile};
 
 /// A program that waits.
 pub(super) struct Pause<'a> {
     itinerary: &'a dyn Itinerary,
     memory: &'a mut BoardMemory,
+    ways: &'a mut Ways,
     axes: &'a [String],
     /// Machine place of the registers' zero, steps.
     zero: &'a [i64],
@@ -31,12 +32,16 @@ pub(super) struct Pause<'a> {
     /// Whether P of all axes has its start value.
     settled: bool,
     changed: bool,
+    /// Where the probe has ended the move that was wanted last.
+    touched: Option<Point>,
 }
 
 /// Why something was not done: the user's mistake, or the board.
 enum Refused {
     Input(String),
-    Stopped,
+    Missed(String),
+    /// What was stopped.
+    Stopped(&'static str),
     Board(ConnectedBoardError),
 }
 
@@ -57,11 +62,21 @@ impl<'a> Pause<'a> {
     /// registers' zero in steps.
     pub fn new(
         itinerary: &'a dyn Itinerary,
-        memory: &'a mut BoardMemory,
+        (memory, ways): (&'a mut BoardMemory, &'a mut Ways),
         (axes, zero): (&'a [String], &'a [i64]),
         offsets: Option<Offsets>,
     ) -> Self {
-        Self { itinerary, memory, axes, zero, offsets, settled: false, changed: false }
+        Self {
+            itinerary,
+            memory,
+            ways,
+            axes,
+            zero,
+            offsets,
+            settled: false,
+            changed: false,
+            touched: None,
+        }
     }
 
     /// Does what was asked if something was, and gives the control the result.
@@ -75,23 +90,29 @@ impl<'a> Pause<'a> {
         let Some(text) = program.and_then(|program| program.wish().map(str::to_owned)) else {
             return Ok(());
         };
-        let (error, stopped) = match self.execute(board, control, &text) {
-            Ok(()) => (None, false),
-            Err(Refused::Input(message)) => (Some(message), false),
-            Err(Refused::Stopped) => {
-                let message = "the jog was stopped, and the program ends: the axes rest where they \
-                               are, and the positions are valid";
-                (Some(message.to_owned()), true)
+        let mut result = PauseResult { waits: waits.to_owned(), ..PauseResult::default() };
+        self.touched = None;
+        match self.execute(board, control, &text) {
+            Ok(()) => result.passed = true,
+            Err(Refused::Input(message)) => result.error = Some(message),
+            Err(Refused::Missed(message)) => {
+                (result.error, result.missed) = (Some(message), true);
+            }
+            Err(Refused::Stopped(what)) => {
+                result.error = Some(format!(
+                    "the {what} was stopped, and the program ends: the axes rest where they are, and \
+                     the positions are valid"
+                ));
+                result.stopped = true;
             }
             Err(Refused::Board(error)) => return Err(error),
-        };
-        let file = self.itinerary.program();
-        let place = file.map(|file| self.place(file, board.status())).unwrap_or_default();
-        let letters = file.into_iter().flat_map(|file| file.letters().of_axes());
-        let place = letters.map(|&letter| (AXIS_LETTERS[letter], place[letter])).collect();
-        let offsets = self.offsets.as_ref().map(work::named).unwrap_or_default();
-        let waits = waits.to_owned();
-        let result = PauseResult { passed: error.is_none(), error, stopped, waits, place, offsets };
+        }
+        if let Some(file) = self.itinerary.program() {
+            let letters = file.letters();
+            result.place = named_point(letters, &self.place(file, board.status()));
+            result.touched = self.touched.as_ref().map(|at| named_point(letters, at));
+        }
+        result.offsets = self.offsets.as_ref().map(work::named).unwrap_or_default();
         let result = serde_json::to_string(&result).unwrap_or_default();
         control.program().into_iter().for_each(|program| program.did(result.clone()));
         Ok(())
@@ -131,27 +152,80 @@ impl<'a> Pause<'a> {
         match wish {
             PauseWish::Show => Ok(()),
             PauseWish::Clear => self.set(board, Offsets::default()),
-            PauseWish::Set(target, values) => {
+            PauseWish::Set(wish) => {
                 self.settle(board, control)?;
                 let at = self.place(file, board.status());
-                self.set(board, work::set(&offsets, at, target, &values)?)
+                self.set(board, work::set(&offsets, at, &wish)?)
             }
-            PauseWish::Jog(wish) => {
-                let moves = wish.file(file.machine())?;
-                jog::within_travel(&moves, &self.places(file, board.status()))?;
-                let planned = Moves::in_a_pause(moves.into())?;
-                if !wish.into_limit {
-                    let closed = ClosedLimits::read(board)?;
-                    let (wiring, met) = (file.machine().guard.limits, self.memory.limits());
-                    closed.check(wiring, planned.plan().first, &met, self.axes)?;
-                }
+            PauseWish::Jog(wish, then) => {
+                let planned = self.planned(board, file, &wish)?;
                 self.settle(board, control)?;
                 self.changed = true;
                 let way = planned.itinerary();
                 way.begin();
-                stream(board, control, way.source())
+                self.stream(board, control, way.source(), "jog")?;
+                let Some(then) = then else { return Ok(()) };
+                let at = self.place(file, board.status());
+                self.set(board, work::set(&offsets, at, &then)?)
             }
+            PauseWish::Probe(wish) => self.probe(board, control, (file, &offsets), &wish),
         }
+    }
+
+    /// Plans a jog that begins where the board rests.
+    fn planned(
+        &self,
+        board: &mut ConnectedBoard,
+        file: &ProgramFile,
+        wish: &JogWish,
+    ) -> Result<Moves, Refused> {
+        let moves = wish.file(file.machine())?;
+        jog::within_travel(&moves, &self.places(file, board.status()))?;
+        let planned = Moves::unwatched(moves.into())?;
+        if !wish.into_limit {
+            let closed = ClosedLimits::read(board)?;
+            let (wiring, met) = (file.machine().guard.limits, self.memory.limits());
+            closed.check(wiring, planned.plan().first, &met, self.axes)?;
+        }
+        Ok(planned)
+    }
+
+    /// Moves an axis until the probe ends the move, and sets what is wanted there.
+    fn probe(
+        &mut self,
+        board: &mut ConnectedBoard,
+        control: &mut Control,
+        (file, offsets): (&ProgramFile, &Offsets),
+        wanted: &ProbeWish,
+    ) -> Result<(), Refused> {
+        let (machine, letters) = (file.machine(), file.letters());
+        let number = wanted.axis(machine)?;
+        let planned = self.planned(board, file, &wanted.way())?;
+        if is_closed(board)? != wanted.away {
+            return Err(Refused::Input(wanted.already()));
+        }
+        self.settle(board, control)?;
+        self.changed = true;
+        let began = board.status().positions[number];
+        let moves = (&planned, !wanted.away);
+        let ways = &mut *self.ways;
+        let touched = match touch(board, machine, moves, &mut |status| wish(control, ways, status))?
+        {
+            Touched::At(steps) => steps,
+            Touched::Missed => return Err(Refused::Missed(wanted.missed())),
+            Touched::Stopped => return Err(Refused::Stopped("probe move")),
+        };
+        let at = point_at(letters, self.zero, &touched);
+        self.touched = Some(at);
+        if let Some(offsets) = wanted.offsets(offsets, (machine, letters), at)? {
+            self.set(board, offsets)?;
+        }
+        let from = (touched[number], began, board.status().positions[number]);
+        let Some(back) = wanted.back(&machine.axes[number], from) else { return Ok(()) };
+        let back = Moves::unwatched(back.file(machine)?.into())?;
+        let way = back.itinerary();
+        way.begin();
+        self.stream(board, control, way.source(), "way back from the touched place")
     }
 
     fn set(&mut self, board: &mut ConnectedBoard, offsets: Offsets) -> Result<(), Refused> {
@@ -171,21 +245,33 @@ impl<'a> Pause<'a> {
         if !self.settled
             && let Some(file) = self.itinerary.program()
         {
-            let ticks = (SETTLING / file.machine().timebase.tick_seconds()).ceil() as u32;
-            stream(board, control, Box::new(Parts::new(self.itinerary.settling(ticks))))?;
+            let parts = self.itinerary.settling(settling_ticks(file.machine()));
+            self.stream(board, control, Box::new(Parts::new(parts)), "jog")?;
             self.settled = true;
         }
         Ok(())
     }
 
+    /// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then the
+    /// program is ended.
+    fn stream<'s>(
+        &mut self,
+        board: &mut ConnectedBoard,
+        control: &mut Control,
+        source: Box<dyn SegmentSource + 's>,
+        what: &'static str,
+    ) -> Result<(), Refused> {
+        let ways = &mut *self.ways;
+        match go(board, source, &mut |status| wish(control, ways, status))? {
+            Ended::Stopped => Err(Refused::Stopped(what)),
+            Ended::Done | Ended::SeekEnded => Ok(()),
+        }
+    }
+
     /// The machine place of the board, mm and degrees.
     fn place(&self, file: &ProgramFile, status: &Status) -> Point {
-        let mut at = Point::default();
-        let steps = self.zero.iter().zip(status.positions);
-        for (&letter, (zero, position)) in file.letters().of_axes().iter().zip(steps) {
-            at[letter] = (zero + i64::from(position)) as f64 * file.letters().step()[letter];
-        }
-        at
+        let positions = status.positions.map(f64::from);
+        point_at(file.letters(), self.zero, &positions)
     }
 
     /// The machine places in steps of the axes that `travel` bounds.
@@ -197,51 +283,9 @@ impl<'a> Pause<'a> {
     }
 }
 
-/// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then the
-/// program is ended.
-fn stream<'s>(
-    board: &mut ConnectedBoard,
-    control: &mut Control,
-    source: Box<dyn SegmentSource + 's>,
-) -> Result<(), Refused> {
-    let mut source = source;
-    let ended = board.stream(&mut *source, |progress| {
-        let ends = control.program().is_some_and(|program| program.ends());
-        match control.wish(progress.status) {
-            Wish::GoOn if !ends => Wish::GoOn,
-            _ => Wish::Stop,
-        }
-    })?;
-    if ended == Ended::Stopped {
-        board.clear()?;
-    }
-    let answer = board.read_status()?.answer;
-    if answer.fault {
-        let Answer { cause, culprits, .. } = answer;
-        return Err(Refused::Board(HostError::Fault { cause, culprits }));
-    }
-    if ended == Ended::Stopped { Err(Refused::Stopped) } else { Ok(()) }
-}
-
-/// Segments of all axes, which start together.
-pub(super) struct Parts {
-    segments: Vec<VecDeque<Segment>>,
-    start: Option<u8>,
-}
-
-impl Parts {
-    pub fn new(segments: Vec<Vec<Segment>>) -> Self {
-        let start = Some(((1_u16 << segments.len()) - 1) as u8);
-        Self { segments: segments.into_iter().map(VecDeque::from).collect(), start }
-    }
-}
-
-impl SegmentSource for Parts {
-    fn segment(&mut self, axis: u8) -> Option<Segment> {
-        self.segments.get_mut(usize::from(axis))?.pop_front()
-    }
-
-    fn start(&mut self) -> Option<u8> {
-        self.start.take()
-    }
+/// What the user wants of a move in a pause, which has this state now.
+fn wish(control: &mut Control, ways: &mut Ways, status: &Status) -> Wish {
+    ways.see(status);
+    let ends = control.program().is_some_and(|program| program.ends());
+    if ends { Wish::Stop } else { control.wish(status) }
 }

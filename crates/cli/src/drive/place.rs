@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Machine, decimal};
-use carrystep_program::{Letters, Settings};
+use carrystep_program::{AXIS_LETTERS, Letters, Point, Settings};
+use std::collections::BTreeMap;
 
 /// A place of the machine.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub struct Place {
     pub start: [f64; 6],
     /// Of each axis, whether its machine zero is known, so that `travel` bounds it.
     pub soft: Vec<bool>,
+    /// Of each axis, the machine place of its register's zero in steps.
+    pub zero: Vec<i64>,
 }
 
 impl Place {
@@ -30,7 +33,8 @@ impl Place {
         positions: &[i32],
         unhomed: bool,
     ) -> Result<Self, Failure> {
-        let mut place = Self { start: Settings::default().start, soft: Vec::new() };
+        let mut place =
+            Self { start: Settings::default().start, soft: Vec::new(), zero: Vec::new() };
         let mut lost = Vec::new();
         for (number, (axis, &letter)) in machine.axes.iter().zip(letters.of_axes()).enumerate() {
             let position = i64::from(positions.get(number).copied().unwrap_or_default());
@@ -47,6 +51,7 @@ impl Place {
                 within(axis, steps)?;
             }
             place.soft.push(homed.is_some() && axis.travel.is_some());
+            place.zero.push(steps.saturating_sub(position));
             place.start[letter] = steps as f64 / decimal::to_f64(&axis.steps_per_unit);
         }
         if lost.is_empty() {
@@ -54,9 +59,15 @@ impl Place {
         }
         let (names, are) = (lost.join(", "), if lost.len() == 1 { "is" } else { "are" });
         Err(Failure::input(format!(
-            "{names} {are} not homed, so nobody knows where the program would go: `carrystep home` \
+            "{names} {are} not homed, so nobody knows where the machine is: `carrystep home` \
              first; --unhomed takes the place where the machine is for its zero and ignores `travel`"
         )))
+    }
+
+    /// The machine places in steps of the axes that `travel` bounds, for these positions.
+    pub fn bounded_steps(&self, positions: &[i32]) -> Vec<Option<i64>> {
+        let steps = self.zero.iter().zip(positions).zip(&self.soft);
+        steps.map(|((zero, &at), &soft)| soft.then(|| zero + i64::from(at))).collect()
     }
 
     /// The machine with `travel` only for axes whose zero is known.
@@ -67,6 +78,21 @@ impl Place {
         }
         machine
     }
+}
+
+/// The machine place, mm and degrees, at which the position registers have these values. `zero` is
+/// the machine place of their zeros in steps.
+pub fn point_at(letters: &Letters, zero: &[i64], positions: &[f64]) -> Point {
+    let mut at = Point::default();
+    for (&letter, (&zero, position)) in letters.of_axes().iter().zip(zero.iter().zip(positions)) {
+        at[letter] = (zero as f64 + position) * letters.step()[letter];
+    }
+    at
+}
+
+/// The coordinates of a place by the letters of the machine's axes.
+pub fn named_point(letters: &Letters, at: &Point) -> BTreeMap<char, f64> {
+    letters.of_axes().iter().map(|&letter| (AXIS_LETTERS[letter], at[letter])).collect()
 }
 
 /// Refuses a program that would begin beyond the travel of an axis.

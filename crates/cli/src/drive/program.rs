@@ -12,7 +12,7 @@ use carrystep_core::{OutputChange, Segment};
 use carrystep_files::Axis;
 use carrystep_job::{Hold, Pace};
 use carrystep_link::supply::{Starved, Supply};
-use carrystep_link::{Command, Queues, SegmentSource, Wish};
+use carrystep_link::{Command, Queues, SegmentSource, Status, Wish};
 use carrystep_plan::exact::travel;
 use carrystep_program::{
     AXIS_LETTERS, AxisSurvey, Found, Offsets, Point, ProgramFile, Resumed, Row, Rows, Stop, Survey,
@@ -258,7 +258,7 @@ impl Itinerary for ProgramStretches<'_> {
         Ok(Some(carrystep_program::stop_at(&self.now.borrow(), self.passed.get())?))
     }
 
-    fn offsets(&self) -> Option<Offsets> {
+    fn offsets(&self, _: &Status) -> Option<Offsets> {
         Some(self.offsets.borrow().clone())
     }
 

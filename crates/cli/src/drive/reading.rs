@@ -8,23 +8,20 @@
 //! ```
 
 use super::Line;
-use super::pause::{Parts, SETTLING};
+use super::settle::{exact_position, settle};
+use super::touch::{all_axes, is_closed};
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::{Control, ProgramControl};
 use crate::failure::Failure;
 use crate::switches::has_probe;
 use carrystep_files::Machine;
-use carrystep_link::registers::{INPUTS, MOST_AXES};
+use carrystep_link::registers::INPUTS;
 use carrystep_link::{AxisState, HostError, SeekSource, Wish};
 use carrystep_program::{
     AXIS_LETTERS, Found, Input, Point, ProgramFile, Reading, Stop, Survey, Switch, Until,
 };
-use carrystep_runner::settling;
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
-
-/// P of an axis where a program begins.
-const START_P: i128 = 1 << 63;
 
 /// Time between two looks at an input.
 const LOOK: Duration = Duration::from_millis(1);
@@ -34,9 +31,6 @@ const LOOK: Duration = Duration::from_millis(1);
 const fn bit(input: u32) -> u32 {
     16 + 8 * (input % 2) + 1 + input / 2
 }
-
-/// The bit of the probe in the register INPUTS.
-const PROBE: u32 = 16;
 
 /// Refuses a program that reads what the machine does not have.
 pub(super) fn refuse_missing(file: &ProgramFile, survey: &Survey) -> Result<(), Failure> {
@@ -106,7 +100,7 @@ impl Probing {
         &self,
         board: &mut ConnectedBoard,
     ) -> Result<Result<(), String>, ConnectedBoardError> {
-        let closed = board.register(INPUTS)? >> PROBE & 1 == 1;
+        let closed = is_closed(board)?;
         if closed != self.contact {
             return Ok(Ok(()));
         }
@@ -126,8 +120,7 @@ impl Probing {
 
     /// From now on the probe ends the motion of all axes.
     pub fn arm(&self, board: &mut ConnectedBoard) -> Result<(), ConnectedBoardError> {
-        let all = (1_u16 << board.facts().axes.min(MOST_AXES.into())) - 1;
-        board.seek(all as u8, SeekSource::probe(self.contact))
+        board.seek(all_axes(board), SeekSource::probe(self.contact))
     }
 
     /// What the move has come to, if it has not tripped.
@@ -156,21 +149,14 @@ impl Probing {
         (file, zero): (&ProgramFile, &[i64]),
         states: &[AxisState],
     ) -> Result<Probed, ConnectedBoardError> {
-        let snapshot = board.snapshot()?;
-        let off = |state: &AxisState| i128::from(state.p) - START_P;
-        let places: Vec<i128> =
-            zero.iter().zip(&snapshot.axes).map(|(_, state)| off(state)).collect();
-        let ticks = (SETTLING / file.machine().timebase.tick_seconds()).ceil() as u32;
-        board.stream(&mut Parts::new(settling(&places, ticks)), |_| Wish::GoOn)?;
+        settle(board, file.machine())?;
         let positions = board.read_status()?.positions;
         let letters = file.letters();
         let (mut rests, mut at) = (self.target, self.target);
         for (number, (&letter, zero)) in letters.of_axes().iter().zip(zero).enumerate() {
             let step = letters.step()[letter];
-            let (state, position) = (&states[number], positions[number]);
-            let part = off(state) as f64 / 2f64.powi(64);
-            rests[letter] = (zero + i64::from(position)) as f64 * step;
-            at[letter] = ((zero + i64::from(state.commanded())) as f64 + part) * step;
+            rests[letter] = (zero + i64::from(positions[number])) as f64 * step;
+            at[letter] = (*zero as f64 + exact_position(&states[number])) * step;
         }
         let place = letters.of_axes().iter();
         let place = place.map(|&letter| format!("{} {:.4}", AXIS_LETTERS[letter], at[letter]));

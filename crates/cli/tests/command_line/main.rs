@@ -72,6 +72,10 @@ mod table;
 #[cfg(unix)]
 mod terminal;
 #[cfg(unix)]
+mod touch_off;
+#[cfg(unix)]
+mod touch_off_failures;
+#[cfg(unix)]
 mod virtual_boards;
 mod windows;
 #[cfg(unix)]

@@ -238,7 +238,7 @@ fn stop_in_a_jog_ends_the_jog_and_the_program() {
     // Hours at 20 mm/s.
     let jogs = drives(&folder, "jog z 90000 --machine machine.toml", &board.port);
     while at(&folder, &board)[2] == 0 {}
-    refused(&jog(&folder, &board, "x 1"), "another jog or offset is not done yet");
+    refused(&jog(&folder, &board, "x 1"), "another jog, probe or offset is not done yet");
     passed(&folder.run(&format!("stop --port {} --machine machine.toml", board.port)));
     let ended = jogs.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(1));

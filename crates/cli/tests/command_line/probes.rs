@@ -8,7 +8,7 @@ use crate::virtual_boards::{Board, passed};
 use serde_json::Value;
 
 /// A machine with a probe and three general inputs.
-fn folder(job: &str) -> Folder {
+pub fn folder(job: &str) -> Folder {
     let folder = Folder::new();
     let inputs = "[machine.inputs]\nprobe = \"low\"\ngeneral = [\"high\", \"low\", \"high\"]\n\n";
     folder.write(

@@ -42,7 +42,7 @@ pub fn stop(folder: &Folder, port: &str, options: &str) -> Ran {
     folder.run(&format!("stop --port {port} --machine machine.toml{options}"))
 }
 
-fn signal(child: &Child, name: &str) {
+pub fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
 }
 
