@@ -1,6 +1,6 @@
 //! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
-//! that one: `run`, `jog`, `probe` and `home` listen on a local socket while they hold the port, and
-//! `carrystep stop`, `hold`, `resume`, `override` and `status` talk to them through it.
+//! that one: `run`, `jog`, `probe` and `home` listen on a local socket while they hold the port,
+//! and `carrystep stop`, `hold`, `resume`, `override` and `status` talk to them through it.
 //!
 //! ```text
 //! claim    a lock file per device, named after its number; it contains the holder of the port

@@ -40,7 +40,8 @@ impl JogWish {
     }
 
     /// The duration in s with which the speed along the line is at most the feed, units per minute.
-    /// An axis that has this time accelerates at its limit, and goes at most at its part of the feed.
+    /// An axis that has this time accelerates at its limit, and goes at most at its part of the
+    /// feed.
     fn seconds_at(&self, machine: &Machine, feed: f64) -> f64 {
         let length =
             self.distances.iter().map(|(_, distance)| distance.powi(2)).sum::<f64>().sqrt();

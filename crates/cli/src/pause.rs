@@ -45,8 +45,8 @@ pub struct PauseResult {
     /// The axes moved, and the probe has not ended their move.
     #[serde(default)]
     pub missed: bool,
-    /// Machine place at which the probe has ended a move, by letters as in `place`: that of the tick
-    /// in which the gateware accepted its level.
+    /// Machine place at which the probe has ended a move, by letters as in `place`: that of the
+    /// tick in which the gateware accepted its level.
     #[serde(default)]
     pub touched: Option<BTreeMap<char, f64>>,
     /// What the program waits for.

@@ -58,8 +58,8 @@ impl ProbeWish {
         }
     }
 
-    /// The move back behind the touch, if there is one: `touched`, `began` and `rests` are positions
-    /// of the axis in steps.
+    /// The move back behind the touch, if there is one: `touched`, `began` and `rests` are
+    /// positions of the axis in steps.
     pub fn back(&self, axis: &Axis, (touched, began, rests): (f64, i32, i32)) -> Option<JogWish> {
         let scale = decimal::to_f64(&axis.steps_per_unit);
         let way = self.retract? * scale * self.distance.signum();

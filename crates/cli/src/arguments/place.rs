@@ -12,7 +12,11 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its name.
-    #[arg(value_name = "AXIS", requires = "distance", required_unless_present_any = ["axes", "set"])]
+    #[arg(
+        value_name = "AXIS",
+        requires = "distance",
+        required_unless_present_any = ["axes", "set"]
+    )]
     pub axis: Option<String>,
     /// Distance in units of the axis; negative is backward.
     #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
@@ -70,14 +74,20 @@ pub struct ProbeArguments {
     pub away: bool,
     /// Then go back this far from the touched place, in units of the axis, but not beyond the place
     /// where the move began.
-    #[arg(long, value_name = "UNITS", value_parser = length, allow_negative_numbers = true, conflicts_with = "away")]
+    #[arg(
+        long,
+        value_name = "UNITS",
+        value_parser = length,
+        allow_negative_numbers = true,
+        conflicts_with = "away"
+    )]
     pub retract: Option<f64>,
-    /// Set the work offset of G54 to G59.3, or G92, so that the touched place is 0, or on a plate the
-    /// work below it.
+    /// Set the work offset of G54 to G59.3, or G92, so that the touched place is 0, or on a plate
+    /// the work below it.
     #[arg(long, value_name = "SYSTEM", value_parser = system_or_g92)]
     pub set: Option<Target>,
-    /// Set the length of the tool (G43.1) so that the touched place is 0, or on a plate the work below
-    /// it, in G54 to G59.3, which stays as it is.
+    /// Set the length of the tool (G43.1) so that the touched place is 0, or on a plate the work
+    /// below it, in G54 to G59.3, which stays as it is.
     #[arg(long, value_name = "SYSTEM", value_parser = tool_in)]
     pub tool: Option<Target>,
     /// How thick the plate is that the tool touches, in units of the axis.
@@ -90,8 +100,8 @@ pub struct ProbeArguments {
         requires = "sets"
     )]
     pub plate: f64,
-    /// Probe although the machine has limit switches and is not homed, and ignore `travel`. The place
-    /// where it begins is zero, so nothing can be set.
+    /// Probe although the machine has limit switches and is not homed, and ignore `travel`. The
+    /// place where it begins is zero, so nothing can be set.
     #[arg(long, conflicts_with = "sets")]
     pub unhomed: bool,
     /// The machine.

@@ -1,5 +1,5 @@
-//! `carrystep probe`: moves an axis until the probe ends the move, and sets what the touched place is
-//! called: by itself, or through the command whose program waits.
+//! `carrystep probe`: moves an axis until the probe ends the move, and sets what the touched place
+//! is called: by itself, or through the command whose program waits.
 
 use crate::arguments::ProbeArguments;
 use crate::connection;

@@ -78,8 +78,9 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     told(&moved(source, name, port, "jog", *into_limit, check)?, arguments.json)
 }
 
-/// Plans and executes the moves, and sets the offset that `check` returns where they end. Everything
-/// is planned before the port is opened, and nothing moves before the board is identified.
+/// Plans and executes the moves, and sets the offset that `check` returns where they end.
+/// Everything is planned before the port is opened, and nothing moves before the board is
+/// identified.
 fn moved(
     source: MoveSource,
     name: &Path,

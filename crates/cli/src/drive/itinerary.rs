@@ -85,8 +85,8 @@ pub trait Itinerary {
         Ok(None)
     }
 
-    /// The work offsets behind the whole way, where the board has this state; `None` if they stay as
-    /// they were before.
+    /// The work offsets behind the whole way, where the board has this state; `None` if they stay
+    /// as they were before.
     fn offsets(&self, _end: &Status) -> Option<Offsets> {
         None
     }

@@ -37,7 +37,8 @@ impl Moves {
         Self::planned(source, |source, see| job::survey(source, see))
     }
 
-    /// The same, whatever signals have come before: while a program waits, they concern the program.
+    /// The same, whatever signals have come before: while a program waits, they concern the
+    /// program.
     ///
     /// # Errors
     /// As [`Moves::new`].

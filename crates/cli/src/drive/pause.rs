@@ -1,5 +1,5 @@
-//! A pause of a program: other commands jog, probe and set work offsets, and behind it the rest of the
-//! program is planned from the real place if anything was changed.
+//! A pause of a program: other commands jog, probe and set work offsets, and behind it the rest of
+//! the program is planned from the real place if anything was changed.
 
 use super::itinerary::{Itinerary, Rest};
 use super::moves::Moves;
@@ -252,8 +252,8 @@ impl<'a> Pause<'a> {
         Ok(())
     }
 
-    /// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then the
-    /// program is ended.
+    /// Streams a move at rest. A stop, and a signal that ends the program, ramp it down, and then
+    /// the program is ended.
     fn stream<'s>(
         &mut self,
         board: &mut ConnectedBoard,

@@ -1,4 +1,5 @@
-//! A probe move of a board that executes no program: the touch, what is set there, and the way back.
+//! A probe move of a board that executes no program: the touch, what is set there, and the way
+//! back.
 
 use super::itinerary::Itinerary as _;
 use super::moves::Moves;
@@ -43,8 +44,8 @@ pub struct Probed {
     pub culprits: Vec<Culprit>,
     /// What the user must do about it.
     pub remedy: Option<&'static str>,
-    /// Machine place at which the probe has ended the move, by letters, x, y, z in mm and a, b, c in
-    /// degrees: that of the tick in which the gateware accepted its level. Null if it has not.
+    /// Machine place at which the probe has ended the move, by letters, x, y, z in mm and a, b, c
+    /// in degrees: that of the tick in which the gateware accepted its level. Null if it has not.
     pub touched: Option<BTreeMap<char, f64>>,
     /// Machine place at the end.
     pub place: BTreeMap<char, f64>,
@@ -114,7 +115,8 @@ pub fn probe(
         Err(Halt::Board(HostError::Fault { .. })) => How::Fault,
         Err(Halt::Board(error)) => return Err(connection::lost(&error, &axes, &facts)),
         Err(Halt::Failed(failure)) => {
-            // If the file cannot be written, the old one no longer matches the board and is ignored.
+            // If the file cannot be written, the old one no longer matches the board and is
+            // ignored.
             let _ = memory.keep(&mut board);
             return Err(failure);
         }

@@ -1,5 +1,5 @@
-//! What brings axes that rest anywhere between two steps to where moves and programs begin: P at its
-//! start value, without a step.
+//! What brings axes that rest anywhere between two steps to where moves and programs begin: P at
+//! its start value, without a step.
 
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use carrystep_core::Segment;

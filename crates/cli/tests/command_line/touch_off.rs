@@ -1,5 +1,5 @@
-//! `carrystep probe` and `jog --set` on virtual boards: what becomes of a touched place, by itself and
-//! while a program waits.
+//! `carrystep probe` and `jog --set` on virtual boards: what becomes of a touched place, by itself
+//! and while a program waits.
 
 use crate::command::{Folder, Ran};
 use crate::probes::folder;

@@ -1,5 +1,5 @@
-//! `carrystep probe` and `jog --set` on virtual boards when something goes wrong: what is refused, and
-//! what is true behind a stop, a limit, a killed command and a board that is pulled.
+//! `carrystep probe` and `jog --set` on virtual boards when something goes wrong: what is refused,
+//! and what is true behind a stop, a limit, a killed command and a board that is pulled.
 
 use crate::command::Folder;
 use crate::probes::folder;
