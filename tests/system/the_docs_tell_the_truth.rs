@@ -304,6 +304,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "boards",
             "equivalence",
             "holds",
+            "kills",
             "linuxcnc"
         ]
     );

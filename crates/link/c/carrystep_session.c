@@ -40,6 +40,7 @@ static void own(carrystep_session *session, uint16_t number)
     session->powering = false;
     session->seek_ended = false;
     session->cut_refused = false;
+    session->keeps_refused_cut = false;
     memset(session->under_way, 0, sizeof session->under_way);
     memset(session->room, 0, sizeof session->room);
 }
@@ -131,6 +132,13 @@ bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_seg
 bool carrystep_cut(carrystep_session *session, uint8_t mask, const uint8_t slots[CARRYSTEP_MOST_AXES])
 {
     carrystep_request request;
+    uint8_t next = (uint8_t)(session->first + session->length);
+    /* A copy of a refused cut may have been refused as well, and the answer would be taken for that
+     * of this one. So a write that changes nothing takes the number. */
+    if (session->keeps_refused_cut && session->refused_cut == next &&
+        !carrystep_write(session, CARRYSTEP_IDENTITY, 0)) {
+        return false;
+    }
     memset(&request, 0, sizeof request);
     request.writes = true;
     request.address = (uint8_t)WRITES(CARRYSTEP_CUT);
@@ -227,6 +235,7 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
         session->since = now;
         session->has_refused = false;
         session->busy = false;
+        session->keeps_refused_cut = false;
     }
     if (ends_seek || refuses_cut) {
         /* The gateware has executed none of these writes, and the next one has the number of the
@@ -237,6 +246,10 @@ static void count(carrystep_session *session, const carrystep_answer *answer, ui
         carrystep_withdraw(session);
         session->seek_ended = session->seek_ended || ends_seek;
         session->cut_refused = refuses_cut;
+        if (refuses_cut) {
+            session->keeps_refused_cut = true;
+            session->refused_cut = answer->next;
+        }
     }
     if (refused) {
         refusal(session, (uint8_t)(answer->sequence - answer->next), busy, now);

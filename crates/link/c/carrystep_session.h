@@ -67,6 +67,8 @@ typedef struct {
     bool powering;  /* this host has asked for power */
     bool seek_ended;
     bool cut_refused;
+    bool keeps_refused_cut; /* no other write has been acknowledged since a cut was refused */
+    uint8_t refused_cut;    /* its sequence number */
 } carrystep_session;
 
 typedef enum {

@@ -5,7 +5,8 @@ use crate::command::{CutSlots, ProgramError};
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Refusal, Request, of_axis};
 use crate::registers::{
-    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, OPEN, POSITION, SEEK, SNAPSHOT, START, STOP,
+    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, IDENTITY, MOST_AXES, OPEN, POSITION, SEEK, SNAPSHOT,
+    START, STOP,
 };
 use crate::singles::Singles;
 use crate::slip::{Decoder, Received};
@@ -48,6 +49,8 @@ pub struct Session<const N: usize> {
     cutting: bool,
     /// Whether the last cut was refused.
     cut_refused: bool,
+    /// The sequence number of a cut that was refused, until another write with it is acknowledged.
+    refused_cut: Option<u8>,
     /// Whether the last write of SEEK named an axis.
     seeking: bool,
     /// Whether a start is armed in the gateware.
@@ -78,6 +81,7 @@ impl<const N: usize> Session<N> {
             seek_ended: false,
             cutting: false,
             cut_refused: false,
+            refused_cut: None,
             seeking: false,
             armed: false,
             unpowered: false,
@@ -120,6 +124,7 @@ impl<const N: usize> Session<N> {
         self.seek_ended = false;
         self.cutting = false;
         self.cut_refused = false;
+        self.refused_cut = None;
         self.seeking = false;
         self.powering = false;
     }
@@ -168,9 +173,16 @@ impl<const N: usize> Session<N> {
 
     /// Queues a CUT. Segments that are queued behind it are executed only if it is granted.
     ///
+    /// If a CUT was refused and nothing was written since, a write that changes nothing takes its
+    /// number: a copy of that CUT may have been refused as well, and the answer would be taken for
+    /// that of the new one.
+    ///
     /// # Errors
     /// As [`Self::write`].
     pub fn cut(&mut self, slots: CutSlots) -> Result<(), WriteError> {
+        if self.refused_cut == Some(self.window.next()) {
+            self.write(Body::Write { address: IDENTITY, word: 0 })?;
+        }
         self.write(Body::Cut(slots))?;
         self.cut_refused = false;
         Ok(())
@@ -351,14 +363,19 @@ impl<const N: usize> Session<N> {
             && self.window.answered(answer).is_some();
         let Self { under_way, starting, capturing, cutting, .. } = self;
         let mut settled = |body: &Body| settle(body, under_way, [starting, capturing, cutting]);
+        let unacknowledged = self.window.len();
         if !self.window.answer(answer, now, &mut settled) {
             return;
+        }
+        if self.window.len() < unacknowledged {
+            self.refused_cut = None;
         }
         if ends {
             self.window.clear(settled);
             self.seek_ended |= answer.refusal == Some(Refusal::SeekEnded);
             if answer.refusal == Some(Refusal::Cut) {
                 self.cut_refused = true;
+                self.refused_cut = Some(answer.next);
                 self.room = [0; MOST_AXES as usize];
             }
         }

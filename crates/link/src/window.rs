@@ -75,6 +75,11 @@ impl<const N: usize> Window<N> {
         N - self.length
     }
 
+    /// The sequence number of the next write that is appended.
+    pub const fn next(&self) -> u8 {
+        self.first.wrapping_add(self.length as u8)
+    }
+
     /// Appends a write.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use support::soak::{Soak, TICKS, soak};
 use support::wire::Faults;
 
 /// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
-const IN_C: [(&str, &str, &str); 31] = [
+const IN_C: [(&str, &str, &str); 32] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
     ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
@@ -51,6 +51,7 @@ const IN_C: [(&str, &str, &str); 31] = [
         "(session->singles[index].request.writes && !session->singles[found].request.writes)",
         "false",
     ),
+    ("a cut has the number of a refused one", "session->keeps_refused_cut &&", "false &&"),
     ("a start is fed without power", "return UNPOWERED;", ""),
     (
         "a start is written without power",

@@ -5,8 +5,8 @@
 // `0 ...` requests the state.
 //
 // Lines on standard output, each with the first cycle in which the change is visible: `t CYCLE TX`,
-// `p CYCLE STEP DIR`, `l CYCLE` when a start has loaded, `f CYCLE CAUSE` when a stop comes into
-// force, and for the state `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
+// `p CYCLE STEP DIR`, `o CYCLE OUTPUTS PWM ENABLED`, `l CYCLE` when a start has loaded, `f CYCLE
+// CAUSE` when a stop comes into force, and for the state `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
 //
 // A template: `pins` are the engine's inputs from pins, in the order of their table.
 #include "Vboard_bench.h"
@@ -17,15 +17,18 @@
 namespace {
 
 struct Seen {
-    unsigned tx = 1, step = 0, dir = 0, fault = 0;
+    unsigned tx = 1, step = 0, dir = 0, outputs = 0, pwm = 0, enabled = 0, fault = 0;
 };
 
 void look(const Vboard_bench& board, uint64_t cycle, Seen& seen) {
     if (board.tx != seen.tx) std::printf("t %" PRIu64 " %u\n", cycle, unsigned{board.tx});
     if (board.step != seen.step || board.dir != seen.dir)
         std::printf("p %" PRIu64 " %x %x\n", cycle, unsigned{board.step}, unsigned{board.dir});
+    if (board.outputs != seen.outputs || board.pwm != seen.pwm || board.enabled != seen.enabled)
+        std::printf("o %" PRIu64 " %x %u %u\n", cycle, unsigned{board.outputs}, unsigned{board.pwm},
+                    unsigned{board.enabled});
     if (board.fault && !seen.fault) std::printf("f %" PRIu64 " %u\n", cycle, unsigned{board.cause});
-    seen = {board.tx, board.step, board.dir, board.fault};
+    seen = {board.tx, board.step, board.dir, board.outputs, board.pwm, board.enabled, board.fault};
 }
 
 }  // namespace

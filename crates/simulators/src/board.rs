@@ -30,10 +30,23 @@ pub enum Did {
     Tx(u64, bool),
     /// Levels of STEP and DIR of all axes changed.
     Pins(u64, [u8; 2]),
+    /// Levels of the outputs, of the PWM's pin, or of the request for the drivers' power changed.
+    Outputs(u64, SwitchedPins),
     /// A start loaded its first segments.
     Load(u64),
     /// A stop came into force, with its cause.
     Stop(u64, Cause),
+}
+
+/// Levels of the pins that do not belong to an axis; 1 is active.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SwitchedPins {
+    /// The outputs that programs switch, one bit each.
+    pub outputs: u8,
+    /// The pin of the PWM.
+    pub pwm: bool,
+    /// Whether the drivers are to have power.
+    pub enabled: bool,
 }
 
 /// State of the board between two runs.
@@ -155,6 +168,10 @@ fn parsed(line: &str) -> Option<Heard> {
     Some(Heard::Did(match kind {
         "t" => Did::Tx(cycle, hex()? == 1),
         "p" => Did::Pins(cycle, [hex()?, hex()?]),
+        "o" => {
+            let (outputs, pwm, enabled) = (hex()?, hex()? == 1, hex()? == 1);
+            Did::Outputs(cycle, SwitchedPins { outputs, pwm, enabled })
+        }
         "l" => Did::Load(cycle),
         "f" => Did::Stop(cycle, cause(hex()?)?),
         "." => {

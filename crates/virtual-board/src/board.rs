@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::pin_levels::PinLevels;
 use crate::wire::{Driven, SPI_RESTS, Wire};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard};
@@ -156,6 +157,27 @@ impl ModelBoard {
                 self.follow(&inputs, alone, to);
             }
         }
+    }
+
+    /// Runs the board up to cycle `end`, clock by clock; `seen` receives the levels of all pins in
+    /// each cycle in which one of them has changed.
+    pub fn watch(&mut self, end: u64, seen: &mut dyn FnMut(u64, PinLevels)) {
+        let mut told = self.levels();
+        while self.cycle() < end {
+            let inputs = self.inputs(&self.link.outputs());
+            self.clock(&inputs, &mut ());
+            let now = self.levels();
+            if now != told {
+                seen(self.cycle(), now);
+                told = now;
+            }
+        }
+    }
+
+    /// The levels of the pins in this cycle.
+    fn levels(&self) -> PinLevels {
+        let EngineOutputs { step, dir, outputs, pwm, enabled, .. } = self.outputs();
+        PinLevels { step, dir, outputs, pwm, enabled, line: self.link.tx() }
     }
 
     /// Runs the link alone as long as the engine does not affect it, at most up to cycle `end`.

@@ -2,6 +2,7 @@
 //! simulated time.
 
 use crate::board::{ModelBoard, Switches};
+use crate::pin_levels::PinLevels;
 use carrystep_core::engine::Cause;
 use carrystep_model::fast::Edges;
 use carrystep_simulators::LevelError;
@@ -30,11 +31,6 @@ pub trait SimulatedBoard {
 
     /// Levels of the STEP pins, a bit for each axis.
     fn step(&self) -> u8;
-
-    /// Whether the board tells the levels of the outputs that programs switch.
-    fn shows_outputs(&self) -> bool {
-        true
-    }
 
     /// Number of steps of an axis that were discarded; `None` if this board cannot report it.
     fn discarded(&self, axis: usize) -> Option<u32>;
@@ -67,6 +63,13 @@ pub trait SimulatedBoard {
     /// # Errors
     /// [`LevelError`] if the simulation has failed.
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError>;
+
+    /// Runs the board up to cycle `end`; `seen` receives the levels of all pins in each cycle in
+    /// which one of them has changed. A board of models skips no clock here.
+    ///
+    /// # Errors
+    /// [`LevelError`] if the simulation has failed.
+    fn watch(&mut self, end: u64, seen: &mut dyn FnMut(u64, PinLevels)) -> Result<(), LevelError>;
 }
 
 impl SimulatedBoard for ModelBoard {
@@ -128,6 +131,11 @@ impl SimulatedBoard for ModelBoard {
 
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
         self.run(end, to);
+        Ok(())
+    }
+
+    fn watch(&mut self, end: u64, seen: &mut dyn FnMut(u64, PinLevels)) -> Result<(), LevelError> {
+        self.watch(end, seen);
         Ok(())
     }
 }

@@ -13,6 +13,7 @@ mod board;
 mod gateware;
 mod line;
 mod pace;
+mod pin_levels;
 #[cfg(unix)]
 mod real_time;
 mod spi;
@@ -26,6 +27,7 @@ pub use carrystep_model::fast::Edges;
 pub use gateware::{KEPT, SimulatedBoard};
 pub use line::{LineReceiver, LineSender};
 pub use pace::{Pace, Walk};
+pub use pin_levels::PinLevels;
 #[cfg(unix)]
 pub use real_time::{RealTimeBoard, RealTimeError};
 #[cfg(unix)]

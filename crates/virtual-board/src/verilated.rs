@@ -2,13 +2,14 @@
 
 use crate::board::Switches;
 use crate::gateware::SimulatedBoard;
+use crate::pin_levels::{Changes, PinLevels};
 use crate::wire::{Driven, Wire};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, MAX_AXES};
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_model::fast::{Change, Edge, Edges};
 use carrystep_simulators::LevelError;
-use carrystep_simulators::board::{BoardProcess, Did, Levels, Standing};
+use carrystep_simulators::board::{BoardProcess, Did, Levels, Standing, SwitchedPins};
 
 /// Greatest number of clocks sent to the process at once.
 const CLOCKS: u64 = 5000;
@@ -23,10 +24,41 @@ pub struct VerilatedBoard {
     switches: Switches,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
-    pins: [u8; 2],
+    levels: PinLevels,
     travelled: [i32; MAX_AXES],
-    /// Edges after the first load at which a run stopped; the next run delivers them.
-    late: Vec<Edge>,
+    /// What came after the first load at which a run stopped; the next run delivers it.
+    late: Late,
+}
+
+/// Edges and levels of outputs that are delivered later.
+#[derive(Debug, Default)]
+struct Late(Vec<LateChange>);
+
+#[derive(Debug, Clone, Copy)]
+enum LateChange {
+    Edge(Edge),
+    Levels(u64, u8),
+}
+
+impl Late {
+    fn deliver(&mut self, to: &mut impl Edges) {
+        for change in self.0.drain(..) {
+            match change {
+                LateChange::Edge(edge) => to.edge(edge),
+                LateChange::Levels(clock, levels) => to.levels(clock, levels),
+            }
+        }
+    }
+}
+
+impl Edges for Late {
+    fn edge(&mut self, edge: Edge) {
+        self.0.push(LateChange::Edge(edge));
+    }
+
+    fn levels(&mut self, clock: u64, levels: u8) {
+        self.0.push(LateChange::Levels(clock, levels));
+    }
 }
 
 impl VerilatedBoard {
@@ -55,13 +87,19 @@ impl VerilatedBoard {
             switches: Switches::default(),
             loads: Vec::new(),
             stops: Vec::new(),
-            pins: [0; 2],
+            levels: PinLevels::default(),
             travelled: [0; MAX_AXES],
-            late: Vec::new(),
+            late: Late::default(),
         })
     }
 
-    fn go(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+    /// Runs up to cycle `end`, at most [`CLOCKS`] clocks away.
+    fn go(
+        &mut self,
+        end: u64,
+        to: &mut impl Edges,
+        seen: &mut dyn FnMut(u64, PinLevels),
+    ) -> Result<(), LevelError> {
         let pins = self.switches.pins(&self.build.guard);
         let axes = u8::MAX >> (MAX_AXES - self.build.axes());
         let (limit_min, limit_max) = (pins.limit_min & axes, pins.limit_max & axes);
@@ -74,22 +112,38 @@ impl VerilatedBoard {
             stimuli.push((count, Levels { rx, spi, pins }));
             cycle += count;
         }
-        let Self { process, wire, loads, stops, pins, travelled, .. } = self;
+        let Self { process, wire, loads, stops, levels, travelled, .. } = self;
+        let mut pins = [levels.step, levels.dir];
+        let mut outputs = levels.outputs;
+        let mut changes = Changes::new(*levels, seen);
         let standing = process.run(&stimuli, &mut |did| match did {
-            Did::Tx(cycle, level) => wire.hear(cycle, level),
+            Did::Tx(cycle, level) => {
+                wire.hear(cycle, level);
+                changes.change(cycle, |levels| levels.line = level);
+            }
             Did::Pins(cycle, now) => {
-                edges(cycle, *pins, now, &mut |edge| {
+                edges(cycle, pins, now, &mut |edge| {
                     if edge.change == Change::Rise {
                         let travelled = &mut travelled[usize::from(edge.axis)];
                         *travelled = travelled.wrapping_add(if edge.backward { -1 } else { 1 });
                     }
                     to.edge(edge);
                 });
-                *pins = now;
+                pins = now;
+                changes.change(cycle, |levels| [levels.step, levels.dir] = now);
+            }
+            Did::Outputs(cycle, SwitchedPins { outputs: now, pwm, enabled }) => {
+                if std::mem::replace(&mut outputs, now) != now {
+                    to.levels(cycle, now);
+                }
+                changes.change(cycle, |levels| {
+                    (levels.outputs, levels.pwm, levels.enabled) = (now, pwm, enabled);
+                });
             }
             Did::Load(cycle) => loads.push(cycle),
             Did::Stop(cycle, cause) => stops.push((cycle, cause)),
         })?;
+        self.levels = changes.finish();
         self.standing = standing;
         self.wire.reach(end);
         Ok(())
@@ -114,12 +168,7 @@ impl SimulatedBoard for VerilatedBoard {
     }
 
     fn step(&self) -> u8 {
-        self.pins[0]
-    }
-
-    /// The process reports only STEP and DIR.
-    fn shows_outputs(&self) -> bool {
-        false
+        self.levels.step
     }
 
     /// Not visible at the pins.
@@ -157,17 +206,24 @@ impl SimulatedBoard for VerilatedBoard {
     }
 
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
-        self.late.drain(..).for_each(|edge| to.edge(edge));
+        self.late.deliver(to);
         let waits = self.loads.is_empty();
         while self.cycle() < end && self.loads.is_empty() == waits {
             let stop = end.min(self.cycle() + CLOCKS);
             if waits {
-                let mut late = Vec::new();
-                self.go(stop, &mut late)?;
+                let mut late = Late::default();
+                self.go(stop, &mut late, &mut |_, _| ())?;
                 self.late = late;
             } else {
-                self.go(stop, to)?;
+                self.go(stop, to, &mut |_, _| ())?;
             }
+        }
+        Ok(())
+    }
+
+    fn watch(&mut self, end: u64, seen: &mut dyn FnMut(u64, PinLevels)) -> Result<(), LevelError> {
+        while self.cycle() < end {
+            self.go(end.min(self.cycle() + CLOCKS), &mut (), seen)?;
         }
         Ok(())
     }

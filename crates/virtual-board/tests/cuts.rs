@@ -50,12 +50,14 @@ struct Rows {
     before: Option<Reading>,
     start: Option<u8>,
     refused: u32,
+    /// A row lasts 2 to the power of this times [`TICKS`].
+    slow: u32,
 }
 
 impl Rows {
     fn new(rows: Plan) -> RefCell<Self> {
         let now = Reading { rows, at: [0; AXES] };
-        RefCell::new(Self { now, before: None, start: Some(0x3f), refused: 0 })
+        RefCell::new(Self { now, before: None, start: Some(0x3f), refused: 0, slow: 0 })
     }
 
     /// Replaces what follows the first `keep` rows.
@@ -73,8 +75,8 @@ impl SegmentSource for Rows {
         let at = at.get_mut(usize::from(axis))?;
         let row = rows.get(*at)?;
         *at += 1;
-        let v = row[usize::from(axis)] << 54;
-        Some(Segment { ticks: TICKS, v, a: 0, j: 0, last: *at == rows.len() })
+        let (v, ticks) = (row[usize::from(axis)] << (54 - self.slow), TICKS << self.slow);
+        Some(Segment { ticks, v, a: 0, j: 0, last: *at == rows.len() })
     }
 
     fn outputs(&mut self) -> OutputChange {
@@ -194,4 +196,54 @@ fn lost_frames_around_a_cut_are_sent_again() {
         }] += 1;
     }
     assert!(outcomes.iter().all(|&count| count > 2), "{outcomes:?}");
+}
+
+/// A cut that names a row of the past, and the next one at once. The host is late, and sends the first
+/// one twice: the second answer that refuses it comes when the second one is on the line.
+#[test]
+fn cut_right_behind_a_refused_one_is_taken_for_itself() {
+    let (mut granted, seeds) = (0, 40);
+    for seed in 0..seeds {
+        let mut random = Random::new(seed);
+        let uart = Uart::new(CLOCK_HZ, 240_000).unwrap();
+        let end = End::<ModelBoard>::new(uart, Faults::default(), seed);
+        let mut host = end.connect_to(uart.build_id(&build()), QUICK).unwrap();
+        host.open(SESSION).unwrap();
+        host.enable().unwrap();
+        let (old, new) = (plan(&mut random, ROWS), plan(&mut random, NEW_ROWS));
+        let source = Rows::new(old.clone());
+        source.borrow_mut().slow = 3;
+        let (mut first, mut second, mut cuts, mut late) = (false, None, 0, false);
+        let ended = host.stream(&source, |progress: &Progress<'_>| {
+            let Queues { sent, begun, cuts: now } = progress.queues.unwrap();
+            cuts = now;
+            let keep = match (first, second) {
+                (false, _) if begun >= 3 + (seed % 20) as u32 => begun - 1,
+                (true, None) if source.borrow().refused == 1 => begun + 4,
+                (true, None) if !std::mem::replace(&mut late, true) => {
+                    end.wait(u64::from(QUICK.timing.resend) + 3);
+                    return Wish::GoOn;
+                }
+                _ => return Wish::GoOn,
+            };
+            if keep >= sent {
+                return Wish::GoOn;
+            }
+            second = first.then_some(keep);
+            first = true;
+            source.borrow_mut().replace(keep, &new);
+            Wish::Cut { keep }
+        });
+        assert_eq!(ended, Ok(Ended::Done), "seed {seed}");
+        let refused = source.borrow().refused;
+        let kept = second.filter(|_| refused == 1);
+        assert_eq!(cuts, u32::from(kept.is_some()), "seed {seed}, {refused} refused");
+        let wanted = match kept {
+            Some(keep) => [&old[..keep as usize], &new].concat(),
+            None => old,
+        };
+        assert_eq!(host.status().positions[..AXES], sum(&wanted), "seed {seed}, {kept:?}");
+        granted += u64::from(kept.is_some());
+    }
+    assert!(granted * 2 > seeds, "only {granted} of {seeds}");
 }

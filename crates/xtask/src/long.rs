@@ -33,7 +33,7 @@ struct Run {
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its
 /// `FIGURES`.
-const RUNS: [Run; 14] = [
+const RUNS: [Run; 15] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -127,6 +127,12 @@ const RUNS: [Run; 14] = [
         what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from the planned curve, the end",
         asks: &[("CARRYSTEP_HOLDS", "500")],
         cargo: &["--test", "overrides", "holds_at_random_times"],
+    },
+    Run {
+        name: "kills",
+        what: "50 programs whose command is killed with SIGKILL in motion: the axes ramp down, the positions are true, and [`--from-block`](running-jobs.md#going-on-at-a-block) ends the job where it should",
+        asks: &[("CARRYSTEP_KILLS", "50")],
+        cargo: &["--test", "command_line", "host_that_is_killed"],
     },
     Run {
         name: "linuxcnc",

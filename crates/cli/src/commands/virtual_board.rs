@@ -112,8 +112,7 @@ fn capture(
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps, timebase: time, is_part: false };
-    let exist = if operated.real_time.board.shows_outputs() { build.outputs.exist } else { 0 };
-    let mut vcd = PinsVcd::new(out, own, names, exist)?;
+    let mut vcd = PinsVcd::new(out, own, names, build.outputs.exist)?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
     let mut tell = |cycle: u64, outputs: &EngineOutputs| {
         feed.pins(cycle, outputs.step, outputs.dir);

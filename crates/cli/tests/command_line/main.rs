@@ -8,6 +8,8 @@ mod bad_files;
 mod bad_machines;
 mod bad_moves;
 mod bad_outputs;
+#[cfg(unix)]
+mod board_here;
 mod boards;
 #[cfg(unix)]
 mod cache;
@@ -57,6 +59,12 @@ mod probes;
 mod profile;
 mod program_outputs;
 mod programs;
+#[cfg(unix)]
+mod recorded_runs;
+#[cfg(unix)]
+#[path = "../../../virtual-board/tests/support/recorder.rs"]
+#[allow(dead_code, reason = "the tests of other crates use the rest")]
+mod recorder;
 #[cfg(target_os = "linux")]
 mod reports;
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 
 use super::wire::{Faults, Wire};
 use super::{CLOCK_HZ, Kind, MS, SESSION, Seen, build};
-use carrystep_core::link::LineKind;
+use carrystep_core::link::{BuildId, LineKind};
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Clock, Host, Patience, Timing};
 use carrystep_model::fast::Edge;
@@ -56,9 +56,13 @@ impl<B: Kind> Bus<B> {
     /// A bus that flips one bit in `flip` of a million bytes. An SPI can neither lose nor repeat
     /// bytes.
     pub fn bad(sck_hz: u64, flip: u32, seed: u64) -> Self {
-        let faults = Faults { flip, ..Faults::default() };
+        Self::of(B::on_spi(sck_hz), sck_hz, Faults { flip, ..Faults::default() }, seed)
+    }
+
+    /// The bus to this board.
+    pub fn of(board: B, sck_hz: u64, faults: Faults, seed: u64) -> Self {
         Self(Rc::new(RefCell::new(Wired {
-            board: B::on_spi(sck_hz),
+            board,
             edges: Seen::default(),
             sck_hz,
             there: Wire::new(faults, seed),
@@ -70,7 +74,11 @@ impl<B: Kind> Bus<B> {
 
     /// Connects a host that refuses any other build, and opens a session.
     pub fn connect(&self) -> BusHost<B> {
-        let id = LineKind::Spi.build_id(&build());
+        self.connect_to(LineKind::Spi.build_id(&build()))
+    }
+
+    /// Connects a host that refuses any other build than `id`, and opens a session.
+    pub fn connect_to(&self, id: BuildId) -> BusHost<B> {
         // No USB bridge delays an answer here.
         let patience = Patience { timing: Timing { resend: 5, pause: 1 }, ..Patience::default() };
         let line = SpiLine::new(self.clone());

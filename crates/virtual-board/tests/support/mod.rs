@@ -4,6 +4,7 @@
 pub mod bus;
 #[path = "../../../link/tests/support/mod.rs"]
 pub mod link;
+pub mod recorder;
 pub mod requests;
 pub mod words;
 
@@ -16,6 +17,7 @@ use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience,
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, VerilatedBoard};
 use random::Random;
+use recorder::Recorder;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::num::NonZeroU16;
@@ -81,6 +83,20 @@ impl Kind for ModelBoard {
             .filter(|axis| core.in_a_move() >> axis & 1 == 1)
             .map(|axis| core.waiting(axis))
             .min()
+    }
+}
+
+impl Kind for Recorder {
+    fn new(uart: Uart) -> Self {
+        Self::new(<ModelBoard as Kind>::new(uart))
+    }
+
+    fn on_spi(sck_hz: u64) -> Self {
+        Self::new(<ModelBoard as Kind>::on_spi(sck_hz))
+    }
+
+    fn least_waiting(&self) -> Option<usize> {
+        self.model().least_waiting()
     }
 }
 

@@ -26,6 +26,21 @@ const LOCKSTEP: &[&str] = &[
 const BOARD: &[&str] =
     &["crates/core/", "crates/model/", "crates/link/", "crates/plan/", "crates/virtual-board/"];
 
+/// The command that runs a program on a board of models.
+const RUN: &[&str] = &[
+    "crates/cli/",
+    "crates/core/",
+    "crates/files/",
+    "crates/gcode/",
+    "crates/job/",
+    "crates/link/",
+    "crates/model/",
+    "crates/plan/",
+    "crates/program/",
+    "crates/runner/",
+    "crates/virtual-board/",
+];
+
 /// What is synthesised, and by which tools.
 const GATEWARE: &[&str] = &[
     "crates/core/",
@@ -39,7 +54,7 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 14] = [
+pub const INPUTS: [Inputs; 15] = [
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
     (
@@ -131,6 +146,7 @@ pub const INPUTS: [Inputs; 14] = [
             "sim/jobs/",
         ],
     ),
+    ("kills", RUN),
     (
         "linuxcnc",
         &[
@@ -178,10 +194,10 @@ mod tests {
 
     #[test]
     fn a_change_makes_the_runs_that_it_can_break() {
-        assert!(runs_of(&["README.md", "crates/cli/src/main.rs"]).is_empty());
+        assert!(runs_of(&["README.md", "crates/report/src/lib.rs"]).is_empty());
         assert_eq!(
             runs_of(&["crates/link/src/lib.rs"]),
-            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board", "linuxcnc"]
+            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board", "kills", "linuxcnc"]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
         assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());
