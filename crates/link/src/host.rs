@@ -38,6 +38,9 @@ use crate::ticks::{ClockComparison, ClockDifference, TickCount};
 /// Room for bytes that wait for the line: a typical frame of all axes, and the longest one.
 const OUT: usize = 640;
 
+/// Fewest looks at the line until a request is sent again.
+const LOOKS_UNTIL_RESEND: u32 = 8;
+
 /// State of the machine, from the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Status {
@@ -65,6 +68,10 @@ pub struct Host<L, C, const N: usize = 64> {
     /// Bytes that are waiting for the line.
     out: [u8; OUT],
     queued: usize,
+    /// The time in which this driver has run, and when it looked at the clock last, ms.
+    time: u32,
+    looked: u32,
+    /// When the last answer came, in that time, ms.
     heard: u32,
     noise: u32,
 }
@@ -95,6 +102,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             ticks_asked: None,
             out: [0; OUT],
             queued: 0,
+            time: 0,
+            looked: 0,
             heard: 0,
             noise: 0,
         };
@@ -234,13 +243,24 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// Starts to measure silence, if no request was open before.
     fn listen(&mut self) {
         if !self.session.waiting() {
-            (self.heard, self.noise) = (self.clock.milliseconds(), 0);
+            (self.heard, self.noise) = (self.time(), 0);
         }
+    }
+
+    /// The time for what an answer may take, ms. A busy computer may not run this driver for
+    /// seconds, in which answers wait to be read: such a pause counts for a part of the time until a
+    /// request is sent again.
+    fn time(&mut self) -> u32 {
+        let now = self.clock.milliseconds();
+        let passed = now.wrapping_sub(core::mem::replace(&mut self.looked, now));
+        let most = (self.patience.timing.resend / LOOKS_UNTIL_RESEND).max(1);
+        self.time = self.time.wrapping_add(passed.min(most));
+        self.time
     }
 
     /// Performs one exchange with the line. `seen` is called with each answer.
     fn pump(&mut self, mut seen: impl FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
-        let mut now = self.clock.milliseconds();
+        let mut now = self.time();
         while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {
             let Some(request) = self.session.transmit(now) else { break };
             if let Request { sequence, body: Body::Read { address: map::TICKS }, .. } = request
@@ -259,7 +279,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let sent = done.sent.min(self.queued);
         self.out.copy_within(sent..self.queued, 0);
         self.queued -= sent;
-        now = self.clock.milliseconds();
+        now = self.time();
         for &byte in came.iter().take(done.received) {
             self.noise += u32::from(byte != map::END);
             let answer = match self.session.receive(byte, now) {
@@ -287,7 +307,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let silence = now.wrapping_sub(self.heard);
         let known = self.facts.identity == map::IDENTITY_VALUE;
         let patience = if known { self.patience.lost } else { self.patience.silence };
-        match (self.session.waiting() && silence > patience, self.noise) {
+        let gives_up = self.session.waiting() && silence > patience;
+        if gives_up {
+            // A caller that goes on nevertheless waits as long again.
+            self.heard = now;
+        }
+        match (gives_up, self.noise) {
             (false, _) => Ok(()),
             (true, bytes) if known => Err(HostError::Lost { ms: silence, bytes }),
             (true, 0) => Err(HostError::Silence { ms: silence }),
