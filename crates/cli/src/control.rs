@@ -42,6 +42,7 @@ use carrystep_runner::BlockAt;
 pub use program::{OverrideWish, ProgramControl};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::fmt;
 use std::time::Duration;
 use strum::{EnumString, IntoStaticStr};
 
@@ -102,6 +103,15 @@ pub enum StoppedBy {
     Interrupt,
     /// `carrystep stop` in another terminal.
     Stop,
+}
+
+impl fmt::Display for StoppedBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Interrupt => "Ctrl-C",
+            Self::Stop => "`carrystep stop`",
+        })
+    }
 }
 
 /// The claim on a port and, for a command that drives, its socket.

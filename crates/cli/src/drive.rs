@@ -15,7 +15,7 @@ use course::Course;
 pub use itinerary::{Itinerary, Plan};
 use line::Line;
 pub use moves::{Moves, OffsetAtEnd};
-pub use outcome::{AxisDriven, Culprit, Driven, How};
+pub use outcome::{AxisDriven, Culprit, Driven, How, tell_fault};
 pub use place::Place;
 pub use probing::{ProbeMove, Probed, probe};
 pub use program::PlannedProgram;

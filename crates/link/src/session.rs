@@ -5,16 +5,17 @@ use crate::command::{CutSlots, ProgramError};
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Refusal, Request, of_axis};
 use crate::registers::{
-    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, IDENTITY, MOST_AXES, OPEN, POSITION, SEEK, SNAPSHOT,
-    START, STOP,
+    ANSWER_BYTES, CONTROL, CONTROL_ENABLE, IDENTITY, MOST_AXES, OPEN, POSITION, SEEK, START, STOP,
 };
 use crate::singles::Singles;
 use crate::slip::{Decoder, Received};
 use crate::window::{Full, Window};
 use core::num::NonZeroU16;
+use under_way::{UnderWay, of_mask};
 
 mod error;
 mod timing;
+mod under_way;
 
 pub use error::{SessionLost, WriteError};
 pub use timing::Timing;
@@ -35,18 +36,12 @@ pub struct Session<const N: usize> {
     opening: u16,
     /// Number of axes of the build.
     axes: u8,
-    /// Number of unacknowledged segments of each axis.
-    under_way: [u8; MOST_AXES as usize],
+    /// What the unacknowledged writes will do.
+    under_way: UnderWay,
     /// Number of further segments that the queue of each axis can hold.
     room: [u8; MOST_AXES as usize],
-    /// Whether a start is unacknowledged.
-    starting: bool,
-    /// Whether a snapshot is unacknowledged.
-    capturing: bool,
     /// Whether a write was refused because the seek of one of its axes has ended.
     seek_ended: bool,
-    /// Whether a cut is unacknowledged.
-    cutting: bool,
     /// Whether the last cut was refused.
     cut_refused: bool,
     /// The sequence number of a cut that was refused, until another write with it is acknowledged.
@@ -74,12 +69,9 @@ impl<const N: usize> Session<N> {
             number: 0,
             opening: 0,
             axes: 0,
-            under_way: [0; MOST_AXES as usize],
+            under_way: UnderWay::default(),
             room: [0; MOST_AXES as usize],
-            starting: false,
-            capturing: false,
             seek_ended: false,
-            cutting: false,
             cut_refused: false,
             refused_cut: None,
             seeking: false,
@@ -117,12 +109,9 @@ impl<const N: usize> Session<N> {
     fn begin(&mut self, number: u16) {
         self.number = number;
         self.window = Window::new();
-        self.under_way = [0; MOST_AXES as usize];
+        self.under_way = UnderWay::default();
         self.room = [0; MOST_AXES as usize];
-        self.starting = false;
-        self.capturing = false;
         self.seek_ended = false;
-        self.cutting = false;
         self.cut_refused = false;
         self.refused_cut = None;
         self.seeking = false;
@@ -161,7 +150,7 @@ impl<const N: usize> Session<N> {
 
     /// Whether a SNAPSHOT is unacknowledged.
     pub const fn capturing(&self) -> bool {
-        self.capturing
+        self.under_way.capturing
     }
 
     /// Whether the gateware has refused a segment or a START because one of its axes has hit the
@@ -190,7 +179,7 @@ impl<const N: usize> Session<N> {
 
     /// Whether a CUT is unacknowledged.
     pub const fn cutting(&self) -> bool {
-        self.cutting
+        self.under_way.cutting
     }
 
     /// A CUT that was queued drops so many segments of an axis if it is granted: segments behind it
@@ -247,15 +236,11 @@ impl<const N: usize> Session<N> {
             return Err(WriteError::NoPower(ProgramError::NoPower));
         }
         self.window.push(body)?;
-        let queues = self.under_way.iter_mut().zip(&mut self.room);
-        for (_, (under_way, room)) in of_mask(body.axes(), queues) {
-            *under_way += 1;
+        self.under_way.add(&body);
+        for (_, room) in of_mask(body.axes(), self.room.iter_mut()) {
             *room = room.saturating_sub(1);
         }
         match body {
-            Body::Write { address: START, .. } => self.starting = true,
-            Body::Write { address: SNAPSHOT, .. } => self.capturing = true,
-            Body::Cut(_) => self.cutting = true,
             Body::Write { address: SEEK, word } => {
                 (self.seek_ended, self.seeking) = (false, word & SEEK_AXES != 0);
             }
@@ -272,8 +257,8 @@ impl<const N: usize> Session<N> {
 
     /// Removes the writes that were never sent, so that the next one is sent at once.
     pub fn withdraw(&mut self) {
-        let Self { under_way, starting, capturing, cutting, .. } = self;
-        self.window.withdraw(|body| settle(body, under_way, [starting, capturing, cutting]));
+        let Self { window, under_way, .. } = self;
+        window.withdraw(|body| under_way.settle(body));
     }
 
     /// Queues as much of a program as there is room for, and reads the state of axes without room.
@@ -284,7 +269,7 @@ impl<const N: usize> Session<N> {
     /// was written.
     pub fn feed<S: SegmentSource>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 && !self.seek_ended {
-            let free = !self.starting && !self.armed;
+            let free = !self.under_way.starting && !self.armed;
             let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {
                 if free && !self.may_start() && feeder.start_is_due(self.axes)? {
                     return Err(ProgramError::NoPower);
@@ -297,7 +282,7 @@ impl<const N: usize> Session<N> {
         }
         for axis in 0..self.axes {
             let index = usize::from(axis);
-            let silent = self.under_way.get(index) == Some(&0);
+            let silent = self.under_way.segments(axis) == 0;
             let full = self.room.get(index) == Some(&0);
             let armed = axis == 0 && self.armed && feeder.wants_start();
             // An error only means that enough reads are in progress.
@@ -361,8 +346,8 @@ impl<const N: usize> Session<N> {
         // Such a write can never be executed.
         let ends = matches!(answer.refusal, Some(Refusal::SeekEnded | Refusal::Cut))
             && self.window.answered(answer).is_some();
-        let Self { under_way, starting, capturing, cutting, .. } = self;
-        let mut settled = |body: &Body| settle(body, under_way, [starting, capturing, cutting]);
+        let Self { under_way, .. } = self;
+        let mut settled = |body: &Body| under_way.settle(body);
         let unacknowledged = self.window.len();
         if !self.window.answer(answer, now, &mut settled) {
             return;
@@ -381,28 +366,8 @@ impl<const N: usize> Session<N> {
         }
         // An answer says at least how much room there was, and room only grows until this host
         // sends a segment.
-        let queues = self.under_way.iter().zip(&mut self.room);
-        for (_, (under_way, room)) in of_mask(axes, queues) {
-            *room = answer.free.saturating_sub(*under_way).max(*room);
+        for (axis, room) in of_mask(axes, self.room.iter_mut()) {
+            *room = answer.free.saturating_sub(self.under_way.segments(axis)).max(*room);
         }
-    }
-}
-
-/// The items of the axes of a mask.
-fn of_mask<T>(mask: u8, items: impl Iterator<Item = T>) -> impl Iterator<Item = (u8, T)> {
-    (0..MOST_AXES).zip(items).filter(move |(axis, _)| mask >> axis & 1 == 1)
-}
-
-/// Updates the counts, and whether a START, a SNAPSHOT and a CUT are unacknowledged, when a write
-/// is acknowledged or withdrawn.
-fn settle(body: &Body, under_way: &mut [u8], [start, snapshot, cut]: [&mut bool; 3]) {
-    for (_, count) in of_mask(body.axes(), under_way.iter_mut()) {
-        *count = count.saturating_sub(1);
-    }
-    match *body {
-        Body::Write { address: START, .. } => *start = false,
-        Body::Write { address: SNAPSHOT, .. } => *snapshot = false,
-        Body::Cut(_) => *cut = false,
-        _ => {}
     }
 }

@@ -4,7 +4,7 @@
 use crate::arguments::HomeArguments;
 use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
-use crate::drive::{Culprit, How};
+use crate::drive::{Culprit, How, tell_fault};
 use crate::failure::Failure;
 use crate::memory::{self, BoardMemory};
 use crate::{found, homing, output};
@@ -65,26 +65,12 @@ impl fmt::Display for HomeReport {
         match self.ended {
             How::Done => f.write_str("HOMED\n"),
             How::Stopped => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) {
-                    "`carrystep stop`"
-                } else {
-                    "Ctrl-C"
-                };
+                let by = self.stopped_by.unwrap_or(StoppedBy::Interrupt);
                 writeln!(f, "STOPPED by {by}; these axes are not homed")
             }
             How::Fault => {
-                let names: Vec<&str> = self.culprits.iter().map(|culprit| &*culprit.axis).collect();
-                let from = if names.is_empty() {
-                    String::new()
-                } else {
-                    format!(", from {}", names.join(", "))
-                };
-                writeln!(
-                    f,
-                    "STOPPED by the machine: {}{from}; these axes are not homed",
-                    self.cause.unwrap_or("?")
-                )?;
-                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+                let then = "; these axes are not homed";
+                tell_fault(f, (self.cause, &self.culprits), then, self.remedy)
             }
         }
     }

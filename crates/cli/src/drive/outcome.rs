@@ -104,6 +104,20 @@ pub struct AxisDriven {
     pub steps_per_unit: f64,
 }
 
+/// Tells that the machine stopped by itself, why, and what to do.
+pub fn tell_fault(
+    f: &mut fmt::Formatter<'_>,
+    (cause, culprits): (Option<&str>, &[Culprit]),
+    then: &str,
+    remedy: Option<&str>,
+) -> fmt::Result {
+    let names: Vec<&str> = culprits.iter().map(|culprit| &*culprit.axis).collect();
+    let from =
+        if names.is_empty() { String::new() } else { format!(", from {}", names.join(", ")) };
+    writeln!(f, "STOPPED by the machine: {}{from}{then}", cause.unwrap_or("?"))?;
+    remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+}
+
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
@@ -129,11 +143,7 @@ impl fmt::Display for Driven {
                 f.write_str("FAILED: the positions are not where the moves end\n")
             }
             (How::Stopped, _) => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) {
-                    "`carrystep stop`"
-                } else {
-                    "Ctrl-C"
-                };
+                let by = self.stopped_by.unwrap_or(StoppedBy::Interrupt);
                 writeln!(f, "STOPPED by {by}; the positions are valid")
             }
             (How::Fault, _) => {

@@ -3,7 +3,7 @@
 
 use super::itinerary::Itinerary as _;
 use super::moves::Moves;
-use super::outcome::{Culprit, How};
+use super::outcome::{Culprit, How, tell_fault};
 use super::place::{Place, named_point, point_at};
 use super::touch::{Touched, Watch, go, is_closed, touch};
 use crate::connection::{self, ConnectedBoard, ConnectedBoardError, Connection};
@@ -248,25 +248,12 @@ impl fmt::Display for Probed {
         match self.ended {
             How::Done => f.write_str("DONE\n"),
             How::Stopped => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) {
-                    "`carrystep stop`"
-                } else {
-                    "Ctrl-C"
-                };
+                let by = self.stopped_by.unwrap_or(StoppedBy::Interrupt);
                 let when =
                     if self.touched.is_some() { "behind the touch" } else { "before the touch" };
                 writeln!(f, "STOPPED by {by} {when}; the positions are valid")
             }
-            How::Fault => {
-                let names: Vec<&str> = self.culprits.iter().map(|culprit| &*culprit.axis).collect();
-                let from = if names.is_empty() {
-                    String::new()
-                } else {
-                    format!(", from {}", names.join(", "))
-                };
-                writeln!(f, "STOPPED by the machine: {}{from}", self.cause.unwrap_or("?"))?;
-                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
-            }
+            How::Fault => tell_fault(f, (self.cause, &self.culprits), "", self.remedy),
         }
     }
 }

@@ -32,6 +32,17 @@ fn positions(board: Board) -> [i32; 3] {
 const PROBE: &str = "G21 G90 F1200\nG1 X2\nG10 L20 P1 Z0.5\nG38.2 Z-5 F100\n\
                      G1 Z[#5063 + 1] F300\no1 if [#5070 EQ 1]\nG1 X3\no1 endif\nM2\n";
 
+/// A folder whose x can be homed, and whose axes have switches at both ends.
+pub fn with_switches(job: &str) -> Folder {
+    let folder = folder(job);
+    let machine = std::fs::read_to_string(folder.path("machine.toml")).unwrap();
+    let machine = machine
+        .replace("debounce_us = 100", "debounce_us = 100\nlimits = \"pair\"")
+        .replace("travel = [-9, 20]\n", HOME);
+    folder.write("machine.toml", machine);
+    folder
+}
+
 #[test]
 fn program_goes_on_from_the_place_at_which_the_probe_trips() {
     for plate in [-400, -1077] {
@@ -138,12 +149,7 @@ fn probe_moves_off_the_plate_and_touches_it_again() {
 fn rest_that_a_probe_changes_stays_within_travel() {
     // The plan assumes that the probe trips, and then nothing is beyond the travel of x.
     let job = "G21 F1200\nG38.3 Z-2 F300\no1 if [#5070 EQ 0]\nG1 X21\no1 endif\nG1 X1\nM2\n";
-    let folder = folder(job);
-    let machine = std::fs::read_to_string(folder.path("machine.toml")).unwrap();
-    let machine = machine
-        .replace("debounce_us = 100", "debounce_us = 100\nlimits = \"pair\"")
-        .replace("travel = [-9, 20]\n", HOME);
-    folder.write("machine.toml", machine);
+    let folder = with_switches(job);
     let board = Board::new(&folder, "--fast --min x=-400");
     passed(&folder.run(&format!("home --machine machine.toml --port {}", board.port)));
     let ran = run(&folder, &board, "");

@@ -2,8 +2,8 @@
 //! and while a program waits.
 
 use crate::command::{Folder, Ran};
-use crate::probes::folder;
-use crate::run_programs::{HOME, PAUSES, begins, done, positions, resume, run, status, waits};
+use crate::probes::{folder, with_switches};
+use crate::run_programs::{PAUSES, begins, done, positions, resume, run, status, waits};
 use crate::schemas;
 use crate::stops::{drives, moving};
 use crate::virtual_boards::{Board, passed};
@@ -54,17 +54,6 @@ pub fn waits_again(
             return now;
         }
     }
-}
-
-/// A folder whose x can be homed, and whose axes have switches at both ends.
-pub fn with_switches(job: &str) -> Folder {
-    let folder = folder(job);
-    let machine = std::fs::read_to_string(folder.path("machine.toml")).unwrap();
-    let machine = machine
-        .replace("debounce_us = 100", "debounce_us = 100\nlimits = \"pair\"")
-        .replace("travel = [-9, 20]\n", HOME);
-    folder.write("machine.toml", machine);
-    folder
 }
 
 #[test]

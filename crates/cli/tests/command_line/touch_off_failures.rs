@@ -3,10 +3,11 @@
 
 use crate::command::Folder;
 use crate::probes::folder;
+use crate::probes::with_switches;
 use crate::run_programs::{LONG, PAUSES, begins, done, positions, resume, status, waits};
 use crate::schemas;
 use crate::stops::{drives, moving, signal};
-use crate::touch_off::{at, command, refused, told, waits_again, with_switches, z};
+use crate::touch_off::{at, command, refused, told, waits_again, z};
 use crate::virtual_boards::{Board, document, passed};
 use serde_json::{Value, json};
 
