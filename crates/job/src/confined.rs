@@ -1,9 +1,9 @@
 //! Whether the path has gone to and fro in one small place for long.
 //!
-//! Such a path comes back within its tolerance to the same places any number of times, and the
-//! nearest place of the path does not tell which of these times it is. A rest does: the planner
-//! looks for no place of before a rest. Without it, the time of planning grew with the square of the
-//! number of moves.
+//! Such a path comes back within its tolerance to the same places any number of times, so the planner
+//! cannot tell from a point of the tool which of these times it is, and searches all of them. After a
+//! rest it searches only what follows. So the path rests now and then; without these rests the time
+//! of planning grew with the square of the number of moves.
 
 use crate::element::{Element, Tolerance};
 use crate::vector::{Point, from_to};

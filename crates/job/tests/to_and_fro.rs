@@ -19,7 +19,8 @@ const NEAR: usize = 720;
 
 /// The planner once took the first of all equally near places for ever: rows named the first line, and
 /// planning each of them looked at all moves so far. Strokes of 0.015 mm are within the tolerance of
-/// their middle, and some of 0.1 mm are on all pieces of before.
+/// their middle, so the tool need not move at all. With strokes of 0.1 mm it has to, and is on all
+/// strokes at once, because they overlap.
 #[test]
 fn each_row_names_a_line_of_its_own_time() {
     let machine = common::machine(&reader::file("machine.toml"));

@@ -13,9 +13,10 @@ use carrystep_files::{InputError, Machine};
 use carrystep_gcode::{AXES, AXIS_LETTERS, Arc, Canon, Point, Turn};
 use std::path::Path;
 
-/// The blocks before an entry are executed twice, from two places at which the program may have begun.
-/// They are so far apart, mm and degrees. If the place of the entry differs, it depends on where the
-/// program began. Z differs by 10 m, so that the highest z differs, too, if it depends on that.
+/// The distance, in mm and degrees, of the two places from which the blocks before an entry are
+/// executed, one after the other. If they lead to different places of entry, the entry depends on
+/// where the program began. Z differs by 10 m, so that the highest z that the program uses differs
+/// as well if it depends on that.
 const ELSEWHERE: Point = [1.37, 2.61, 10_003.19, 4.43, 5.87, 7.01];
 
 /// The index of z.

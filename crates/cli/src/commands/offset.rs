@@ -50,8 +50,8 @@ pub fn run(arguments: &OffsetArguments) -> Result<(), Failure> {
     change(&machine, &arguments.machine, &wish, (&arguments.port, arguments.json))
 }
 
-/// Does what is wanted of the offsets, and shows them: by itself, or through the command whose
-/// program waits. `name` is the path of the machine file.
+/// Shows, sets or clears the offsets as `wish` says, and prints them: by itself, or through the
+/// command whose program waits. `name` is the path of the machine file.
 ///
 /// # Errors
 /// The wish names axes that the machine does not have, or it cannot be met where the machine is.

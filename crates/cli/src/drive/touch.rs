@@ -1,4 +1,4 @@
-//! A move at rest, outside of the path of a program, that ends where the probe closes or opens.
+//! A move from rest, outside of the path of a program, that ends where the probe closes or opens.
 //!
 //! ```text
 //! seek with all axes -> stream the move -> hit: ramp, latched place, P to its start value
