@@ -37,7 +37,7 @@ pub struct PinChange {
 ///
 /// The calls come in this order: any number of [`initial`](Self::initial), any number of
 /// [`change`](Self::change), [`changes`](Self::changes) and [`outputs`](Self::outputs) in which `ps`
-/// never falls, and one [`end`](Self::end).
+/// never falls, and one [`end`](Self::end); [`pwm`](Self::pwm) says where its calls come.
 pub trait PinSink {
     /// Sets the level of a pin at the start of the capture. This is not an edge; a pin without such
     /// a call is low.
@@ -73,6 +73,16 @@ pub trait PinSink {
         Ok(())
     }
 
+    /// Sets the level of the PWM's pin from `ps` on; before the first call it is low. The calls are
+    /// in order of time, but may come later than those of the other pins.
+    ///
+    /// # Errors
+    /// A [`TraceError`] if the sink cannot write.
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        let _ = (ps, level);
+        Ok(())
+    }
+
     /// Ends the capture at `ps`.
     ///
     /// # Errors
@@ -98,6 +108,10 @@ impl<S: PinSink + ?Sized> PinSink for &mut S {
 
     fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
         (**self).outputs(ps, levels)
+    }
+
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        (**self).pwm(ps, level)
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
@@ -148,7 +162,20 @@ impl PinSink for Tee<'_> {
         self.sinks.iter_mut().try_for_each(|sink| sink.outputs(ps, levels))
     }
 
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        self.sinks.iter_mut().try_for_each(|sink| sink.pwm(ps, level))
+    }
+
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
         self.sinks.iter_mut().try_for_each(|sink| sink.end(ps))
     }
+}
+
+/// The output pins of a machine, or those that a capture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OutputPins {
+    /// The outputs, one bit each.
+    pub outputs: u8,
+    /// Whether there is a PWM.
+    pub pwm: bool,
 }

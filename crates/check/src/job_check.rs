@@ -1,7 +1,7 @@
 //! The check of a capture of a job: the path that the pulses follow, the places where outputs
 //! change, and, against the plan, the times of both.
 
-use crate::edge::{Pin, PinChange, PinSink};
+use crate::edge::{OutputPins, Pin, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::origin::Origin;
 use crate::output_places::OutputMarks;
@@ -10,6 +10,7 @@ use crate::path_check::{PathChecker, PathSetup};
 use crate::path_leg::PathLeg;
 use crate::path_report::PathReport;
 use crate::pulse_times::{PlannedRows, PulseTimes, PulseTimesReport};
+use crate::pwm_check::{PwmCheck, PwmReport, PwmTiming};
 use crate::report::{OriginKind, table};
 use carrystep_core::Timebase;
 use schemars::JsonSchema;
@@ -33,16 +34,25 @@ pub struct JobReport {
     pub output_times: Option<Vec<OutputTimesReport>>,
     /// The outputs of the machine that the capture does not show, and that were not checked.
     pub outputs_not_checked: Vec<u8>,
+    /// The pin of the PWM against the plan; none if only the path was checked, or if the machine or
+    /// the capture has none.
+    pub pwm: Option<PwmReport>,
+    /// Whether the machine has a PWM that the capture does not show, and that was not checked.
+    pub pwm_not_checked: bool,
     /// The path that the pulses follow, and the pins.
     pub path: PathReport,
 }
 
-/// The outputs of a machine, one bit each, and how a capture of a job shows them.
+/// The outputs of a machine, and how a capture of a job shows them.
 pub struct JobOutputs<'a> {
     /// The outputs that the machine has.
-    pub exist: u8,
+    pub exist: OutputPins,
     /// The outputs that the capture shows.
-    pub shown: u8,
+    pub shown: OutputPins,
+    /// The clocks of the PWM.
+    pub divider: u32,
+    /// Whether the counter of the PWM begins where the capture does: those by carrystep.
+    pub is_own: bool,
     /// Where the program changes them.
     pub marks: OutputMarks<'a>,
 }
@@ -61,10 +71,12 @@ pub struct JobChecker<'a> {
     times: Option<PulseTimes<'a>>,
     origin: Origin,
     slack_ps: u64,
-    not_checked: u8,
+    not_checked: OutputPins,
     /// The level of STEP of each axis.
     steps: Vec<bool>,
     first: Option<u64>,
+    /// The end of the capture, ps.
+    end: u64,
 }
 
 impl<'a> JobChecker<'a> {
@@ -86,16 +98,23 @@ impl<'a> JobChecker<'a> {
         let slack_ps = setup.slack_ps;
         let names: Vec<&str> = setup.axes.iter().map(|axis| axis.name).collect();
         let steps = vec![false; names.len()];
-        let JobOutputs { exist, shown, marks } = outputs;
-        let shown = exist & shown;
+        let JobOutputs { exist, shown, divider, is_own, marks } = outputs;
+        let not_checked =
+            OutputPins { outputs: exist.outputs & !shown.outputs, pwm: exist.pwm && !shown.pwm };
+        let zero = is_own.then_some(0);
+        let pwm = PwmTiming { timebase: *timebase, divider };
+        let pwm = (exist.pwm && shown.pwm).then(|| PwmCheck::new(pwm, zero, known, slack_ps));
+        let shown = exist.outputs & shown.outputs;
         let times = rows.map(|rows| {
-            PulseTimes::new(rows, names.into_iter(), timebase, (known, slack_ps), shown)
+            let times =
+                PulseTimes::new(rows, names.into_iter(), timebase, (known, slack_ps), shown);
+            times.with_pwm(pwm)
         });
         let mut path = PathChecker::new(setup, legs);
         if shown != 0 {
             path = path.with_outputs(marks, shown);
         }
-        Self { path, times, origin, slack_ps, not_checked: exist & !shown, steps, first: None }
+        Self { path, times, origin, slack_ps, not_checked, steps, first: None, end: 0 }
     }
 
     /// Ends the check and returns the report.
@@ -105,7 +124,9 @@ impl<'a> JobChecker<'a> {
             Origin::Fixed { ps } => (OriginKind::Fixed, Some(ps)),
             Origin::Midpoint => (OriginKind::Midpoint, None),
         };
+        let end = self.end;
         self.times.iter_mut().for_each(PulseTimes::end);
+        let pwm = self.times.as_mut().and_then(|times| times.end_pwm(end));
         let found = self.times.as_ref().and_then(PulseTimes::origin_ps);
         let first = self.first.map(|ps| i64::try_from(ps).unwrap_or(i64::MAX));
         let origin_ps = known.or(found).or(first).unwrap_or(0);
@@ -119,13 +140,19 @@ impl<'a> JobChecker<'a> {
         let of_outputs = output_times.iter().flatten().map(|output| &output.failures);
         let not_checked = self.not_checked;
         JobReport {
-            passed: path.passed && of_axes.chain(of_outputs).all(Vec::is_empty),
+            passed: path.passed
+                && of_axes.chain(of_outputs).all(Vec::is_empty)
+                && pwm.as_ref().is_none_or(|pwm| pwm.passed),
             origin: kind,
             origin_ps,
             slack_ns: self.slack_ps as f64 / 1e3,
             times,
             output_times,
-            outputs_not_checked: (0..8).filter(|number| not_checked >> number & 1 == 1).collect(),
+            outputs_not_checked: (0..8)
+                .filter(|number| not_checked.outputs >> number & 1 == 1)
+                .collect(),
+            pwm,
+            pwm_not_checked: not_checked.pwm,
             path,
         }
     }
@@ -160,7 +187,13 @@ impl PinSink for JobChecker<'_> {
         self.path.outputs(ps, levels)
     }
 
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        self.times.iter_mut().for_each(|times| times.pwm(ps, level));
+        Ok(())
+    }
+
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
+        self.end = ps;
         self.path.end(ps)
     }
 }
@@ -212,6 +245,10 @@ impl fmt::Display for JobReport {
                 numbers.join(", ")
             )?;
         }
+        if self.pwm_not_checked {
+            writeln!(f, "not checked: the PWM; the capture does not show it")?;
+        }
+        self.pwm.iter().try_for_each(|pwm| write!(f, "{pwm}"))?;
         write!(f, "{}", self.path)?;
         let of_axes = self.times.iter().flatten().flat_map(|axis| &axis.failures);
         let of_outputs = self.output_times.iter().flatten().flat_map(|output| &output.failures);

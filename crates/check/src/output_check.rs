@@ -12,8 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
-/// The check of the output pins. The PWM has no part in it: its pin changes many times for each
-/// duty, and is compared where the gateware is compared with its model.
+/// The check of the output pins. `pwm_check.rs` checks the PWM.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct OutputReport {
     /// True if every change was due, and came in its clock.

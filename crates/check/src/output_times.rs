@@ -1,7 +1,7 @@
 //! Compares the time of each change of an output with the plan of a job.
 //!
 //! All outputs are inactive where the plan begins. A row that gives an output another level makes a
-//! change due where the row begins. The duty of the PWM has no part in it: no capture shows it.
+//! change due where the row begins. `pwm_check.rs` checks the PWM.
 
 use crate::due_times::{DueTimes, Judged};
 use carrystep_core::OutputChange;

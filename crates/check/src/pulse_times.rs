@@ -8,6 +8,7 @@ use crate::due_pulses::AxisDue;
 use crate::due_times::{DueTimes, Judged};
 use crate::ideal::tick_ps;
 use crate::output_times::{OutputTimes, OutputTimesReport};
+use crate::pwm_check::{PwmCheck, PwmReport};
 use carrystep_core::{OutputChange, Segment, Timebase};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -63,6 +64,7 @@ pub(crate) struct PulseTimes<'a> {
     read_to: i64,
     axes: Vec<Axis>,
     outputs: OutputTimes,
+    pwm: Option<PwmCheck>,
     /// The start of the plan, ps of the capture: known, or estimated from the first pulse.
     base: Option<i64>,
     is_sure: bool,
@@ -98,15 +100,24 @@ impl<'a> PulseTimes<'a> {
             read_to: 0,
             axes: names.map(axis).collect(),
             outputs: OutputTimes::new(outputs),
+            pwm: None,
             base,
             is_sure: base.is_some(),
         }
+    }
+
+    /// The same with a check of the PWM.
+    pub fn with_pwm(self, pwm: Option<PwmCheck>) -> Self {
+        Self { pwm, ..self }
     }
 
     /// Reads the next row of the plan; false at its end.
     fn read(&mut self) -> bool {
         let Some(row) = self.rows.next() else { return false };
         self.outputs.plan(row.outputs, self.read_to);
+        if let (Some(pwm), Some(duty)) = (&mut self.pwm, row.outputs.duty) {
+            pwm.due(self.read_to, duty);
+        }
         let mut ticks = 0;
         for (axis, segment) in self.axes.iter_mut().zip(&row.segments) {
             let Axis { due, times, .. } = axis;
@@ -138,6 +149,7 @@ impl<'a> PulseTimes<'a> {
                 self.base = Some(base);
                 self.read_beyond(ps, base);
                 self.outputs.begin(base);
+                self.pwm.iter_mut().for_each(|pwm| pwm.begin(base));
                 base
             }
         };
@@ -153,6 +165,19 @@ impl<'a> PulseTimes<'a> {
             self.read_beyond(ps, base);
         }
         self.outputs.levels(ps, levels, self.base);
+    }
+
+    /// The pin of the PWM has this level from `ps` on.
+    pub fn pwm(&mut self, ps: u64, level: bool) {
+        if let Some(base) = self.base {
+            self.read_beyond(ps, base);
+        }
+        self.pwm.iter_mut().for_each(|pwm| pwm.pin(ps, level));
+    }
+
+    /// The report of the PWM, after the end of the capture at `ps`.
+    pub fn end_pwm(&mut self, ps: u64) -> Option<PwmReport> {
+        Some(self.pwm.as_mut()?.end(ps))
     }
 
     /// The start of the plan, ps of the capture. Where it was only estimated, it is the one with
@@ -183,6 +208,7 @@ impl<'a> PulseTimes<'a> {
         {
             self.base = Some(base);
             self.outputs.begin(base);
+            self.pwm.iter_mut().for_each(|pwm| pwm.begin(base));
         }
     }
 

@@ -4,20 +4,24 @@
 
 use crate::edge::Pin;
 use crate::error::ReadError;
+use crate::wave_format::PWM;
 use carrystep_core::AXES;
 use carrystep_core::engine::MAX_AXES;
 use vcd::{IdCode, ReferenceIndex};
 
-/// The signals of a foreign capture: `x.step=top.la.D0`, `y.dir=bench.pins[3]`, `output_2=la.D7`.
+/// The signals of a foreign capture: `x.step=top.la.D0`, `y.dir=bench.pins[3]`, `output_2=la.D7`,
+/// `pwm=la.D6`.
 ///
 /// A pin that the map does not contain is searched under the names of carrystep: `<axis>.step` and
 /// `<axis>.dir` in any scope, or the vectors `step` and `dir`, whose bit i is axis i; `output_<n>`,
-/// or a vector `outputs` of eight bits.
+/// or a vector `outputs` of eight bits; `pwm`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SignalMap {
     entries: Vec<Entry>,
     /// The outputs with the paths of their signals.
     outputs: Vec<(u8, String)>,
+    /// The path of the PWM's signal.
+    pwm: Option<String>,
 }
 
 /// The name of an output without its number.
@@ -46,9 +50,18 @@ impl SignalMap {
                 message: message.to_owned(),
             };
             let form = || {
-                wrong("write <axis>.step=<signal>, <axis>.dir=<signal> or output_<number>=<signal>")
+                wrong(
+                    "write <axis>.step=<signal>, <axis>.dir=<signal>, output_<number>=<signal> or \
+                     pwm=<signal>",
+                )
             };
             let (left, path) = line.split_once('=').ok_or_else(form)?;
+            if left.trim() == PWM && !path.trim().is_empty() {
+                if map.pwm.replace(path.trim().to_owned()).is_some() {
+                    return Err(wrong("the PWM is already mapped"));
+                }
+                continue;
+            }
             let number = left.trim().strip_prefix(OUTPUT).and_then(|number| number.parse().ok());
             if let Some(number) = number.filter(|_| !path.trim().is_empty()) {
                 if map.outputs.iter().any(|(known, _)| *known == number) {
@@ -224,6 +237,27 @@ impl SignalMap {
             found.extend(source.map(|source| (number, source)));
         }
         Ok(found)
+    }
+}
+
+impl SignalMap {
+    /// The source of the PWM's pin, if the capture shows it.
+    pub(crate) fn resolve_pwm(
+        &self,
+        signals: &[Signal],
+        exists: bool,
+    ) -> Result<Option<Source>, ReadError> {
+        if let Some(path) = &self.pwm {
+            if !exists {
+                return Err(ReadError::Map {
+                    entry: format!("{PWM}={path}"),
+                    message: "the PWM is compared with programs on machines that have one".into(),
+                });
+            }
+            return explicit(signals, path, PWM).map(Some);
+        }
+        let wires = signals.iter().filter(|s| s.bits == 1 && s.ends_with(PWM) && exists);
+        Ok(topmost(wires, PWM)?.map(|signal| Source { code: signal.code, place: 0 }))
     }
 }
 

@@ -16,6 +16,7 @@ enum Message {
     Initial(PinChange),
     Changes(Vec<PinChange>),
     Outputs(u64, u8),
+    Pwm(Vec<(u64, bool)>),
     End(u64),
 }
 
@@ -36,12 +37,15 @@ pub fn sink_beside<S: PinSink + Send, R>(
                     Message::Initial(level) => sink.initial(level)?,
                     Message::Changes(changes) => sink.changes(&changes)?,
                     Message::Outputs(ps, levels) => sink.outputs(ps, levels)?,
+                    Message::Pwm(edges) => {
+                        edges.into_iter().try_for_each(|(ps, level)| sink.pwm(ps, level))?;
+                    }
                     Message::End(ps) => sink.end(ps)?,
                 }
             }
             Ok(sink)
         });
-        let mut sender = Sender { sender, batch: Vec::new() };
+        let mut sender = Sender { sender, batch: Vec::new(), pwm: Vec::new() };
         let made = make(&mut sender);
         sender.flush();
         // The thread ends when nobody can send to it any more.
@@ -54,6 +58,7 @@ pub fn sink_beside<S: PinSink + Send, R>(
 struct Sender {
     sender: SyncSender<Message>,
     batch: Vec<PinChange>,
+    pwm: Vec<(u64, bool)>,
 }
 
 impl Sender {
@@ -66,6 +71,10 @@ impl Sender {
         if !self.batch.is_empty() {
             let batch = std::mem::replace(&mut self.batch, Vec::with_capacity(BATCH));
             self.send(Message::Changes(batch));
+        }
+        if !self.pwm.is_empty() {
+            let edges = std::mem::replace(&mut self.pwm, Vec::with_capacity(BATCH));
+            self.send(Message::Pwm(edges));
         }
     }
 }
@@ -87,6 +96,14 @@ impl PinSink for Sender {
     fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
         self.flush();
         self.send(Message::Outputs(ps, levels));
+        Ok(())
+    }
+
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        self.pwm.push((ps, level));
+        if self.pwm.len() >= BATCH {
+            self.flush();
+        }
         Ok(())
     }
 

@@ -14,7 +14,7 @@
 
 use crate::beside::go_on_beside;
 use crate::checker::{Checker, Part, Setup};
-use crate::edge::{PinChange, PinSink};
+use crate::edge::{OutputPins, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::report::CheckReport;
 use crate::signal_map::SignalMap;
@@ -42,7 +42,7 @@ pub struct Capture<'a> {
     names: &'a [&'a str],
     map: &'a SignalMap,
     /// The outputs that are searched, one bit each.
-    outputs: u8,
+    outputs: OutputPins,
     bytes: u64,
 }
 
@@ -104,12 +104,12 @@ impl<'a> Capture<'a> {
     ) -> Result<Self, TraceError> {
         let mut file = carrystep_files::open(path)?;
         let bytes = file.seek(SeekFrom::End(0)).map_err(read)?;
-        Ok(Self { path, names, map, outputs: 0, bytes })
+        Ok(Self { path, names, map, outputs: OutputPins::default(), bytes })
     }
 
-    /// The same capture, in which those outputs of this mask are read that it shows.
+    /// The same capture, in which those of these outputs are read that it shows.
     #[must_use]
-    pub fn with_outputs(self, outputs: u8) -> Self {
+    pub fn with_outputs(self, outputs: OutputPins) -> Self {
         Self { outputs, ..self }
     }
 

@@ -1,5 +1,6 @@
 //! What the header of a VCD tells, and the parser of its words.
 
+use crate::edge::OutputPins;
 use crate::error::ReadError;
 use crate::vcd_own::OwnCapture;
 use std::collections::HashMap;
@@ -12,12 +13,12 @@ pub(crate) struct Header {
     pub(crate) own: Option<OwnCapture>,
     /// The pins that each signal carries: the bit, counted from the least significant, and the
     /// pin's slot (2 x axis for STEP, 2 x axis + 1 for DIR, and behind all axes the outputs by
-    /// their numbers).
+    /// their numbers, and the PWM).
     pub(crate) pins: HashMap<IdCode, Vec<(u32, usize)>>,
     /// The number of pins of axes.
     pub(crate) count: usize,
-    /// The outputs that were found, one bit each.
-    pub(crate) outputs: u8,
+    /// The outputs that were found.
+    pub(crate) outputs: OutputPins,
 }
 
 /// The file's unit of time as a fraction of ps.

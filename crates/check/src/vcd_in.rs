@@ -1,12 +1,12 @@
 //! Reads the header of any VCD, from carrystep, another simulator or a logic analyser, and finds its
 //! pins.
 
-use crate::edge::PinSink;
+use crate::edge::{OutputPins, PinSink};
 use crate::error::{ReadError, TraceError};
 use crate::signal_map::{Signal, SignalMap};
 use crate::vcd_header::{Blanked, Header, Unit, parser, sorted};
 use crate::vcd_own::OwnCapture;
-use crate::vcd_play::{Played, Player, Playing};
+use crate::vcd_play::{PWM_SLOT, Played, Player, Playing};
 use std::collections::HashMap;
 use std::fmt;
 use std::io::Read;
@@ -37,10 +37,10 @@ impl<'a> VcdReader<'a> {
     /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, lacks a
     /// signal, or shows only a part of a run.
     pub fn new(reader: impl Read + 'a, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
-        Self::with_outputs(reader, axes, map, 0)
+        Self::with_outputs(reader, axes, map, OutputPins::default())
     }
 
-    /// The same, and finds those outputs of this mask that the capture shows.
+    /// The same, and finds those of these outputs that the capture shows.
     ///
     /// # Errors
     /// As [`VcdReader::new`].
@@ -48,7 +48,7 @@ impl<'a> VcdReader<'a> {
         reader: impl Read + 'a,
         axes: &[&str],
         map: &SignalMap,
-        outputs: u8,
+        outputs: OutputPins,
     ) -> Result<Self, ReadError> {
         Self::boxed(Box::new(reader), axes, map, outputs)
     }
@@ -58,7 +58,7 @@ impl<'a> VcdReader<'a> {
         reader: Box<dyn Read + 'a>,
         axes: &[&str],
         map: &SignalMap,
-        outputs: u8,
+        outputs: OutputPins,
     ) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
         let mut parser = parser(reader);
@@ -108,17 +108,21 @@ impl<'a> VcdReader<'a> {
             pins.entry(source.code).or_default().push((source.place, slot));
         }
         let count = 2 * axes.len();
-        let mut found = 0;
-        for (number, source) in map.resolve_outputs(&signals, outputs)? {
+        let mut found = OutputPins::default();
+        for (number, source) in map.resolve_outputs(&signals, outputs.outputs)? {
             let slot = count + usize::from(number);
             pins.entry(source.code).or_default().push((source.place, slot));
-            found |= 1 << number;
+            found.outputs |= 1 << number;
+        }
+        if let Some(source) = map.resolve_pwm(&signals, outputs.pwm)? {
+            pins.entry(source.code).or_default().push((source.place, count + PWM_SLOT));
+            found.pwm = true;
         }
         Ok(Self { parser, header: Header { unit, own, pins, count, outputs: found } })
     }
 
-    /// The outputs that the capture shows, one bit each.
-    pub fn outputs(&self) -> u8 {
+    /// The outputs that the capture shows.
+    pub fn outputs(&self) -> OutputPins {
         self.header.outputs
     }
 

@@ -3,10 +3,10 @@
 //!
 //! The names of the signals are those of `waves.rs`.
 
-use crate::edge::{Pin, PinChange, PinSink};
+use crate::edge::{OutputPins, Pin, PinChange, PinSink};
 use crate::error::TraceError;
 use crate::vcd_own::{self, OwnCapture};
-use crate::wave_format::{SCOPE, VERSION};
+use crate::wave_format::{PWM, SCOPE, VERSION};
 use std::fmt;
 use std::io::{self, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType, Writer};
@@ -20,6 +20,7 @@ pub struct PinsVcd<W: Write> {
     axes: Vec<Axis>,
     /// The output pins, each with its number and its level.
     outputs: Vec<(u8, IdCode, bool)>,
+    pwm: Option<IdCode>,
     time: u64,
 }
 
@@ -38,8 +39,8 @@ impl<W: Write> fmt::Debug for PinsVcd<W> {
 }
 
 impl<W: Write> PinsVcd<W> {
-    /// Begins a capture of these axes, in the order of their numbers, and of the outputs in this
-    /// mask. All pins are low and all positions 0.
+    /// Begins a capture of these axes, in the order of their numbers, and of these outputs. All pins
+    /// are low and all positions 0.
     ///
     /// # Errors
     /// [`TraceError::Write`] if the file cannot be written.
@@ -47,7 +48,7 @@ impl<W: Write> PinsVcd<W> {
         out: W,
         own: OwnCapture,
         names: impl Iterator<Item = &'n str>,
-        outputs: u8,
+        outputs: OutputPins,
     ) -> Result<Self, TraceError> {
         Self::begin(Writer::new(out), own, names, outputs).map_err(failed)
     }
@@ -56,7 +57,7 @@ impl<W: Write> PinsVcd<W> {
         mut out: Writer<W>,
         own: OwnCapture,
         names: impl Iterator<Item = &'n str>,
-        outputs: u8,
+        outputs: OutputPins,
     ) -> io::Result<Self> {
         out.version(VERSION)?;
         out.comment(&own.to_string())?;
@@ -75,10 +76,12 @@ impl<W: Write> PinsVcd<W> {
             });
             out.upscope()?;
         }
-        let exist = (0..8_u8).filter(|number| outputs >> number & 1 == 1);
+        let exist = (0..8_u8).filter(|number| outputs.outputs >> number & 1 == 1);
+        let has_pwm = outputs.pwm;
         let outputs = exist
             .map(|number| Ok((number, out.add_wire(1, &format!("output_{number}"))?, false)))
             .collect::<io::Result<Vec<_>>>()?;
+        let pwm = has_pwm.then(|| out.add_wire(1, PWM)).transpose()?;
         out.upscope()?;
         out.enddefinitions()?;
         out.timestamp(0)?;
@@ -91,8 +94,9 @@ impl<W: Write> PinsVcd<W> {
         for (_, code, level) in &outputs {
             out.change_scalar(*code, *level)?;
         }
+        pwm.iter().try_for_each(|code| out.change_scalar(*code, false))?;
         out.end()?;
-        Ok(Self { out, axes, outputs, time: 0 })
+        Ok(Self { out, axes, outputs, pwm, time: 0 })
     }
 
     fn stamp(&mut self, ps: u64) -> io::Result<()> {
@@ -133,6 +137,12 @@ impl<W: Write> PinsVcd<W> {
         Ok(())
     }
 
+    fn write_pwm(&mut self, ps: u64, level: bool) -> io::Result<()> {
+        let Some(code) = self.pwm else { return Ok(()) };
+        self.stamp(ps)?;
+        self.out.change_scalar(code, level)
+    }
+
     fn close(&mut self, ps: u64) -> io::Result<()> {
         self.stamp(ps)?;
         self.out.comment(vcd_own::END)?;
@@ -156,6 +166,10 @@ impl<W: Write> PinSink for PinsVcd<W> {
 
     fn outputs(&mut self, ps: u64, levels: u8) -> Result<(), TraceError> {
         self.write_outputs(ps, levels).map_err(failed)
+    }
+
+    fn pwm(&mut self, ps: u64, level: bool) -> Result<(), TraceError> {
+        self.write_pwm(ps, level).map_err(failed)
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {

@@ -6,6 +6,9 @@ use crate::vcd_header::{Blanked, Header, at_end, sorted};
 use crate::vcd_own;
 use vcd::{Command, Parser, Value, Vector};
 
+/// The slot of the PWM behind those of the axes, and behind those of eight outputs.
+pub(crate) const PWM_SLOT: usize = 8;
+
 /// Figures of a capture that has been played into a sink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Played {
@@ -106,6 +109,8 @@ pub(crate) struct Player<'s> {
     levels: Vec<Option<bool>>,
     /// The levels of the outputs, and those that the sink has.
     outputs: [u8; 2],
+    /// The same of the PWM's pin.
+    pwm: [bool; 2],
     /// The level that a STEP and a DIR have before their first value, if that is known.
     assumed: [Option<bool>; 2],
     /// Whether the first time is over, so that values are changes.
@@ -122,6 +127,7 @@ impl<'s> Player<'s> {
             ps: None,
             levels,
             outputs: [0; 2],
+            pwm: [false; 2],
             assumed,
             settled: false,
             changes: 0,
@@ -177,22 +183,31 @@ impl<'s> Player<'s> {
 
     /// Gives the sink the levels of the outputs, all of one time together.
     fn switch(&mut self) -> Result<(), TraceError> {
-        let [now, known] = &mut self.outputs;
-        if std::mem::replace(known, *now) == *now {
-            return Ok(());
+        let (ps, [now, known]) = (self.ps.unwrap_or(0), &mut self.outputs);
+        if std::mem::replace(known, *now) != *now {
+            self.changes += 1;
+            self.sink.outputs(ps, *now)?;
         }
-        self.changes += 1;
-        self.sink.outputs(self.ps.unwrap_or(0), *now)
+        let [now, known] = &mut self.pwm;
+        if std::mem::replace(known, *now) != *now {
+            self.sink.pwm(ps, *now)?;
+        }
+        Ok(())
     }
 
     fn value(&mut self, slot: usize, value: Value) -> Result<(), TraceError> {
         if let Some(number) = slot.checked_sub(self.levels.len()) {
-            let bit = 1 << number;
-            match value {
-                Value::V0 => self.outputs[0] &= !bit,
-                Value::V1 => self.outputs[0] |= bit,
+            let level = match value {
+                Value::V0 => false,
+                Value::V1 => true,
                 // The old level stays, as for the other pins.
-                Value::X | Value::Z => {}
+                Value::X | Value::Z => return Ok(()),
+            };
+            if number == PWM_SLOT {
+                self.pwm[0] = level;
+            } else {
+                let bit = 1 << number;
+                self.outputs[0] = (self.outputs[0] & !bit) | if level { bit } else { 0 };
             }
             return Ok(());
         }

@@ -19,6 +19,9 @@ pub(crate) const SIGNALS: [(&str, u32); 7] = [
 /// The scope that contains a scope for each axis.
 pub(crate) const SCOPE: &str = "carrystep";
 
+/// The name of the PWM's pin.
+pub(crate) const PWM: &str = "pwm";
+
 /// The program that wrote the file, with its version.
 pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
 

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
-use carrystep_check::PinSink;
+use carrystep_check::{OutputPins, PinSink};
 use carrystep_core::engine::{Cause, EngineError, EngineOutputs};
 use carrystep_core::{EngineBuild, Timebase};
 use carrystep_files::Machine;
@@ -25,6 +25,7 @@ struct Pins {
     step: u8,
     dir: u8,
     outputs: u8,
+    pwm: bool,
 }
 
 /// The end of a run.
@@ -64,6 +65,7 @@ impl CorePlan<'_> {
             how_far.at(cycle);
             feed.pins(cycle, pins.step, pins.dir);
             feed.outputs(cycle, pins.outputs);
+            feed.pwm(cycle, pins.pwm);
             if feed.has_failed() {
                 deaf.store(true, Ordering::Relaxed);
             }
@@ -84,7 +86,8 @@ impl CorePlan<'_> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
-                    watch(cycle, Pins { step: outputs.step, dir: outputs.dir, outputs: 0 });
+                    let (step, dir) = (outputs.step, outputs.dir);
+                    watch(cycle, Pins { step, dir, outputs: 0, pwm: false });
                 })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
                 Ok(RunEnd {
@@ -95,8 +98,8 @@ impl CorePlan<'_> {
             }
             Self::Engine(job) => {
                 let outcome = job.run(level, &mut |cycle, outputs| {
-                    let EngineOutputs { step, dir, outputs, .. } = *outputs;
-                    watch(cycle, Pins { step, dir, outputs });
+                    let EngineOutputs { step, dir, outputs, pwm, .. } = *outputs;
+                    watch(cycle, Pins { step, dir, outputs, pwm });
                 })?;
                 Ok(RunEnd {
                     clocks: outcome.clocks,
@@ -106,6 +109,11 @@ impl CorePlan<'_> {
             }
         }
     }
+}
+
+/// The output pins of an engine.
+pub const fn output_pins(build: &EngineBuild) -> OutputPins {
+    OutputPins { outputs: build.outputs.exist, pwm: build.outputs.pwm_divider > 0 }
 }
 
 /// The engine of the machine in this file.

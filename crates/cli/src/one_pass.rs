@@ -14,7 +14,7 @@ use crate::pass::{Kept, RowsAhead};
 use crate::recorded::{Recorded, RecordedRows};
 use carrystep_check::DueChange;
 use carrystep_core::{Command, Timebase};
-use carrystep_program::{ProgramFile, Row, Survey};
+use carrystep_program::{ProgramFile, Row, RowOutputs, Survey};
 use carrystep_report::Detail;
 use carrystep_simulators::Commands;
 use carrystep_simulators::engine::run::TICKS_TO_SEND;
@@ -30,13 +30,16 @@ const FIRST: usize = 4096;
 pub struct OnePass<'a> {
     kept: &'a Kept,
     timebase: Timebase,
+    /// The outputs before the first row.
+    outputs: RowOutputs,
     pulled: Mutex<Pulled>,
     /// [`OnePass::clocks`].
     clocks: AtomicU64,
     /// Number of segments; 0 if it is not known.
     segments: u64,
-    /// [`OnePass::next_due`].
+    /// [`OnePass::next_due`] and [`OnePass::next_duty`].
     due: Mutex<VecDeque<DueChange>>,
+    duties: Mutex<VecDeque<(u64, u16)>>,
 }
 
 /// The rows, as far as they have been read.
@@ -47,6 +50,8 @@ struct Pulled {
     /// Ticks of the rows that have been read, and of those that have been taken.
     ticks: u64,
     taken: u64,
+    /// The outputs behind the rows that have been taken.
+    outputs: RowOutputs,
 }
 
 impl<'a> OnePass<'a> {
@@ -59,13 +64,17 @@ impl<'a> OnePass<'a> {
         kept: &'a Kept,
     ) -> Result<Self, Failure> {
         let ahead = RowsAhead::new(RecordedRows::new(file, detail)?);
+        let (seen, outputs) = (VecDeque::new(), file.row_outputs());
+        let pulled = Pulled { ahead, seen, ticks: 0, taken: 0, outputs: outputs.clone() };
         Ok(Self {
             kept,
             timebase: file.machine().timebase,
-            pulled: Mutex::new(Pulled { ahead, seen: VecDeque::new(), ticks: 0, taken: 0 }),
+            outputs,
+            pulled: Mutex::new(pulled),
             clocks: AtomicU64::new(0),
             segments,
             due: Mutex::new(VecDeque::new()),
+            duties: Mutex::new(VecDeque::new()),
         })
     }
 
@@ -89,6 +98,11 @@ impl<'a> OnePass<'a> {
     /// times are in ps from the beginning of the first row.
     pub fn next_due(&self) -> Option<DueChange> {
         self.due.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
+    }
+
+    /// The same of the duties that the rows set.
+    pub fn next_duty(&self) -> Option<(u64, u16)> {
+        self.duties.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
     }
 
     /// Plans what is left, and returns the figures.
@@ -135,12 +149,16 @@ impl<'a> OnePass<'a> {
         let mut pulled = self.lock();
         let row = pulled.seen.pop_front().map(Ok).or_else(|| self.pull(&mut pulled))?;
         if let Ok(row) = &row {
-            let change = carrystep_program::outputs(row);
+            let change = pulled.outputs.change(row);
             if !change.is_none() {
                 let tick_ps = self.timebase.tick_ns() * 1000;
                 let ps = pulled.taken.saturating_mul(tick_ps);
                 let mut due = self.due.lock().unwrap_or_else(PoisonError::into_inner);
                 due.push_back(DueChange { ps, change });
+                if let Some(duty) = change.duty {
+                    let mut duties = self.duties.lock().unwrap_or_else(PoisonError::into_inner);
+                    duties.push_back((ps, duty));
+                }
             }
             pulled.taken = pulled.taken.saturating_add(row.ticks.into());
         }
@@ -169,7 +187,7 @@ impl fmt::Debug for OnePass<'_> {
 impl Commands for OnePass<'_> {
     fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
         let rows = std::iter::from_fn(|| self.take());
-        Box::new(commands(self.kept.until_an_error(rows)))
+        Box::new(commands(self.kept.until_an_error(rows), self.outputs.clone()))
     }
 
     fn segments(&self) -> u64 {
@@ -184,7 +202,7 @@ pub struct LookedAt<'a>(&'a OnePass<'a>);
 impl Commands for LookedAt<'_> {
     fn commands(&self) -> Box<dyn Iterator<Item = Command> + '_> {
         let rows = (0..).map_while(|number| self.0.look(number));
-        Box::new(commands(self.0.kept.until_an_error(rows)))
+        Box::new(commands(self.0.kept.until_an_error(rows), self.0.outputs.clone()))
     }
 
     fn segments(&self) -> u64 {
@@ -193,14 +211,17 @@ impl Commands for LookedAt<'_> {
 }
 
 /// What a host sends for rows.
-fn commands<'r>(rows: impl Iterator<Item = Row> + 'r) -> impl Iterator<Item = Command> + 'r {
+fn commands<'r>(
+    rows: impl Iterator<Item = Row> + 'r,
+    mut outputs: RowOutputs,
+) -> impl Iterator<Item = Command> + 'r {
     let mut begun = false;
     rows.flat_map(move |row| {
         let count = row.segments.len();
         let segment = |(axis, segment)| Command::Segment { axis, segment };
-        let outputs = carrystep_program::outputs(&row);
-        let outputs = Some(outputs).filter(|change| !change.is_none()).map(Command::Outputs);
-        let segments = outputs.into_iter().chain((0..).zip(row.segments).map(segment));
+        let change = Some(outputs.change(&row)).filter(|change| !change.is_none());
+        let segments =
+            change.map(Command::Outputs).into_iter().chain((0..).zip(row.segments).map(segment));
         // All axes start when each has its first segment.
         let first = !std::mem::replace(&mut begun, true);
         segments.chain(first.then(|| Command::Start { mask: ((1_u16 << count) - 1) as u8 }))

@@ -14,8 +14,9 @@ use crate::progress::RunProgress;
 use crate::recorded;
 use crate::wanted::Wanted;
 use carrystep_check::{
-    DueChange, OutputCheck, OutputReport, OwnCapture, PathAxis, PathChecker, PathReport, PathSetup,
-    PinSink, PinsVcd, Tee, csv_writer, sink_beside,
+    DueChange, OutputCheck, OutputPins, OutputReport, OwnCapture, PathAxis, PathChecker,
+    PathReport, PathSetup, PinSink, PinsVcd, PwmReport, PwmSink, PwmTiming, Tee, csv_writer,
+    sink_beside,
 };
 use carrystep_core::Timebase;
 use carrystep_profile::{Leg, Timeline};
@@ -54,6 +55,9 @@ pub struct ProgramResult {
     /// The output pins against the plan, if the machine has outputs and the core is the engine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outputs: Option<OutputReport>,
+    /// The pin of the PWM against the plan, if the machine has one and the core is the engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pwm: Option<PwmReport>,
     /// The files that were written.
     pub files: Vec<PathBuf>,
 }
@@ -69,6 +73,7 @@ impl fmt::Display for ProgramResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", self.plan, self.check)?;
         self.outputs.iter().try_for_each(|outputs| write!(f, "{outputs}"))?;
+        self.pwm.iter().try_for_each(|pwm| write!(f, "{pwm}"))?;
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
@@ -139,7 +144,8 @@ pub fn run(
     let load = load?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks());
 
-    let exist = engine.as_ref().map_or(0, |engine| engine.outputs.exist);
+    let pins = engine.as_ref().map_or_else(OutputPins::default, gateware::output_pins);
+    let exist = pins.outputs;
     let mut checker =
         PathChecker::new(setup(file, origin_ps), Box::new(kept.until_an_error(Legs::new(file)?)));
     if exist != 0 {
@@ -147,7 +153,7 @@ pub fn run(
     }
     let names = || machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps: origin_ps.cast_signed(), timebase, is_part: false };
-    let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names(), exist)).transpose()?;
+    let vcd = files.vcd.as_mut().map(|out| PinsVcd::new(out, own, names(), pins)).transpose()?;
     let mut writers: Vec<Box<dyn PinSink + '_>> = Vec::new();
     writers.extend(vcd.map(|vcd| Box::new(vcd) as Box<dyn PinSink>));
     // A job has no profile, so that the column of errors is empty.
@@ -164,12 +170,19 @@ pub fn run(
         OutputCheck::new(move || from.next_due().map(since))
     });
 
+    let mut pwm = pins.pwm.then(|| {
+        let (from, divider) = (&program, machine.outputs.pwm_divider);
+        let since = move |(ps, duty): (u64, u16)| (ps.saturating_add(origin_ps), duty);
+        PwmSink::new(PwmTiming { timebase, divider }, move || from.next_duty().map(since))
+    });
+
     let started = Instant::now();
     // The checker follows the path in a thread of its own.
     let (outcome, mut checker) = sink_beside(checker, |checker| -> Result<_, Failure> {
         let mut tee = Tee::new();
         tee.add(checker);
         outputs.iter_mut().for_each(|outputs| tee.add(outputs));
+        pwm.iter_mut().for_each(|pwm| tee.add(pwm));
         writers.iter_mut().for_each(|writer| tee.add(&mut **writer));
         on(&program).run_into(level, timebase, axes, &mut tee, (progress.how_far(), &deaf))
     })?;
@@ -182,6 +195,7 @@ pub fn run(
     drop(writers);
 
     let outputs = outputs.map(OutputCheck::finish);
+    let pwm = pwm.and_then(PwmSink::finish);
     let (survey, recorded) = program.finish(file)?;
     interrupt::check()?;
     checker.ends(length_ps(&survey, &timebase), survey.axes.iter().map(AxisSurvey::steps));
@@ -193,6 +207,7 @@ pub fn run(
     let done = ProgramResult {
         passed: check.passed
             && outputs.as_ref().is_none_or(|outputs| outputs.passed)
+            && pwm.as_ref().is_none_or(|pwm| pwm.passed)
             && plan.landed()
             && outcome.fault.is_none()
             && landed,
@@ -205,6 +220,7 @@ pub fn run(
         plan,
         check,
         outputs,
+        pwm,
         files: files.paths(),
     };
     if let Some(out) = &mut files.report {

@@ -36,8 +36,12 @@ fn keys_give_programs_their_outputs() {
         mist: Some(1),
         flood: Some(2),
         spindle_rpm: Some(24_000),
+        laser: false,
     };
     assert_eq!(machine(keys).unwrap().output_uses, all);
+    let laser = "pwm_divider = 1\nspindle_rpm = 1000\nlaser = true";
+    let uses = OutputUses { spindle_rpm: Some(1000), laser: true, ..OutputUses::default() };
+    assert_eq!(machine(laser).unwrap().output_uses, uses);
 }
 
 #[test]
@@ -52,6 +56,15 @@ fn mistakes_are_refused_by_name() {
         ("count = 2\nmist = 1\nflood = 1", "flood = 1: another key has this output"),
         ("count = 2\nspindle_rpm = 9", "spindle_rpm = 9: the machine has no PWM"),
         ("pwm_divider = 1\nspindle_rpm = 0", "spindle_rpm = 0: it is from 1 to 1000000"),
+        ("pwm_divider = 1\nlaser = true", "laser = true: spindle_rpm is missing"),
+        (
+            "pwm_divider = 1\nspindle_rpm = 9\nlaser = true\nat_ramps = \"stay\"",
+            "laser = true: at_ramps is \"stay\"",
+        ),
+        (
+            "count = 1\npwm_divider = 1\nspindle_rpm = 9\nspindle_reverse = 0\nlaser = true",
+            "laser = true: a laser does not turn",
+        ),
     ] {
         let error = outputs(keys).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");

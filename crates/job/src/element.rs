@@ -18,6 +18,9 @@ pub enum Item {
     /// A number of the caller, for what happens at this place of the path (an output that
     /// switches). The first row that starts at or behind the place carries it.
     Mark(u64),
+    /// The same, for what may also happen a little before the place: the row carries it whose start
+    /// is nearest to the place, of the one in which the path reaches the place and the one behind.
+    NearMark(u64),
 }
 
 /// A move along a line, an arc or a helix, from where the element before it ends.

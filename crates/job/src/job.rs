@@ -17,7 +17,7 @@ use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
 use carrystep_core::Segment;
 use carrystep_files::Machine;
-use carrystep_plan::exact::nearest;
+use carrystep_plan::exact::{nearest, travel};
 use std::collections::VecDeque;
 use std::fmt::Debug;
 
@@ -33,6 +33,22 @@ pub(crate) trait Jobs: Debug + Send {
     fn next_row(&mut self) -> Result<Option<Row>, JobError>;
 }
 
+/// A number of the caller for a place of the path.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    number: u64,
+    /// Whether it may come before the place, if that is nearer.
+    may_be_early: bool,
+}
+
+/// A mark, the piece before which it is, and the place, units of 2^-64 step.
+#[derive(Debug)]
+struct Marked<const N: usize> {
+    mark: Mark,
+    piece: u64,
+    at: [i128; N],
+}
+
 /// What is still to be planned, in order.
 #[derive(Debug)]
 enum Work<const N: usize> {
@@ -43,7 +59,7 @@ enum Work<const N: usize> {
         done: u64,
         count: u64,
     },
-    Mark(u64),
+    Mark(Mark),
     /// The run ends.
     Land,
     /// A rest of so many ticks.
@@ -68,14 +84,16 @@ pub(crate) struct Job<const N: usize> {
     /// The last element, which is held back until it is known whether the path rests behind it.
     pending: Option<Element>,
     /// Marks behind it.
-    pending_marks: Vec<u64>,
+    pending_marks: Vec<Mark>,
     confined: Confined<N>,
     /// Where the stored path ends, and where the program says that it ends.
     at: Point<N>,
     programmed: Point<N>,
     work: VecDeque<Work<N>>,
-    /// Marks, each with the piece before which it is.
-    marks: VecDeque<(u64, u64)>,
+    /// Marks that no row has.
+    marks: VecDeque<Marked<N>>,
+    /// P where the last row ends, units of 2^-64 step.
+    woven: [i128; N],
     /// The piece that the path had reached at the end of the last row.
     reached: u64,
     line: u64,
@@ -130,6 +148,7 @@ impl<const N: usize> Job<N> {
             programmed: start,
             work: VecDeque::new(),
             marks: VecDeque::new(),
+            woven: units,
             reached: 0,
             line: 0,
             block: 0,
@@ -172,11 +191,13 @@ impl<const N: usize> Jobs for Job<N> {
                 let ticks = if ticks == 0 { 0 } else { ticks.max(self.rhythm.ticks.into()) };
                 self.work.push_back(Work::Rest { ticks, line: *line });
             }
-            Item::Mark(mark) => {
+            Item::Mark(number) | Item::NearMark(number) => {
+                let may_be_early = matches!(item, Item::NearMark(_));
+                let mark = Mark { number: *number, may_be_early };
                 if self.pending.is_some() {
-                    self.pending_marks.push(*mark);
+                    self.pending_marks.push(mark);
                 } else {
-                    self.work.push_back(Work::Mark(*mark));
+                    self.work.push_back(Work::Mark(mark));
                 }
             }
         }
@@ -264,7 +285,9 @@ impl<const N: usize> Job<N> {
             }
             Some(&mut Work::Mark(mark)) => {
                 self.work.pop_front();
-                self.marks.push_back((self.runs.next_piece(), mark));
+                let (piece, end) = (self.runs.next_piece(), *self.runs.end());
+                let at = self.units(&end, self.line)?;
+                self.marks.push_back(Marked { mark, piece, at });
             }
             Some(Work::Land) => {
                 self.work.pop_front();
@@ -310,7 +333,7 @@ impl<const N: usize> Job<N> {
             let segments = [Segment { ticks, v: 0, a: 0, j: 0, last: false }; N];
             let (piece, line, block) = (self.reached, self.line, self.block);
             let passed = Passed { piece, line, block, feed: f64::INFINITY, off: 0.0, corner: 0.0 };
-            self.row(&Span { ticks, segments }, &passed);
+            self.row(&Span { ticks, segments }, &passed, true);
         }
     }
 
@@ -330,9 +353,10 @@ impl<const N: usize> Job<N> {
                 self.add(target, last.passed)?;
             }
             let spans = self.weave.land(target).map_err(|broken| self.broken(broken))?;
-            for span in spans {
+            let count = spans.len();
+            for (number, span) in spans.iter().enumerate() {
                 let passed = self.held.take().unwrap_or(last.passed);
-                self.row(&span, &passed);
+                self.row(span, &passed, number + 1 == count);
             }
         }
         Ok(())
@@ -343,26 +367,33 @@ impl<const N: usize> Job<N> {
         let span = self.weave.push(point).map_err(|broken| self.broken(broken))?;
         let before = self.held.replace(passed);
         if let (Some(span), Some(before)) = (span, before) {
-            self.row(&span, &before);
+            self.row(&span, &before, false);
         }
         Ok(())
     }
 
-    /// Adds a row, and what the path has passed at its end.
-    fn row(&mut self, span: &Span<N>, passed: &Passed) {
+    /// Adds a row, and what the path has passed at its end, where the motion may rest.
+    fn row(&mut self, span: &Span<N>, passed: &Passed, rests: bool) {
+        let begin = self.woven;
+        for (at, segment) in self.woven.iter_mut().zip(&span.segments) {
+            *at += travel(segment, span.ticks.into());
+        }
         let mut marks = Vec::new();
-        while let Some(&(before, mark)) = self.marks.front() {
-            if before > self.reached {
+        while let Some(next) = self.marks.front() {
+            let is_near = next.mark.may_be_early
+                && next.piece <= passed.piece
+                && distance(&next.at, &begin) < distance(&next.at, &self.woven);
+            if next.piece > self.reached && !is_near {
                 break;
             }
-            marks.push(mark);
+            marks.push(next.mark.number);
             self.marks.pop_front();
         }
         self.reached = self.reached.max(passed.piece);
         (self.line, self.block) = (passed.line, passed.block);
         let &Passed { line, block, feed, off, corner, .. } = passed;
         let (ticks, segments) = (span.ticks, span.segments.to_vec());
-        self.rows.push_back(Row { ticks, segments, line, block, feed, off, corner, marks });
+        self.rows.push_back(Row { ticks, segments, line, block, feed, off, corner, marks, rests });
     }
 
     /// The motors at a control point, in units of 2^-64 step.
@@ -379,4 +410,9 @@ impl<const N: usize> Job<N> {
     fn broken(&self, broken: Broken) -> JobError {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
+}
+
+/// The distance of two places of the motors, units of 2^-64 step.
+fn distance<const N: usize>(a: &[i128; N], b: &[i128; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| ((a - b) as f64).powi(2)).sum::<f64>().sqrt()
 }

@@ -25,6 +25,8 @@ pub struct Row {
     /// below 1 it follows a path that is itself bent, as chords of a large circle are.
     pub corner: f64,
     /// The marks ([`Item::Mark`](crate::Item::Mark)) that the path has reached at the start of the
-    /// row.
+    /// row, and those ([`Item::NearMark`](crate::Item::NearMark)) that are nearest to it there.
     pub marks: Vec<u64>,
+    /// Whether the motion rests where the row ends.
+    pub rests: bool,
 }

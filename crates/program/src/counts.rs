@@ -65,7 +65,7 @@ impl Counts {
                     self.inputs.push((*input, *line));
                 }
             }
-            Event::End { line } => self.lines = self.lines.max(*line),
+            Event::Laser { line, .. } | Event::End { line } => self.lines = self.lines.max(*line),
         }
     }
 

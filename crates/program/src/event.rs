@@ -1,5 +1,6 @@
 //! What a program does, part by part: moves, rests, and what is switched.
 
+use crate::laser::LaserPower;
 use crate::letter::LINEAR;
 use crate::switch::Switch;
 use carrystep_core::OutputChange;
@@ -25,6 +26,13 @@ pub enum Event {
         change: OutputChange,
         /// True: while the tool moves, where the next move begins. False: at rest.
         with_motion: bool,
+        /// Line of the program.
+        line: u64,
+    },
+    /// The power of a laser changes while the tool moves, where the next move begins.
+    Laser {
+        /// The new power.
+        power: LaserPower,
         /// Line of the program.
         line: u64,
     },

@@ -5,6 +5,7 @@ use crate::entry::Entry;
 use crate::error::{Fault, ProgramError};
 use crate::event::{Event, ProgrammedMove, Reading};
 use crate::file::{Found, ProgramFile, Resumed};
+use crate::laser::LaserPower;
 use crate::letter::LINEAR;
 use crate::letters::Letters;
 use crate::outputs::{Effect, ProgramOutputs};
@@ -46,6 +47,10 @@ pub struct Events {
     waits: u64,
     resumed: Vec<Resumed>,
     mode: PathMode,
+    /// What M3, M4, M5 and S have said last.
+    turns: (Turn, f64),
+    /// The power of the laser in the last move; `None` if that is not known to who plans the next.
+    power: Option<LaserPower>,
     /// What the last canonical move gives and has not been taken yet.
     waiting: VecDeque<Event>,
 }
@@ -87,6 +92,8 @@ impl Events {
             waits: 0,
             resumed: settings.resumed.clone(),
             mode: PathMode::Blend { tolerance_mm: None, joining_mm: None },
+            turns: (Turn::Off, 0.0),
+            power: None,
             waiting: VecDeque::new(),
         })
     }
@@ -157,6 +164,9 @@ impl Events {
         let rest = |seconds| Event::Rest { seconds, line };
         let place = std::mem::replace(&mut self.at, machine);
         let mode = std::mem::replace(&mut self.mode, PathMode::ExactStop);
+        // A laser is off on this way.
+        let turns = std::mem::replace(&mut self.turns, (Turn::Off, 0.0));
+        self.power = None;
         self.block = entry.block.number;
         let height = |place: Point| match entry.height {
             Some(height) => [place[0], place[1], height, place[3], place[4], place[5]],
@@ -187,7 +197,7 @@ impl Events {
             self.waiting.push_back(Event::Outputs { change, with_motion, line });
         }
         self.waiting.push_back(rest(0.0));
-        (self.mode, self.unknown) = (mode, entry.unknown);
+        (self.mode, self.turns, self.unknown) = (mode, turns, entry.unknown);
         Ok(())
     }
 
@@ -200,7 +210,9 @@ impl Events {
             Canon::Arc(arc) => self.go(line, arc.to, Some(arc), Some(arc.pace))?,
             Canon::Probe { to, pace, contact, required } => {
                 self.switch(Switch::Probe, line);
+                let turns = std::mem::replace(&mut self.turns, (Turn::Off, 0.0));
                 self.go(line, to, None, Some(pace))?;
+                self.turns = turns;
                 self.waiting.push_back(rest);
                 self.reads(Reading::Probe { contact, required }, line);
             }
@@ -208,7 +220,12 @@ impl Events {
             Canon::Path(mode) => self.mode = mode,
             Canon::Spindle { turn, rpm } => {
                 let effect = self.outputs.spindle(turn, rpm)?;
-                self.change(effect, false, Switch::Spindle, line);
+                let (before, _) = std::mem::replace(&mut self.turns, (turn, rpm));
+                // The tool does not rest for another power of a laser.
+                let stays = (before == Turn::Off) == (turn == Turn::Off);
+                if !(stays && self.outputs.has_laser()) {
+                    self.change(effect, false, Switch::Spindle, line);
+                }
             }
             Canon::Coolant { mist, flood } => {
                 let effect = self.outputs.coolant(mist, flood);
@@ -256,7 +273,7 @@ impl Events {
     /// A place to wait at. What was changed there is in force for the next line.
     fn wait(&mut self, switch: Switch, line: u64) -> Result<(), Fault> {
         self.switch(switch, line);
-        self.waits += 1;
+        (self.waits, self.power) = (self.waits + 1, None);
         if self.changed().is_some() && self.steps.is_amid_line() {
             return Err(Fault::ResumedAmidLine);
         }
@@ -268,7 +285,7 @@ impl Events {
     /// steps are left that have no place, or that were computed before.
     fn reads(&mut self, reading: Reading, line: u64) {
         self.waiting.push_back(Event::Reading { reading, line });
-        self.waits += 1;
+        (self.waits, self.power) = (self.waits + 1, None);
         self.resume();
     }
 
@@ -322,6 +339,12 @@ impl Events {
             Pace::PerSecond(speed) => speed,
             Pace::Seconds(seconds) => one.length() / seconds,
         });
+        let power = self.outputs.laser(self.turns.0, self.turns.1, one.feed);
+        if let Some(power) = power.filter(|_| one.length() > 0.0)
+            && self.power.replace(power) != Some(power)
+        {
+            self.waiting.push_back(Event::Laser { power, line });
+        }
         self.waiting.push_back(Event::Move(one));
         if self.mode == PathMode::ExactStop {
             self.waiting.push_back(Event::Rest { seconds: 0.0, line });

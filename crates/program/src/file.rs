@@ -4,6 +4,7 @@ use crate::entry::{Entry, FromBlock};
 use crate::error::{Fault, ProgramError};
 use crate::letter::unit;
 use crate::letters::Letters;
+use crate::row_outputs::RowOutputs;
 use bigdecimal::BigDecimal;
 use carrystep_files::unit::digits;
 use carrystep_files::{InputError, Machine, decimal};
@@ -167,6 +168,11 @@ impl ProgramFile {
     /// The letters of the machine's axes.
     pub fn letters(&self) -> &Letters {
         &self.letters
+    }
+
+    /// What changes at the outputs with each row of the program, from its first one on.
+    pub fn row_outputs(&self) -> RowOutputs {
+        RowOutputs::new(&self.machine, &self.letters)
     }
 
     /// How the program is to be run.

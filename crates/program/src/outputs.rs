@@ -2,6 +2,7 @@
 //! names.
 
 use crate::error::Fault;
+use crate::laser::LaserPower;
 use carrystep_core::OutputChange;
 use carrystep_core::engine::{Outputs, PWM_STEPS};
 use carrystep_files::Machine;
@@ -29,11 +30,11 @@ impl ProgramOutputs {
 
     /// M3, M4, M5 and S, in turns per minute.
     pub(crate) fn spindle(&self, turn: Turn, rpm: f64) -> Result<Effect, Fault> {
-        let OutputUses { spindle, spindle_reverse, spindle_rpm, .. } = self.uses;
+        let OutputUses { spindle, spindle_reverse, spindle_rpm, laser, .. } = self.uses;
         let turns = turn != Turn::Off;
         let is_reverse = turn == Turn::Counterclockwise;
         let is_switched = spindle.is_some() || spindle_rpm.is_some();
-        if is_reverse && is_switched && spindle_reverse.is_none() {
+        if is_reverse && is_switched && spindle_reverse.is_none() && !laser {
             return Err(Fault::NoReverse);
         }
         let mut change = level(spindle, turns).then(level(spindle_reverse, is_reverse));
@@ -42,9 +43,29 @@ impl ProgramOutputs {
             if rpm > f64::from(most) {
                 return Err(Fault::SpindleSpeed { rpm, most });
             }
-            change.duty = Some(duty(rpm / f64::from(most)));
+            // That of a laser follows the motion.
+            change.duty = Some(duty(rpm / f64::from(most))).filter(|_| !laser);
         }
         Ok(Effect { change, is_all: is_switched })
+    }
+
+    /// Whether the spindle is a laser.
+    pub(crate) const fn has_laser(&self) -> bool {
+        self.uses.laser
+    }
+
+    /// The power of a laser that is switched by M3, M4, M5 and S, in a move with a feed in mm/s, or
+    /// in a rapid move. `None` if the machine has no laser.
+    pub(crate) fn laser(&self, turn: Turn, rpm: f64, feed: Option<f64>) -> Option<LaserPower> {
+        let most = self.uses.spindle_rpm.filter(|_| self.uses.laser)?;
+        let duty = duty(rpm / f64::from(most));
+        Some(match (turn, feed) {
+            (Turn::Clockwise, Some(_)) if duty > 0 => LaserPower::Constant { duty },
+            (Turn::Counterclockwise, Some(feed)) if duty > 0 => {
+                LaserPower::Following { duty, feed: feed as f32 }
+            }
+            _ => LaserPower::Off,
+        })
     }
 
     /// M7, M8, M9: what is on from here on.
@@ -111,6 +132,7 @@ mod tests {
             mist: None,
             flood: Some(3),
             spindle_rpm: Some(24_000),
+            laser: false,
         },
     };
 
@@ -153,7 +175,25 @@ mod tests {
     }
 
     #[test]
-    fn laser_has_the_duty_that_the_program_gives() {
+    fn laser_is_on_in_moves_with_a_feed() {
+        assert_eq!(OUTPUTS.laser(Turn::Clockwise, 1000.0, Some(1.0)), None);
+        let mut laser = OUTPUTS;
+        (laser.uses.laser, laser.uses.spindle_reverse) = (true, None);
+        let power = |turn, rpm, feed| laser.laser(turn, rpm, feed).unwrap();
+        let constant = LaserPower::Constant { duty: 2048 };
+        assert_eq!(power(Turn::Clockwise, 12_000.0, Some(5.0)), constant);
+        let following = LaserPower::Following { duty: 2048, feed: 5.0 };
+        assert_eq!(power(Turn::Counterclockwise, 12_000.0, Some(5.0)), following);
+        assert_eq!(power(Turn::Counterclockwise, 12_000.0, None), LaserPower::Off);
+        assert_eq!(power(Turn::Clockwise, 0.0, Some(5.0)), LaserPower::Off);
+        assert_eq!(power(Turn::Off, 12_000.0, Some(5.0)), LaserPower::Off);
+        // M4 switches the output `spindle` alone, and no duty.
+        let on = laser.spindle(Turn::Counterclockwise, 12_000.0).map(|effect| effect.change);
+        assert_eq!(on, Ok(change(1, 1, None)));
+    }
+
+    #[test]
+    fn analog_output_has_the_duty_that_the_program_gives() {
         assert_eq!(OUTPUTS.analog(0, 0.5), Err(Fault::NoAnalogOutput { index: 0 }));
         let mut laser = OUTPUTS;
         laser.uses.spindle_rpm = None;

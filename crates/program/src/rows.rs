@@ -144,6 +144,7 @@ impl Rows {
                 self.is_marked = true;
                 (Some(rest(0.0, line)).filter(|_| !with_motion), Some(mark))
             }
+            Event::Laser { power, .. } => (None, Some(Item::NearMark(power.mark()))),
             Event::Switch { switch, line } => {
                 self.waits.extend(SyncPoint::of(switch, line));
                 // What was switched before a wait is switched when the wait begins: the spindle

@@ -1,10 +1,9 @@
 //! Places of a program at which whoever runs it stops: for the operator, for a tool, or for an input.
 //!
-//! The planner carries such a place as a mark, as it carries changes of outputs: the row that begins
-//! there has it, and the tool rests before that row.
+//! The planner carries such a place as a mark, as it carries changes of outputs (`row_outputs.rs`):
+//! the row that begins there has it, and the tool rests before that row.
 
 use crate::switch::Switch;
-use carrystep_core::OutputChange;
 use carrystep_job::Row;
 use std::fmt;
 
@@ -42,7 +41,7 @@ impl SyncPoint {
     }
 
     fn of_mark(mark: u64) -> Option<Self> {
-        if mark & WAITS == 0 {
+        if !is_wait(mark) {
             return None;
         }
         let switch = *KINDS.get(((mark & KIND) >> FIRST) as usize)?;
@@ -67,16 +66,16 @@ pub fn sync_points(row: &Row) -> impl Iterator<Item = SyncPoint> {
     row.marks.iter().filter_map(|&mark| SyncPoint::of_mark(mark))
 }
 
-/// What changes at the outputs where a row begins.
-pub fn outputs(row: &Row) -> OutputChange {
-    let changes = row.marks.iter().filter(|&&mark| mark & WAITS == 0);
-    let changes = changes.map(|&mark| OutputChange::of_word(mark as u32));
-    changes.fold(OutputChange::NONE, OutputChange::then)
+/// Whether a mark is a place to wait at.
+pub(crate) const fn is_wait(mark: u64) -> bool {
+    mark & WAITS != 0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::RowOutputs;
+    use carrystep_core::OutputChange;
 
     #[test]
     fn mark_gives_its_place_back() {
@@ -102,8 +101,9 @@ mod tests {
             off: 0.0,
             corner: 0.0,
             marks,
+            rests: false,
         };
-        assert_eq!(outputs(&row), change);
+        assert_eq!(RowOutputs::default().change(&row), change);
         assert_eq!(sync_points(&row).collect::<Vec<_>>(), [pause]);
     }
 }

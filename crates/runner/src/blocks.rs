@@ -59,7 +59,7 @@ mod tests {
             at += i128::from(steps) << 64;
             let (feed, off, corner) = (1.0, 0.0, 0.0);
             let (ticks, segments, marks) = (1 << 20, vec![segment], Vec::new());
-            (Row { ticks, segments, line: 1, block, feed, off, corner, marks }, begin)
+            (Row { ticks, segments, line: 1, block, feed, off, corner, marks, rests: false }, begin)
         };
         rows.iter().map(row).collect()
     }

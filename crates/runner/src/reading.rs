@@ -10,7 +10,7 @@
 use crate::spindle::Spindle;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::{Pace, PacePlace};
-use carrystep_program::{Row, outputs};
+use carrystep_program::{Row, RowOutputs};
 use std::collections::VecDeque;
 
 /// Rows that are kept after they were read: those of the deepest queue, and those that are on their
@@ -41,7 +41,8 @@ struct ReadRow {
     row: (Row, Vec<i128>),
     rate: f64,
     from: Option<PacePlace>,
-    /// The spindle before it.
+    /// The outputs and the spindle before it.
+    outputs: RowOutputs,
     spindle: Spindle,
 }
 
@@ -54,7 +55,8 @@ pub(crate) struct Reading {
     pub ahead: VecDeque<NextRow>,
     /// The rows of the stretch that were read last.
     read: VecDeque<ReadRow>,
-    /// The spindle behind the rows that were read.
+    /// The outputs and the spindle behind the rows that were read.
+    pub row_outputs: RowOutputs,
     spindle: Spindle,
     /// Planned ticks per tick in the row that was read last.
     pub rate: f64,
@@ -78,9 +80,10 @@ pub(crate) struct Reading {
 
 impl Reading {
     /// Nothing has been read; the rows begin at these steps from machine zero.
-    pub fn new(start_steps: &[i64], pace: Pace) -> Self {
+    pub fn new(start_steps: &[i64], pace: Pace, row_outputs: RowOutputs) -> Self {
         Self {
             pace,
+            row_outputs,
             spindle: Spindle::default(),
             rate: 1.0,
             ahead: VecDeque::new(),
@@ -138,7 +141,9 @@ impl Reading {
     ) {
         let NextRow { row, rate, from } = next;
         let (before, spindle) = (self.at.clone(), self.spindle);
-        self.outputs.push_back(self.spindle.turns(outputs(&row), percent));
+        let outputs = self.row_outputs.clone();
+        let change = self.row_outputs.change(&row);
+        self.outputs.push_back(self.spindle.turns(change, percent));
         self.rate = rate;
         let places = self.at.iter_mut().zip(&mut self.segments);
         for ((at, queue), segment) in places.zip(&row.segments) {
@@ -148,7 +153,7 @@ impl Reading {
         if self.read.len() == KEPT {
             self.read.pop_front();
         }
-        self.read.push_back(ReadRow { row: (row, before), rate, from, spindle });
+        self.read.push_back(ReadRow { row: (row, before), rate, from, outputs, spindle });
         self.count += 1;
     }
 
@@ -174,9 +179,10 @@ impl Reading {
             return false;
         }
         while self.count > keep {
-            if let Some(ReadRow { row: (row, at), rate, from, spindle }) = self.read.pop_back() {
+            if let Some(read) = self.read.pop_back() {
+                let ReadRow { row: (row, at), rate, from, outputs, spindle } = read;
                 self.ahead.push_front(NextRow { row, rate, from });
-                (self.at, self.spindle) = (at, spindle);
+                (self.at, self.row_outputs, self.spindle) = (at, outputs, spindle);
             }
             self.count -= 1;
         }

@@ -22,7 +22,7 @@ use carrystep_core::{OutputChange, Segment};
 use carrystep_job::{Hold, Pace, Paced, Track};
 use carrystep_link::{Queues, SegmentSource};
 use carrystep_plan::exact::travel;
-use carrystep_program::{Row, SyncPoint, sync_points};
+use carrystep_program::{Row, RowOutputs, SyncPoint, sync_points};
 use std::fmt;
 
 /// The time that a cut keeps behind the rows that have begun to run, ns.
@@ -89,12 +89,19 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             refused: 0,
             granted: 0,
             track: Track::new(start_steps),
-            now: Reading::new(start_steps, pace),
+            now: Reading::new(start_steps, pace, RowOutputs::default()),
             uncut: None,
             overrides: OverrideSetting::NONE,
             ended: false,
             start: None,
         }
+    }
+
+    /// The same with outputs that depend on more than the marks of the rows: the duty of a laser.
+    #[must_use]
+    pub fn with_outputs(mut self, outputs: RowOutputs) -> Self {
+        self.now.row_outputs = outputs;
+        self
     }
 
     /// The same for a board that can cut its queues: each cut keeps the rows that last for so many
@@ -260,7 +267,7 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         (self.now.held, self.now.left, self.now.whole, self.ended) = (None, None, true, true);
         self.now.ahead.clear();
         let (feed, off, corner) = (f64::INFINITY, 0.0, 0.0);
-        let row = Row { ticks, segments, line, block, feed, off, corner, marks };
+        let row = Row { ticks, segments, line, block, feed, off, corner, marks, rests: true };
         self.now.ahead.push_back(NextRow::own(row));
     }
 

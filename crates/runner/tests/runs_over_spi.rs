@@ -17,7 +17,7 @@ use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Hold, Pace};
 use carrystep_link::{Clock, Ended, Host, Line, Patience, Progress, Wish};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_program::{ProgramFile, Rows, Settings, outputs};
+use carrystep_program::{ProgramFile, Rows, Settings};
 use carrystep_runner::{OverrideSetting, Stretches, Wait, kept_ticks};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::run::EngineJob;
@@ -192,10 +192,11 @@ fn since(load: u64, edges: &[Edge], levels: &[(u64, u8)]) -> Seen {
 /// Those that the rows make on the engine's own host, as `carrystep simulate` runs them.
 fn simulated(Job { machine, file, .. }: &Job) -> Seen {
     let engine = machine.engine();
-    let (mut program, mut ticks) = (Vec::new(), 0);
+    let (mut program, mut ticks, mut outputs) = (Vec::new(), 0, file.row_outputs());
     for row in Rows::new(file).unwrap().map(Result::unwrap) {
-        program
-            .extend(Some(outputs(&row)).filter(|change| !change.is_none()).map(Command::Outputs));
+        program.extend(
+            Some(outputs.change(&row)).filter(|change| !change.is_none()).map(Command::Outputs),
+        );
         program.extend(
             (0..).zip(row.segments).map(|(axis, segment)| Command::Segment { axis, segment }),
         );

@@ -20,6 +20,14 @@ impl<E: Edges> Edges for EdgesOnly<E> {
     fn levels(&mut self, clock: u64, levels: u8) {
         self.0.levels(clock, levels);
     }
+
+    fn duty(&mut self, clock: u64, duty: u16, level: bool) {
+        self.0.duty(clock, duty, level);
+    }
+
+    fn pwm(&mut self, clock: u64, level: bool) {
+        self.0.pwm(clock, level);
+    }
 }
 
 impl<E: Edges, O> Listener<O> for EdgesOnly<E> {

@@ -9,7 +9,7 @@ use carrystep_core::{AXES, Timebase};
 const BATCH: usize = 1 << 14;
 
 /// Sends every change of STEP and DIR of the first `axes` axes to a sink, in batches, and the levels
-/// of the outputs.
+/// of the outputs and of the PWM.
 pub struct PinFeed<'a> {
     timebase: Timebase,
     /// A bit for each axis whose changes are sent.
@@ -18,6 +18,7 @@ pub struct PinFeed<'a> {
     step: u8,
     dir: u8,
     outputs: u8,
+    pwm: bool,
     batch: Vec<PinChange>,
     failed: Option<TraceError>,
 }
@@ -27,7 +28,7 @@ impl<'a> PinFeed<'a> {
     pub fn new(timebase: Timebase, axes: usize, sink: &'a mut dyn PinSink) -> Self {
         let shown = (1 << axes.min(AXES)) - 1;
         let batch = Vec::with_capacity(BATCH + 2 * AXES);
-        Self { timebase, shown, sink, step: 0, dir: 0, outputs: 0, batch, failed: None }
+        Self { timebase, shown, sink, step: 0, dir: 0, outputs: 0, pwm: false, batch, failed: None }
     }
 
     /// Processes the outputs of a cycle. A new level of a pin begins with the cycle.
@@ -64,6 +65,17 @@ impl<'a> PinFeed<'a> {
             self.send();
             if self.failed.is_none() {
                 self.failed = self.sink.outputs(self.timebase.clock_to_ps(cycle), levels).err();
+            }
+        }
+    }
+
+    /// Processes the level of the PWM's pin in a cycle. The other pins of the cycle come first.
+    pub fn pwm(&mut self, cycle: u64, level: bool) {
+        if self.failed.is_none() && level != self.pwm {
+            self.pwm = level;
+            self.send();
+            if self.failed.is_none() {
+                self.failed = self.sink.pwm(self.timebase.clock_to_ps(cycle), level).err();
             }
         }
     }

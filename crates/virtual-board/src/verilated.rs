@@ -38,6 +38,7 @@ struct Late(Vec<LateChange>);
 enum LateChange {
     Edge(Edge),
     Levels(u64, u8),
+    Pwm(u64, bool),
 }
 
 impl Late {
@@ -46,6 +47,7 @@ impl Late {
             match change {
                 LateChange::Edge(edge) => to.edge(edge),
                 LateChange::Levels(clock, levels) => to.levels(clock, levels),
+                LateChange::Pwm(clock, level) => to.pwm(clock, level),
             }
         }
     }
@@ -58,6 +60,10 @@ impl Edges for Late {
 
     fn levels(&mut self, clock: u64, levels: u8) {
         self.0.push(LateChange::Levels(clock, levels));
+    }
+
+    fn pwm(&mut self, clock: u64, level: bool) {
+        self.0.push(LateChange::Pwm(clock, level));
     }
 }
 
@@ -114,7 +120,7 @@ impl VerilatedBoard {
         }
         let Self { process, wire, loads, stops, levels, travelled, .. } = self;
         let mut pins = [levels.step, levels.dir];
-        let mut outputs = levels.outputs;
+        let (mut outputs, mut high) = (levels.outputs, levels.pwm);
         let mut changes = Changes::new(*levels, seen);
         let standing = process.run(&stimuli, &mut |did| match did {
             Did::Tx(cycle, level) => {
@@ -135,6 +141,9 @@ impl VerilatedBoard {
             Did::Outputs(cycle, SwitchedPins { outputs: now, pwm, enabled }) => {
                 if std::mem::replace(&mut outputs, now) != now {
                     to.levels(cycle, now);
+                }
+                if std::mem::replace(&mut high, pwm) != pwm {
+                    to.pwm(cycle, pwm);
                 }
                 changes.change(cycle, |levels| {
                     (levels.outputs, levels.pwm, levels.enabled) = (now, pwm, enabled);

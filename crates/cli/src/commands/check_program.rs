@@ -8,8 +8,8 @@ use crate::junit::JunitFile;
 use crate::pass::{Kept, RowsAhead};
 use crate::{job, output, program, program_run};
 use carrystep_check::{
-    Capture, JobChecker, JobOutputs, JobReport, PlannedRow, PlannedRows, SignalMap, TraceError,
-    sink_beside,
+    Capture, JobChecker, JobOutputs, JobReport, OutputPins, PlannedRow, PlannedRows, SignalMap,
+    TraceError, sink_beside,
 };
 use carrystep_files::InputError;
 use carrystep_program::{Legs, Marks, Row, Rows};
@@ -52,7 +52,8 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine().axes.iter().map(|axis| axis.name.as_str()).collect();
     let failed = |error: TraceError| unusable(arguments, error);
-    let exist = file.machine().outputs.exist;
+    let build = file.machine().outputs;
+    let exist = OutputPins { outputs: build.exist, pwm: build.pwm_divider > 0 };
     let capture = Capture::new(&arguments.capture, &names, &map).map_err(failed)?;
     let capture = capture.with_outputs(exist);
     let reader = capture.open().map_err(failed)?;
@@ -73,8 +74,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     } else {
         setup.total_ps = program_run::length_ps(&survey, &timebase);
         let rows = RowsAhead::new(Rows::new(&file)?);
-        let planned = |row: Row| {
-            let outputs = carrystep_program::outputs(&row);
+        let mut outputs = file.row_outputs();
+        let planned = move |row: Row| {
+            let outputs = outputs.change(&row);
             PlannedRow { segments: row.segments, outputs }
         };
         let rows = kept.until_an_error(rows).map(planned);
@@ -82,7 +84,13 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     };
     let legs = Box::new(kept.until_an_error(Legs::new(&file)?));
     let marks = Box::new(kept.until_an_error(Marks::new(&file)?));
-    let outputs = JobOutputs { exist, shown: reader.outputs(), marks };
+    let outputs = JobOutputs {
+        exist,
+        shown: reader.outputs(),
+        divider: build.pwm_divider,
+        is_own: reader.own().is_some(),
+        marks,
+    };
     let checker = JobChecker::new(setup, legs, rows, outputs, &timebase, origin);
     // The capture is read while it is checked.
     let (played, checker) = sink_beside(checker, |sink| reader.play(sink)).map_err(failed)?;
@@ -99,6 +107,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         }
         for output in report.output_times.iter().flatten() {
             junit.case(format!("output {}", output.output), &output.failures);
+        }
+        if let Some(pwm) = &report.pwm {
+            junit.case("PWM".to_owned(), pwm.first_wrong.as_slice());
         }
         junit.keep()?;
     }

@@ -52,10 +52,9 @@ struct ChangedOutputs {
     duty: Option<u16>,
 }
 
-/// What changes at the outputs where a row begins.
-fn changed(row: &Row) -> Option<ChangedOutputs> {
-    let OutputChange { mask, levels, duty } =
-        Some(carrystep_program::outputs(row)).filter(|change| !change.is_none())?;
+/// What changes at the outputs where a row begins, if anything does.
+fn changed(change: OutputChange) -> Option<ChangedOutputs> {
+    let OutputChange { mask, levels, duty } = Some(change).filter(|change| !change.is_none())?;
     Some(ChangedOutputs { mask, levels, duty })
 }
 
@@ -67,15 +66,20 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
     }
     let file = program::load(&arguments.file, &arguments.program)?;
     let report = arguments.report.as_deref().map(OutputFile::create).transpose()?;
-    let (mut text, mut number) = (Spool::new(), 0);
+    let (mut text, mut number, mut outputs) = (Spool::new(), 0, file.row_outputs());
     let detail = recorded::detail(report.is_some());
     let (survey, recorded) = program::survey(&file, detail, |row| {
         number += 1;
+        let outputs = changed(outputs.change(row));
         if arguments.json_lines {
-            let (Row { line, segments, .. }, outputs) = (row, changed(row));
+            let Row { line, segments, .. } = row;
             return output::print_json_line(&PlannedRow { number, line: *line, segments, outputs });
         }
-        if arguments.segments { text.add(|text| add_row(text, &file, row)) } else { Ok(()) }
+        if arguments.segments {
+            text.add(|text| add_row(text, &file, row, outputs))
+        } else {
+            Ok(())
+        }
     })?;
     let figures = ProgramFigures::new(&file, &survey, &recorded.time_use);
     let planned = PlannedProgram { passed: true, figures };
@@ -93,10 +97,10 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
 }
 
 /// Adds the segments of a row.
-fn add_row(text: &mut String, file: &ProgramFile, row: &Row) {
+fn add_row(text: &mut String, file: &ProgramFile, row: &Row, outputs: Option<ChangedOutputs>) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "line {}", row.line);
-    if let Some(ChangedOutputs { mask, levels, duty }) = changed(row) {
+    if let Some(ChangedOutputs { mask, levels, duty }) = outputs {
         let number = |output: &u8| mask >> output & 1 == 1;
         for output in (0..8).filter(number) {
             let level = if levels >> output & 1 == 1 { "on" } else { "off" };

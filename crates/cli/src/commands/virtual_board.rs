@@ -112,13 +112,14 @@ fn capture(
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let own = OwnCapture { origin_ps, timebase: time, is_part: false };
-    let mut vcd = PinsVcd::new(out, own, names, build.outputs.exist)?;
+    let mut vcd = PinsVcd::new(out, own, names, gateware::output_pins(build))?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
     let mut tell = |cycle: u64, outputs: &EngineOutputs| {
         feed.pins(cycle, outputs.step, outputs.dir);
         feed.outputs(cycle, outputs.outputs);
+        feed.pwm(cycle, outputs.pwm);
     };
-    let mut replay = Replay::new(&build.pins, &mut tell);
+    let mut replay = Replay::new(&build.pins, &mut tell).with_pwm(build.outputs.pwm_divider);
     while goes_on && operated.step(&mut replay)? {
         replay.reach(operated.real_time.board.cycle());
     }

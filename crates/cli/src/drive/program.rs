@@ -219,6 +219,7 @@ fn way<'a>(file: &ProgramFile, kept: &'a Kept) -> Result<Way<'a>, Failure> {
     let start = file.start_steps();
     let pace = Pace::new(machine, &start).map_err(|error| Failure::input(error.to_string()))?;
     let stretches = Stretches::new(rows, &start, hold, pace, machine.queue);
+    let stretches = stretches.with_outputs(file.row_outputs());
     if !machine.cuts {
         return Ok(stretches);
     }

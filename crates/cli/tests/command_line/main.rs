@@ -41,6 +41,7 @@ mod json_names;
 mod junit;
 #[cfg(target_os = "linux")]
 mod kept_shards;
+mod lasers;
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod long_moves;

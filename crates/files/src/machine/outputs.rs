@@ -24,6 +24,7 @@ pub(super) struct RawOutputs {
     mist: Option<Spanned<u8>>,
     flood: Option<Spanned<u8>>,
     spindle_rpm: Option<Spanned<u32>>,
+    laser: Option<Spanned<bool>>,
 }
 
 /// What a G-code program does with the outputs. Each is the number of an output, from 0.
@@ -40,6 +41,8 @@ pub struct OutputUses {
     /// The speed in turns per minute at which the duty of the PWM would be 1; `None` if the PWM is
     /// not the spindle's.
     pub spindle_rpm: Option<u32>,
+    /// Whether the spindle is a laser, whose duty follows the motion.
+    pub laser: bool,
 }
 
 impl OutputUses {
@@ -105,6 +108,24 @@ impl RawOutputs {
                 return wrong(message, "it is the speed at the greatest duty of the PWM");
             }
         }
+        let laser = self.laser.as_ref().is_some_and(|laser| *laser.as_ref());
+        if let Some(key) = self.laser.as_ref().filter(|_| laser) {
+            let wrong = |message: &str, help: &str| {
+                Err(InputError::at(source, key.span(), message.to_owned()).help(help.to_owned()))
+            };
+            if self.spindle_rpm.is_none() {
+                let help = "spindle_rpm is the S word at the greatest duty of the laser";
+                return wrong("laser = true: spindle_rpm is missing", help);
+            }
+            if self.at_ramps != AtRamps::Off {
+                let help = "a laser must be off where a stop ends the motion: at_ramps = \"off\"";
+                return wrong("laser = true: at_ramps is \"stay\"", help);
+            }
+            if self.spindle_reverse.is_some() {
+                let help = "M4 is the power that follows the speed; leave out spindle_reverse";
+                return wrong("laser = true: a laser does not turn", help);
+            }
+        }
         let number = |key: &Option<Spanned<u8>>| key.as_ref().map(|number| *number.as_ref());
         Ok(OutputUses {
             spindle: number(&self.spindle),
@@ -112,6 +133,7 @@ impl RawOutputs {
             mist: number(&self.mist),
             flood: number(&self.flood),
             spindle_rpm: self.spindle_rpm.as_ref().map(|rpm| *rpm.as_ref()),
+            laser,
         })
     }
 

@@ -39,6 +39,11 @@ impl Law {
         Self { way, ticks: (2 * planned) as f64 }
     }
 
+    /// Whether the transition ends at rest.
+    pub fn rests(self) -> bool {
+        self.way == Way::Stop
+    }
+
     /// The planned time after `tick` ticks, in ticks.
     pub fn planned(self, tick: f64) -> f64 {
         let u = tick / self.ticks;

@@ -53,7 +53,9 @@ pub(super) fn rows(
         let marks = marks.iter().flat_map(|row| row.marks.iter().copied()).collect();
         source = source.max(until);
         let &Row { line, block, feed, off, corner, .. } = &curve.rows()[here];
-        rows.push(Row { ticks, segments, line, block, feed, off, corner, marks });
+        let ends = curve.rows().get(until).is_some_and(|row| row.rests);
+        let rests = last && (law.rests() || ends);
+        rows.push(Row { ticks, segments, line, block, feed, off, corner, marks, rests });
         (before, now) = (tick, next);
     }
     land(&mut rows, &at, &curve.at(curve.place(end)))?;

@@ -230,6 +230,7 @@ fn row(
         off: most(|row| row.off),
         corner: most(|row| row.corner),
         marks,
+        rests: false,
         segments,
     })
 }
@@ -257,6 +258,7 @@ fn land(rows: &mut [(Row, Begin)], end: &mut Begin, goal: Vec<i128>) -> Option<(
         last.v = i64::try_from(i128::from(last.v) + rest).ok()?;
         *at -= rest * i128::from(before.ticks);
     }
+    last.rests = true;
     begin.before.clone_from(&before.segments);
     end.before.clone_from(&last.segments);
     end.at = goal;

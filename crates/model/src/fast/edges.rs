@@ -34,6 +34,14 @@ pub trait Edges {
     /// Receives the levels of the engine's outputs, one bit each, from the clock in which one of
     /// them has changed.
     fn levels(&mut self, _clock: u64, _levels: u8) {}
+
+    /// Receives the duty of the engine's PWM, 0 to 4095, from the clock on in which it has changed,
+    /// with the level of the pin in that clock. The pin's further changes follow from the duty.
+    fn duty(&mut self, _clock: u64, _duty: u16, _level: bool) {}
+
+    /// Receives the level of the PWM's pin from the clock on in which it has changed, instead of the
+    /// duty from which it follows.
+    fn pwm(&mut self, _clock: u64, _level: bool) {}
 }
 
 /// Collects every edge; for tests and short runs.

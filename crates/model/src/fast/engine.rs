@@ -79,13 +79,13 @@ impl FastEngine {
         None
     }
 
-    /// Advances by one cycle and reports the edges on the pins, and the levels of outputs that have
-    /// changed, to `to`.
+    /// Advances by one cycle and reports the edges on the pins, and the outputs that have changed,
+    /// to `to`.
     pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let axes = self.core.build().axes();
         let before: [_; MAX_AXES] =
             std::array::from_fn(|axis| *self.core.shaper(axis.min(axes - 1)));
-        let levels = self.core.output_levels();
+        let (levels, duty) = (self.core.output_levels(), self.core.duty());
         self.core.clock(inputs);
         self.cycle += 1;
         for (axis, before) in before.iter().enumerate().take(axes) {
@@ -93,6 +93,9 @@ impl FastEngine {
         }
         if self.core.output_levels() != levels {
             to.levels(self.cycle, self.core.output_levels());
+        }
+        if self.core.duty() != duty {
+            to.duty(self.cycle, self.core.duty(), self.core.pwm());
         }
     }
 

@@ -6,7 +6,7 @@
 use carrystep_check::{PathAxis, PathChecker, PathReport, PathSetup, Pin, PinChange, PinSink};
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::Row;
-use carrystep_program::{Legs, Marks, ProgramError, ProgramFile, Settings, Survey};
+use carrystep_program::{Legs, Marks, ProgramError, ProgramFile, RowOutputs, Settings, Survey};
 use std::path::Path;
 
 const TICK_PS: u64 = 1_000_000;
@@ -75,8 +75,9 @@ pub fn pulses(rows: &[Row]) -> Vec<PinChange> {
 /// The output pins of rows: the levels from a time on.
 pub fn levels(rows: &[Row]) -> Vec<(u64, u8)> {
     let (mut now, mut tick, mut found) = (0, 0, Vec::new());
+    let mut outputs = RowOutputs::default();
     for row in rows {
-        let change = carrystep_program::outputs(row);
+        let change = outputs.change(row);
         let next = (now & !change.mask) | (change.levels & change.mask);
         if std::mem::replace(&mut now, next) != next {
             found.push((ORIGIN_PS + tick * TICK_PS, next));

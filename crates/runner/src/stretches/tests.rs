@@ -23,6 +23,7 @@ fn row(ticks: u32, v: i64, marks: &[u64]) -> Row {
         off: 0.0,
         corner: 0.0,
         marks: marks.to_vec(),
+        rests: false,
     }
 }
 

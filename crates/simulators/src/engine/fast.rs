@@ -27,7 +27,7 @@ impl Fed<'_> {
         // These outputs change several times per tick, or while nothing else does, whether or not
         // the host offers anything.
         let quiet = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..outputs };
-        let told = EngineOutputs { room: None, pwm: false, ..quiet };
+        let told = EngineOutputs { room: None, ..quiet };
         listener.outputs(self.core.cycle(), &told);
         let rests = self.host.is_done() && (outputs.idle || outputs.halted);
         let most = if rests { most_at_rest.min(most) } else { most };
@@ -101,7 +101,8 @@ impl EngineJob<'_> {
         &self,
         observer: &mut EngineObserver<'_>,
     ) -> Result<EngineOutcome, LevelError> {
-        let mut replay = Replay::new(&self.build.pins, observer);
+        let mut replay =
+            Replay::new(&self.build.pins, observer).with_pwm(self.build.outputs.pwm_divider);
         let end = self.run_fast(&mut replay);
         replay.reach(end.as_ref().map_or(self.limit(), |outcome| outcome.clocks));
         end

@@ -101,6 +101,16 @@ impl Motion {
         self.outputs.levels
     }
 
+    /// The duty of the PWM, 0 to 4095 of 4096.
+    pub(crate) const fn duty(&self) -> u16 {
+        self.outputs.duty as u16
+    }
+
+    /// The level of the PWM's pin.
+    pub(crate) const fn pwm(&self) -> bool {
+        self.outputs.pwm
+    }
+
     /// True if no clock changes anything but the PWM's counter and pin.
     pub(super) fn outputs_are_steady(&self) -> bool {
         let OutputState { computed, emitted, levels, duty, .. } = self.outputs;

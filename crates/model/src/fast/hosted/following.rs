@@ -95,4 +95,12 @@ impl<E: Edges> Edges for Following<'_, E> {
     fn levels(&mut self, clock: u64, levels: u8) {
         self.to.levels(clock, levels);
     }
+
+    fn duty(&mut self, clock: u64, duty: u16, level: bool) {
+        self.to.duty(clock, duty, level);
+    }
+
+    fn pwm(&mut self, clock: u64, level: bool) {
+        self.to.pwm(clock, level);
+    }
 }
