@@ -1,9 +1,9 @@
 //! Programs in G-code as segments for the levels.
 
 use crate::moves::root;
-use carrystep_core::{Command, EngineBuild, Program, Segment};
+use carrystep_core::{Command, EngineBuild, OutputChange, Program, Segment};
 use carrystep_files::{Machine, SourceText};
-use carrystep_program::{ProgramError, ProgramFile, Row, Settings, Survey};
+use carrystep_program::{ProgramError, ProgramFile, Row, RowOutputs, Settings, Survey};
 use std::path::Path;
 
 /// Lines, an arc, a corner, a rest and a reversal, in a third of a second.
@@ -22,6 +22,8 @@ pub struct GcodeJob {
     pub machine: Machine,
     /// Its segments: rows of common ticks.
     pub rows: Vec<Row>,
+    /// The outputs before the first row.
+    pub outputs: RowOutputs,
     /// Its figures.
     pub survey: Survey,
 }
@@ -73,7 +75,7 @@ fn planned(path: &Path, machine: &str) -> GcodeJob {
         rows.push(row.clone());
         Ok::<(), ProgramError>(())
     });
-    GcodeJob { machine, rows, survey: survey.expect("a plan") }
+    GcodeJob { machine, rows, outputs: file.row_outputs(), survey: survey.expect("a plan") }
 }
 
 impl GcodeJob {
@@ -91,8 +93,7 @@ impl GcodeJob {
     /// the first row.
     pub fn program(&self) -> Program {
         let mut program: Program = Vec::new();
-        for (number, row) in self.rows.iter().enumerate() {
-            let change = carrystep_program::outputs(row);
+        for ((number, row), change) in self.rows.iter().enumerate().zip(self.changes()) {
             program.extend((!change.is_none()).then_some(Command::Outputs(change)));
             let of_row = (0..).zip(&row.segments);
             program.extend(of_row.map(|(axis, &segment)| Command::Segment { axis, segment }));
@@ -103,10 +104,15 @@ impl GcodeJob {
         program
     }
 
+    /// What changes at the outputs with each row.
+    fn changes(&self) -> impl Iterator<Item = OutputChange> {
+        let mut outputs = self.outputs.clone();
+        self.rows.iter().map(move |row| outputs.change(row))
+    }
+
     /// The rows with which outputs change.
     pub fn switches(&self) -> usize {
-        let changes = self.rows.iter().map(carrystep_program::outputs);
-        changes.filter(|change| !change.is_none()).count()
+        self.changes().filter(|change| !change.is_none()).count()
     }
 
     /// Number of steps of all axes, by adding tick by tick.

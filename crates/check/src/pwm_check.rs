@@ -179,8 +179,9 @@ impl PwmCheck {
     /// comparison begins there.
     fn find_zero(&mut self, ps: i128, level: bool) {
         let base = self.base.unwrap_or(0);
-        while let Some((due, duty)) = self.due.pop_front_if(|(due, _)| base + *due <= ps) {
+        while let Some(&(due, duty)) = self.due.front().filter(|(due, _)| base + due <= ps) {
             (self.last, self.duty) = (base + due, duty);
+            self.due.pop_front();
         }
         let next = self.due.front().map(|&(due, _)| base + due);
         let lasts = ps - self.last > self.ps_of(self.period()) + 2 * self.bound

@@ -36,7 +36,9 @@ fn edges(vcd: &str) -> Vec<(u64, bool)> {
     for line in vcd.lines() {
         match line.strip_prefix('#') {
             Some(ps) => time = ps.parse().unwrap(),
-            None if line.get(1..) == Some(code) => found.push((time, line.starts_with('1'))),
+            None if time > 0 && line.get(1..) == Some(code) => {
+                found.push((time, line.starts_with('1')));
+            }
             None => {}
         }
     }
@@ -130,7 +132,7 @@ fn board_has_the_pin_of_the_plan() {
 const LONG: &str = "G21 G90 G64 P0.02 F1800\nM3 S500\no1 repeat [6]\nG1 X4 Y4\nG3 X4 Y4 I-3 J1\n\
     G1 X-4 Z0.4\nG1 X0 Y0 Z0\no1 endrepeat\nM2\n";
 
-/// In a hold, under an override, and at the end without `M5`, the laser is off where the tool rests.
+/// In a hold, and at the end without `M5`, the laser is off where the tool rests.
 #[test]
 fn laser_is_off_where_a_hold_rests() {
     let folder = laser_folder(LONG);
@@ -139,7 +141,6 @@ fn laser_is_off_where_a_hold_rests() {
     let board = Board::new(&folder, "--vcd a.vcd --fast");
     let mut child = begins(&folder, &board);
     moving(&folder, &mut child, &board.port);
-    passed(&folder.run(&format!("override --feed 150 --port {}", board.port)));
     passed(&hold(&folder, &board));
     waits(&folder, &board, &mut child);
     passed(&resume(&folder, &board));
@@ -169,4 +170,23 @@ fn laser_is_off_where_a_hold_rests() {
         let light = edges.iter().find(|(ps, _)| dark.contains(ps));
         assert_eq!(light, None, "the tool rests from {} to {} ps", two[0], two[1]);
     }
+}
+
+/// At half of the feed, and with the power at 80 %, the beam has 40 % of its power.
+#[test]
+fn power_follows_the_speed_under_an_override() {
+    let folder = laser_folder("G21 G90\nM4 S500\nM0\nG1 X6 F1800\nM2\n");
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
+    let mut child = begins(&folder, &board);
+    waits(&folder, &board, &mut child);
+    passed(&folder.run(&format!("override --feed 50 --spindle 80 --port {}", board.port)));
+    passed(&resume(&folder, &board));
+    done(child);
+    board.end();
+    let edges = edges(&read(&folder, "a.vcd"));
+    let middle = &edges[edges.len() / 3 / 2 * 2..];
+    let (rise, fall, next) = (middle[0].0, middle[1].0, middle[2].0);
+    assert!(middle[0].1);
+    let part = (fall - rise) as f64 / (next - rise) as f64;
+    assert!((part - 0.5 * 0.5 * 0.8).abs() < 0.001, "{part}");
 }
