@@ -76,7 +76,7 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
             return output::print_json_line(&PlannedRow { number, line: *line, segments, outputs });
         }
         if arguments.segments {
-            text.add(|text| add_row(text, &file, row, outputs))
+            text.add(|text| add_row(text, &file, row, outputs.as_ref()))
         } else {
             Ok(())
         }
@@ -97,10 +97,10 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
 }
 
 /// Adds the segments of a row.
-fn add_row(text: &mut String, file: &ProgramFile, row: &Row, outputs: Option<ChangedOutputs>) {
+fn add_row(text: &mut String, file: &ProgramFile, row: &Row, outputs: Option<&ChangedOutputs>) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "line {}", row.line);
-    if let Some(ChangedOutputs { mask, levels, duty }) = outputs {
+    if let Some(&ChangedOutputs { mask, levels, duty }) = outputs {
         let number = |output: &u8| mask >> output & 1 == 1;
         for output in (0..8).filter(number) {
             let level = if levels >> output & 1 == 1 { "on" } else { "off" };
