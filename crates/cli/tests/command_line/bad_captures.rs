@@ -76,7 +76,8 @@ fn captures_without_the_signals_are_refused_with_a_list_of_theirs() {
     check(" --map x.step=la.D7", "the capture has no signal la.D7 for x.step; it has la.D0, la.D1");
     check(
         " --map x.step",
-        "signal map 'x.step': write <axis>.step=<signal>, <axis>.dir=<signal> or output_<number>=<signal>",
+        "signal map 'x.step': write <axis>.step=<signal>, <axis>.dir=<signal>, output_<number>=<signal> or \
+         pwm=<signal>",
     );
     check(" --map x.clock=la.D0", "signal map 'x.clock=la.D0': write <axis>.step=<signal>");
     check(" --map q.step=la.D0", "there is no axis 'q'; the axes are x");

@@ -159,6 +159,8 @@ impl Edges for Seen {
 
 pub struct World<B> {
     pub board: B,
+    /// Clocks of a millisecond.
+    ms: u64,
     edges: Seen,
     there: Wire,
     back: Wire,
@@ -182,7 +184,7 @@ pub struct World<B> {
 
 impl<B: Kind> World<B> {
     fn milliseconds(&self) -> u32 {
-        (self.board.cycle() / MS) as u32
+        (self.board.cycle() / self.ms) as u32
     }
 
     /// Advances by one millisecond.
@@ -191,7 +193,7 @@ impl<B: Kind> World<B> {
             self.board.say(byte);
         }
         let hears = self.board.unsaid() > 0;
-        self.board.reach(self.board.cycle() + MS, &mut self.edges);
+        self.board.reach(self.board.cycle() + self.ms, &mut self.edges);
         if hears {
             self.heard = self.board.cycle();
         }
@@ -221,6 +223,11 @@ impl<B: Kind> World<B> {
     /// The edges from this cycle on, with clocks counted from there.
     pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
         self.edges.since(cycle)
+    }
+
+    /// The edges since the last call, which are not kept.
+    pub fn take_edges(&mut self) -> Vec<Edge> {
+        std::mem::take(&mut self.edges.edges)
     }
 
     /// The last edge.
@@ -257,6 +264,7 @@ impl<B: Kind> End<B> {
     pub fn of(board: B, uart: Uart, faults: Faults, seed: u64) -> Self {
         Self(Rc::new(RefCell::new(World {
             board,
+            ms: MS,
             edges: Seen::default(),
             there: Wire::new(faults, seed),
             back: Wire::new(faults, !seed),
@@ -269,6 +277,12 @@ impl<B: Kind> End<B> {
             came: 0,
             meanwhile: Box::new(|_| ()),
         })))
+    }
+
+    /// The same for a board with a clock of so many Hz.
+    pub fn clocked(self, clock_hz: u64) -> Self {
+        self.0.borrow_mut().ms = clock_hz / 1000;
+        self
     }
 
     /// Connects a host that refuses any other build, and opens a session.
