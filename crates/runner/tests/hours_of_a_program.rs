@@ -23,12 +23,15 @@ use std::collections::VecDeque;
 use support::wire::Faults;
 use support::{End, SESSION, asked};
 
-/// A slow clock, because the model of the link takes time for each of its clocks.
-const CLOCK_HZ: u64 = 12_000_000;
-const BAUD: u32 = 1_500_000;
+/// A slow clock, because the model of the link takes time for each of its clocks. The 32 bits of
+/// TICKS overflow after 7.2 hours.
+const CLOCK_HZ: u64 = 6_000_000;
+const BAUD: u32 = 750_000;
+/// The host asks the board so often.
+const EXCHANGE_MS: usize = 10;
 
-const MACHINE: &str = "[machine]\nclock_hz = 12_000_000\ntick_ns = 4000\nqueue_depth = 31\n\
-    [machine.link]\nbaud = 1_500_000\n\
+const MACHINE: &str = "[machine]\nclock_hz = 6_000_000\ntick_ns = 6000\nphases = 4\nqueue_depth = 31\n\
+    [machine.link]\nbaud = 750_000\n\
     [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 80\nspeed_limit = 100\naccel_limit = 1000\n\
     driver = \"tmc2209\"\n\
     [[machine.axis]]\nname = \"y\"\nsteps_per_unit = 81\nspeed_limit = 100\naccel_limit = 1000\n\
@@ -123,7 +126,8 @@ fn program_of_hours_does_not_drift() {
     let (start, hold) = (file.start_steps(), Hold::new(&machine).unwrap());
     let pace = Pace::new(&machine, &start).unwrap();
     let stretches = RefCell::new(Stretches::new(rows, &start, hold, pace, machine.queue));
-    let end = End::of(ModelBoard::new(&engine, uart), uart, Faults::default(), 1).clocked(CLOCK_HZ);
+    let end = End::of(ModelBoard::new(&engine, uart), uart, Faults::default(), 1)
+        .clocked(CLOCK_HZ, EXCHANGE_MS);
     let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
     host.open(SESSION).unwrap();
     host.enable().unwrap();

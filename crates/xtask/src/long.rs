@@ -135,6 +135,12 @@ const RUNS: [Run; 15] = [
         cargo: &["--test", "command_line", "host_that_is_killed"],
     },
     Run {
+        name: "hours",
+        what: "eight hours of a program on a board of models, through the link: each pulse in the tick that the plan's own sums give it, drift zero steps",
+        asks: &[("CARRYSTEP_HOURS", "28800")],
+        cargo: &["--test", "hours_of_a_program"],
+    },
+    Run {
         name: "linuxcnc",
         what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; homing, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of every servo period",
         asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],

@@ -161,6 +161,8 @@ pub struct World<B> {
     pub board: B,
     /// Clocks of a millisecond.
     ms: u64,
+    /// Milliseconds of an exchange.
+    turn: usize,
     edges: Seen,
     there: Wire,
     back: Wire,
@@ -265,6 +267,7 @@ impl<B: Kind> End<B> {
         Self(Rc::new(RefCell::new(World {
             board,
             ms: MS,
+            turn: 1,
             edges: Seen::default(),
             there: Wire::new(faults, seed),
             back: Wire::new(faults, !seed),
@@ -279,10 +282,12 @@ impl<B: Kind> End<B> {
         })))
     }
 
-    /// The same for a board with a clock of so many Hz.
-    pub fn clocked(self, clock_hz: u64) -> Self {
-        self.0.borrow_mut().ms = clock_hz / 1000;
-        self
+    /// The same for a board with a clock of so many Hz, and exchanges of so many milliseconds.
+    pub fn clocked(self, clock_hz: u64, turn: usize) -> Self {
+        let world = &mut *self.0.borrow_mut();
+        (world.ms, world.turn) = (clock_hz / 1000, turn);
+        world.bytes *= turn;
+        self.clone()
     }
 
     /// Connects a host that refuses any other build, and opens a session.
@@ -320,7 +325,7 @@ pub struct Died;
 impl<B: Kind> Line for End<B> {
     type Error = Died;
 
-    /// An exchange lasts one millisecond, like a frame of USB.
+    /// An exchange lasts one millisecond, like a frame of USB, or longer.
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Died> {
         let world = &mut *self.0.borrow_mut();
         if world.board.cycle() >= world.dies {
@@ -331,7 +336,7 @@ impl<B: Kind> Line for End<B> {
         for piece in out[..sent].split_inclusive(|&byte| byte == END) {
             world.there.send(now, piece);
         }
-        world.pass();
+        (0..world.turn).for_each(|_| world.pass());
         let received = world.inbox.len().min(into.len());
         into.iter_mut().zip(world.inbox.drain(..received)).for_each(|(place, byte)| *place = byte);
         Ok(Exchanged { sent, received })
