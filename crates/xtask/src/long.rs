@@ -33,7 +33,7 @@ struct Run {
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its
 /// `FIGURES`.
-const RUNS: [Run; 15] = [
+const RUNS: [Run; 16] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
