@@ -150,7 +150,7 @@ const RUNS: [Run; 16] = [
 
 /// Programs that come with LinuxCNC, beside our own.
 const PROGRAMS_OF_LINUXCNC: &str =
-    "square_and_arc:3dtest:arcspiral:cds:comp:hole-circle:polar:spiral:tort:flowsnake:3D_Chips";
+    "square_and_arc:3dtest:arcspiral:cds:comp:hole-circle:polar:spiral:comp-g1:flowsnake:3D_Chips";
 
 /// What stands for a run that has not been made.
 const NOT_YET: &str = "| not run yet | | | | |";
