@@ -7,6 +7,7 @@ use crate::emitted::{Emitted, Passed};
 use crate::error::JobError;
 use crate::kinematics::Kinematics;
 use crate::limits::{Motors, of_machine};
+use crate::marks::{Mark, Marks};
 use crate::piece::Piece;
 use crate::refuse::{coordinates, refuse};
 use crate::rhythm::{LONGEST, Rhythm, shortest};
@@ -31,22 +32,6 @@ pub(crate) trait Jobs: Debug + Send {
     fn push(&mut self, item: &Item) -> Result<(), JobError>;
     fn finish(&mut self) -> Result<(), JobError>;
     fn next_row(&mut self) -> Result<Option<Row>, JobError>;
-}
-
-/// A number of the caller for a place of the path.
-#[derive(Debug, Clone, Copy)]
-struct Mark {
-    number: u64,
-    /// Whether it may come before the place, if that is nearer.
-    may_be_early: bool,
-}
-
-/// A mark, the piece before which it is, and the place, units of 2^-64 step.
-#[derive(Debug)]
-struct Marked<const N: usize> {
-    mark: Mark,
-    piece: u64,
-    at: [i128; N],
 }
 
 /// What is still to be planned, in order.
@@ -91,7 +76,7 @@ pub(crate) struct Job<const N: usize> {
     programmed: Point<N>,
     work: VecDeque<Work<N>>,
     /// Marks that no row has.
-    marks: VecDeque<Marked<N>>,
+    marks: Marks<N>,
     /// P where the last row ends, units of 2^-64 step.
     woven: [i128; N],
     /// The piece that the path had reached at the end of the last row.
@@ -147,7 +132,7 @@ impl<const N: usize> Job<N> {
             at,
             programmed: start,
             work: VecDeque::new(),
-            marks: VecDeque::new(),
+            marks: Marks::default(),
             woven: units,
             reached: 0,
             line: 0,
@@ -287,7 +272,7 @@ impl<const N: usize> Job<N> {
                 self.work.pop_front();
                 let (piece, end) = (self.runs.next_piece(), *self.runs.end());
                 let at = self.units(&end, self.line)?;
-                self.marks.push_back(Marked { mark, piece, at });
+                self.marks.push(mark, piece, at);
             }
             Some(Work::Land) => {
                 self.work.pop_front();
@@ -378,17 +363,7 @@ impl<const N: usize> Job<N> {
         for (at, segment) in self.woven.iter_mut().zip(&span.segments) {
             *at += travel(segment, span.ticks.into());
         }
-        let mut marks = Vec::new();
-        while let Some(next) = self.marks.front() {
-            let is_near = next.mark.may_be_early
-                && next.piece <= passed.piece
-                && distance(&next.at, &begin) < distance(&next.at, &self.woven);
-            if next.piece > self.reached && !is_near {
-                break;
-            }
-            marks.push(next.mark.number);
-            self.marks.pop_front();
-        }
+        let marks = self.marks.take([self.reached, passed.piece], [&begin, &self.woven]);
         self.reached = self.reached.max(passed.piece);
         (self.line, self.block) = (passed.line, passed.block);
         let &Passed { line, block, feed, off, corner, .. } = passed;
@@ -410,9 +385,4 @@ impl<const N: usize> Job<N> {
     fn broken(&self, broken: Broken) -> JobError {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
-}
-
-/// The distance of two places of the motors, units of 2^-64 step.
-fn distance<const N: usize>(a: &[i128; N], b: &[i128; N]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| ((a - b) as f64).powi(2)).sum::<f64>().sqrt()
 }

@@ -33,6 +33,7 @@ mod job;
 mod keep;
 mod kinematics;
 mod limits;
+mod marks;
 mod pace;
 mod path;
 mod piece;
