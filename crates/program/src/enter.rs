@@ -71,10 +71,11 @@ impl Entry {
         }
         let height = height(file, from.safe_z, &skipped, &place).map_err(error)?;
         let spins = modes.spindle != Turn::Off;
+        let outputs = ProgramOutputs::new(file.machine());
+        // A laser needs no time.
         let switches = spins
-            && ProgramOutputs::new(file.machine())
-                .spindle(modes.spindle, modes.rpm)
-                .is_ok_and(|effect| effect.is_all);
+            && !outputs.has_laser()
+            && outputs.spindle(modes.spindle, modes.rpm).is_ok_and(|effect| effect.is_all);
         let of_program = skipped.spindle_dwell;
         let default = if switches { DEFAULT_SPINDLE_DWELL } else { 0.0 };
         let dwell = from.spindle_dwell.or(of_program).unwrap_or(default);
