@@ -8,6 +8,7 @@
 //!                                    |-> rows   the planner's segments -> survey: figures, limits
 //!                                    |-> legs   the programmed path in straight legs, for the checker
 //!                                    '-> marks  the legs between which outputs change, for it
+//! line of a sender -> lines: the same events as the planner's items, line by line
 //! ```
 //!
 //! An [`Entry`] takes the place of the blocks before the one with which a program begins; [`Blocks`]
@@ -24,9 +25,11 @@ mod error;
 mod event;
 mod events;
 mod file;
+mod items;
 mod legs;
 mod letter;
 mod letters;
+mod lines;
 mod marks;
 mod outputs;
 mod pause;
@@ -34,6 +37,7 @@ mod rows;
 mod survey;
 mod switch;
 mod sync;
+mod translate;
 
 pub use blocks::{Blocks, TimedBlock};
 pub use carrystep_gcode::{
@@ -44,14 +48,16 @@ pub use counts::Counts;
 pub use entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 pub use error::{Fault, ProgramError};
 pub use event::{Event, ProgrammedMove, Reading};
-pub use events::{DEFAULT_TOLERANCE, Events};
+pub use events::Events;
 pub use file::{Found, ProgramFile, Resumed, Settings, is_program};
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
+pub use lines::{LineBreak, LineFault, Lines, PlannedLine};
 pub use marks::Marks;
 pub use pause::{Stop, stop_at};
 pub use rows::Rows;
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::{Switch, SwitchCount};
 pub use sync::{SyncPoint, outputs, sync_points};
+pub use translate::DEFAULT_TOLERANCE;
