@@ -22,10 +22,10 @@ pub const LINES: usize = 1024;
 
 /// Rows that may wait for the board, at least two seconds of motion.
 const MOST_ROWS: usize = 512;
-/// Rows with which a batch begins while lines still come, at least 0.4 s.
-const READY: usize = 96;
-/// Rows from which on a batch waits for more lines, at least 0.2 s of motion.
-const FEW: usize = 48;
+/// Rows with which a batch begins while lines still come, at least 0.7 s.
+const READY: usize = 192;
+/// Rows from which on a batch waits for more lines, at least 0.35 s of motion.
+const FEW: usize = 96;
 /// Time without a line after which a batch that has not begun ends with the last one.
 const QUIET: Duration = Duration::from_millis(20);
 /// The same for a batch that has begun and whose rows get few.

@@ -164,6 +164,11 @@ fn pause_amid_a_line_ends_a_batch_and_leaves_the_rest_of_the_line() {
     begin(&growing, &given, end.place);
     let (rows, end) = batch(&growing);
     assert_eq!((gone(&rows)[0], end.at, growing.waits()), (80, None, false));
+    // The motion of a line comes before its stop.
+    growing.add(given.execute("G0 X3 M0").unwrap());
+    begin(&growing, &given, vec![2.0, 0.0]);
+    let (rows, end) = batch(&growing);
+    assert_eq!((gone(&rows)[0], end.at, growing.waits()), (80, Some(LineBreak::Pause), false));
     // A line that gives nothing does not wait.
     growing.add(given.execute("G90").unwrap());
     assert!(!growing.waits());
