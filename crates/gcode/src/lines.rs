@@ -1,4 +1,5 @@
-//! Lines that come one after the other, as senders send them: each is executed whole, or not at all.
+//! Lines that come one after the other, as senders send them: each is executed whole, or not at
+//! all.
 //!
 //! Every line is a program of its own, which begins with the state behind the line before it. There
 //! are no O-words, because a block that is opened in a line would have to be closed in it.

@@ -1,5 +1,5 @@
-//! What is answered to a sender: the lines that only ask or set something are answered here, and the
-//! others are actions for whoever owns the machine.
+//! What is answered to a sender: the lines that only ask or set something are answered here, and
+//! the others are actions for whoever owns the machine.
 
 use crate::code::{Alarm, ErrorCode};
 use crate::input::RECEIVE_BUFFER;
@@ -94,8 +94,8 @@ impl Dialect {
         text
     }
 
-    /// What becomes of a line without blanks and comments, in capitals. `parameters` and `modes` are
-    /// asked for only if the line shows them.
+    /// What becomes of a line without blanks and comments, in capitals. `parameters` and `modes`
+    /// are asked for only if the line shows them.
     pub fn line<'a>(
         &mut self,
         line: &'a str,

@@ -114,8 +114,8 @@ impl Input {
         !self.lines.is_empty()
     }
 
-    /// Free bytes of the receive buffer, as reports name them. A sender that counts nothing may have
-    /// sent more: then it is 0, and nothing is lost.
+    /// Free bytes of the receive buffer, as reports name them. A sender that counts nothing may
+    /// have sent more: then it is 0, and nothing is lost.
     pub fn free(&self) -> usize {
         RECEIVE_BUFFER.saturating_sub(self.waiting.saturating_add(self.sent))
     }

@@ -7,9 +7,9 @@
 //! state -> report   `<Idle|MPos:...>`, with the fields that come only now and then
 //! ```
 //!
-//! Numbers and texts are those of the documentation of Grbl 1.1 (`doc/markdown` and `doc/csv` of its
-//! repository). The crate knows no machine: whoever owns one gives its state, its settings and its
-//! parameters, and does what [`Action`] says.
+//! Numbers and texts are those of the documentation of Grbl 1.1 (`doc/markdown` and `doc/csv` of
+//! its repository). The crate knows no machine: whoever owns one gives its state, its settings and
+//! its parameters, and does what [`Action`] says.
 //!
 //! No sequence of bytes makes the memory grow beyond [`INPUT_BOUND`] and a few words for each line
 //! that waits.

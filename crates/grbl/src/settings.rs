@@ -1,6 +1,6 @@
 //! The settings that `$$` shows. Those of the machine are in the machine file: they are shown, and
-//! a write of another value is refused with the name of the key. Two settings are the dialect's own:
-//! what reports hold (`$10`) and whether they are in inches (`$13`).
+//! a write of another value is refused with the name of the key. Two settings are the dialect's
+//! own: what reports hold (`$10`) and whether they are in inches (`$13`).
 
 use std::fmt::Write as _;
 

@@ -167,8 +167,8 @@ impl Lines {
         self.items.end
     }
 
-    /// A planner for the items that come from this place on: the coordinates of the axes in the order
-    /// of the machine file.
+    /// A planner for the items that come from this place on: the coordinates of the axes in the
+    /// order of the machine file.
     ///
     /// # Errors
     /// The place is beyond the range of the machine's steps.

@@ -107,8 +107,8 @@ impl Growing {
         self.shared.1.notify_all();
     }
 
-    /// Begins to plan the lines that wait and those that come, from this place on: the coordinates of
-    /// the axes. A batch that has not ended is dropped.
+    /// Begins to plan the lines that wait and those that come, from this place on: the coordinates
+    /// of the axes. A batch that has not ended is dropped.
     pub fn begin(&self, planner: Planner, place: Vec<f64>) {
         let mut shared = self.lock();
         let since = Instant::now();

@@ -1,5 +1,5 @@
-//! Lines of a sender, planned in batches: what has come in a hold is planned as a program is, a sender
-//! that is late ends a batch at rest, and what is dropped is never given.
+//! Lines of a sender, planned in batches: what has come in a hold is planned as a program is, a
+//! sender that is late ends a batch at rest, and what is dropped is never given.
 
 #![allow(clippy::unwrap_used)] // Tests may panic.
 

@@ -36,12 +36,12 @@ pub struct ServeArguments {
     /// reaches the port moves the machine.
     #[arg(long, value_name = "PORT")]
     pub tcp: Option<u16>,
-    /// The address of the TCP port. With another one than that of this computer itself, others reach
-    /// the machine.
+    /// The address of the TCP port. With another one than that of this computer itself, others
+    /// reach the machine.
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", requires = "tcp")]
     pub listen: IpAddr,
-    /// When the sender that drives is gone: `finish` executes the lines that have come, `stop` brings
-    /// the machine to rest on its path and drops them. A jog is always cancelled.
+    /// When the sender that drives is gone: `finish` executes the lines that have come, `stop`
+    /// brings the machine to rest on its path and drops them. A jog is always cancelled.
     #[arg(long, value_enum, value_name = "WHAT", default_value = "finish")]
     pub when_gone: WhenGone,
     /// Greatest distance from the programmed path, mm, instead of that of G64: greater than 0.

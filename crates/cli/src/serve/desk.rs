@@ -1,5 +1,5 @@
-//! The state of the dialect on a machine: what senders have sent, what of it is planned, and what is
-//! left to do at rest. It does not move anything.
+//! The state of the dialect on a machine: what senders have sent, what of it is planned, and what
+//! is left to do at rest. It does not move anything.
 //!
 //! ```text
 //! clients -> real-time characters -> hold, resume, flush, overrides      at once

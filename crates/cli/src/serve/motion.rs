@@ -1,4 +1,5 @@
-//! A batch of lines on the board: stretches from rest to rest, with holds and overrides as in `run`.
+//! A batch of lines on the board: stretches from rest to rest, with holds and overrides as in
+//! `run`.
 
 use super::desk::{Desk, Flush};
 use super::shop::{Next, REST, Shop};

@@ -7,8 +7,8 @@ use carrystep_files::Machine;
 use carrystep_virtual_board::{ModelBoard, Pace, RealTimeBoard, Terminal};
 use std::path::Path;
 
-/// Begins to simulate the board of a machine, until the process ends. Returns its port. `name` is the
-/// path of the machine file.
+/// Begins to simulate the board of a machine, until the process ends. Returns its port. `name` is
+/// the path of the machine file.
 ///
 /// # Errors
 /// The machine cannot be built, or the system has no pseudo-terminal.

@@ -1,5 +1,5 @@
-//! The lines of the sender that drives, in their order. Each is answered when it is done, refused, or
-//! in the queue of the plan.
+//! The lines of the sender that drives, in their order. Each is answered when it is done, refused,
+//! or in the queue of the plan.
 
 use super::desk::{Desk, Flush, Todo};
 use super::{refusal, shown};

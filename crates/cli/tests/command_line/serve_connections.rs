@@ -1,5 +1,5 @@
-//! The connections of `carrystep serve`: who drives and who watches, senders that vanish, HTTP, other
-//! commands beside it, a board that is gone.
+//! The connections of `carrystep serve`: who drives and who watches, senders that vanish, HTTP,
+//! other commands beside it, a board that is gone.
 
 use crate::sender::{Sender, Served, place};
 use crate::serve_streams::folder;

@@ -1,5 +1,5 @@
-//! Holds, resets, jogs and overrides of senders: the machine comes to rest on its path, and its place
-//! stays exact.
+//! Holds, resets, jogs and overrides of senders: the machine comes to rest on its path, and its
+//! place stays exact.
 
 use crate::sender::{Sender, Served, is_answer, place};
 use crate::serve_streams::{edges, folder};

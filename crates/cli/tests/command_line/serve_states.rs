@@ -1,4 +1,5 @@
-//! What each state of `carrystep serve` allows: alarms, homing, checks, queries, and what is refused.
+//! What each state of `carrystep serve` allows: alarms, homing, checks, queries, and what is
+//! refused.
 
 use crate::command::Folder;
 use crate::run_programs::{HOME, MACHINE};
