@@ -8,6 +8,8 @@ mod plan;
 mod port;
 mod profile;
 mod program;
+#[cfg(unix)]
+mod serve;
 mod sweep;
 mod table;
 
@@ -28,6 +30,8 @@ pub use port::{
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
+#[cfg(unix)]
+pub use serve::{ServeArguments, WhenGone};
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -74,6 +78,10 @@ pub enum Subcommand {
     /// Run a move file or a G-code program on a board: plan, stream, keep its queues full. Ctrl-C
     /// ramps the axes down; it brings a program to rest on its path, and ends it if it comes again.
     Run(RunArguments),
+    /// Let senders drive a board, programs that speak Grbl 1.1: they stream their lines to a
+    /// pseudo-terminal or to TCP. Ctrl-C brings the machine to rest on its path and ends it.
+    #[cfg(unix)]
+    Serve(ServeArguments),
     /// Bring the program of a `run` in another terminal to rest, on its path.
     Hold(ProgramPortArguments),
     /// Let a program go on that is held, or that waits at M0, M1 or M6.

@@ -21,6 +21,8 @@ pub mod profile;
 pub mod run;
 pub mod run_program;
 pub mod schemas;
+#[cfg(unix)]
+pub mod serve;
 pub mod simulate;
 pub mod status;
 pub mod stop;

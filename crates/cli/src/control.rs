@@ -208,6 +208,11 @@ impl Control {
         self.program = Some(ProgramControl::new(spindle));
     }
 
+    /// The program begins anew: nothing is held, and there are no overrides.
+    pub fn restart_program(&mut self) {
+        self.program.iter_mut().for_each(ProgramControl::restart);
+    }
+
     /// Notes the block in which the tool of a program is, until a stop is requested.
     pub fn reached(&mut self, block: Option<BlockAt>) {
         if let Some(program) = &mut self.program

@@ -9,7 +9,7 @@ use std::fmt;
 pub struct Holder {
     /// Its process id.
     pub pid: u32,
-    /// Its subcommand: `run`, `jog`, `probe`, `home`, `offset`, `status`, `stop`.
+    /// Its subcommand: `run`, `serve`, `jog`, `probe`, `home`, `offset`, `status`, `stop`.
     pub command: String,
     /// Its baud rate.
     pub baud: u32,

@@ -95,6 +95,24 @@ pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &BoardMemo
     machine.axes.iter().enumerate().filter_map(unclear).fold(0, |mask, bit| mask | bit)
 }
 
+/// Forgets the machine coordinates of axes, one bit each, that begin to home.
+pub fn forget(memory: &mut BoardMemory, machine: &Machine, mask: u8) {
+    let axes = (0..machine.axes.len()).filter(|number| mask >> number & 1 == 1);
+    axes.for_each(|number| memory.set_offset(number, None));
+}
+
+/// Notes the machine coordinates of axes that have homed. `places` are the positions of all axes at
+/// which the limits closed, steps.
+pub fn note(memory: &mut BoardMemory, machine: &Machine, mask: u8, places: &[i32]) {
+    let homes = machine.axes.iter().zip(places).enumerate();
+    for (number, (axis, place)) in homes.filter(|(number, _)| mask >> number & 1 == 1) {
+        if let Some(home) = axis.home {
+            memory.set_offset(number, Some(home.position - i64::from(*place)));
+            memory.set_limit(number, None);
+        }
+    }
+}
+
 /// The message for a failed homing: the cause, the distances in the axes' units, and the remedy.
 pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
     let of = |distance: fn(&AxisHome) -> u32| {

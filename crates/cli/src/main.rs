@@ -41,6 +41,8 @@ mod progress;
 mod recorded;
 mod segments;
 #[cfg(unix)]
+mod serve;
+#[cfg(unix)]
 mod shipped;
 mod spool;
 mod switches;
@@ -74,6 +76,8 @@ fn main() -> ExitCode {
         Subcommand::Jog(jog) => commands::run::jog(jog),
         Subcommand::Probe(probe) => commands::probe::run(probe),
         Subcommand::Offset(offset) => commands::offset::run(offset),
+        #[cfg(unix)]
+        Subcommand::Serve(serve) => commands::serve::run(serve),
         Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::stop::stop(stop),

@@ -1,12 +1,27 @@
-//! A virtual board together with its operator's switches, and the main loop of
-//! `carrystep virtual-board`.
+//! A virtual board together with its operator's switches, the main loop of
+//! `carrystep virtual-board`, and how far a fast board may run ahead.
 
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::switches::{KNOWN, SwitchPanel};
+use carrystep_core::EngineBuild;
 use carrystep_virtual_board::{Edges, RealTimeBoard, RealTimeError, SimulatedBoard};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
+
+/// A fast board runs ahead of its host by at most the watchdog's time divided by this.
+const PART_OF_WATCHDOG: u64 = 4;
+/// Without a watchdog, it runs ahead by at most a second divided by this.
+const PART_OF_SECOND: u64 = 40;
+
+/// How far a fast board may run ahead of its host, in clocks.
+pub fn ahead(build: &EngineBuild) -> u64 {
+    let (guard, time) = (&build.guard, &build.timebase);
+    match u64::from(guard.watchdog) * u64::from(guard.round) * u64::from(time.clocks_per_tick()) {
+        0 => time.clock_hz() / PART_OF_SECOND,
+        watchdog => watchdog / PART_OF_WATCHDOG,
+    }
+}
 
 /// The board at its pseudo-terminal, and its switches.
 pub struct OperatedBoard<B> {

@@ -19,6 +19,7 @@
 //!            tool_length offsets of tools; tools: the tool table
 //!            kept     what a machine keeps of them from one program to the next
 //!            switches spindle, coolant, tool; inputs_outputs
+//! senders  lines    lines that come one after the other, each executed whole or not at all
 //! blocks   block      lines as they are executed; modes: the modes between two of them
 //! ```
 //!
@@ -44,6 +45,7 @@ mod grammar;
 mod inputs_outputs;
 mod interpreter;
 mod kept;
+mod lines;
 mod memory;
 mod modes;
 mod motion;
@@ -70,6 +72,7 @@ pub use canon::{
 pub use error::{ErrorKind, GcodeError};
 pub use interpreter::Interpreter;
 pub use kept::Offsets;
+pub use lines::LineInterpreter;
 pub use modes::Modes;
 pub use options::{DEFAULT_BLOCKS, Options};
 pub use tools::{Tool, ToolTable};

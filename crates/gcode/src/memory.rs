@@ -25,7 +25,7 @@ pub(crate) struct SetAside {
 }
 
 /// All parameters that keep what was last assigned.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Memory {
     /// `#n` is at `n`.
     numbered: Box<[f64]>,

@@ -42,12 +42,11 @@ pub struct Modes {
     pub tool: u32,
 }
 
-impl<R: Read + Seek> Interpreter<R> {
-    /// The modes after the last block that was executed.
-    pub fn modes(&self) -> Modes {
-        let State { modal, frame, memory, .. } = &self.state;
+impl Modes {
+    pub(crate) fn of(state: &State) -> Self {
+        let State { modal, frame, memory, .. } = state;
         let step = (modal.system - 1) * numbers::SYSTEM_STEP;
-        Modes {
+        Self {
             inches: modal.inches,
             incremental: modal.incremental,
             plane: modal.plane,
@@ -63,6 +62,13 @@ impl<R: Read + Seek> Interpreter<R> {
             flood: modal.flood,
             tool: modal.tool,
         }
+    }
+}
+
+impl<R: Read + Seek> Interpreter<R> {
+    /// The modes after the last block that was executed.
+    pub fn modes(&self) -> Modes {
+        Modes::of(&self.state)
     }
 
     /// The axes whose place or offsets are not those of `other`: the same program, as far as it

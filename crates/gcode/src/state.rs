@@ -105,7 +105,7 @@ pub(crate) struct Modal {
 }
 
 /// Everything that a line can read or change.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct State {
     pub(crate) memory: Memory,
     pub(crate) modal: Modal,

@@ -30,6 +30,7 @@ const PIECE_SECONDS: f64 = 0.5;
 /// A job with any number of axes.
 pub(crate) trait Jobs: Debug + Send {
     fn push(&mut self, item: &Item) -> Result<(), JobError>;
+    fn check(&self, from: &[f64], element: &Element) -> Result<(), JobError>;
     fn finish(&mut self) -> Result<(), JobError>;
     fn next_row(&mut self) -> Result<Option<Row>, JobError>;
 }
@@ -187,6 +188,10 @@ impl<const N: usize> Jobs for Job<N> {
             }
         }
         Ok(())
+    }
+
+    fn check(&self, from: &[f64], element: &Element) -> Result<(), JobError> {
+        refuse(element, &coordinates(from, element.line)?, &self.targets, self.linear)
     }
 
     fn finish(&mut self) -> Result<(), JobError> {

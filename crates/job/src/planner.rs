@@ -3,7 +3,7 @@
 //! [`Planner::push`] only stores an item. [`Planner::next_row`] works as far as the next row needs,
 //! so that no item, however long it takes, makes memory grow.
 
-use crate::element::Item;
+use crate::element::{Element, Item};
 use crate::error::JobError;
 use crate::job::{Job, Jobs};
 use crate::kinematics::Kinematics;
@@ -54,6 +54,15 @@ impl Planner {
             return Err(JobError::Ended);
         }
         self.job.push(item)
+    }
+
+    /// Checks an element that begins at this place, without storing it: what [`Planner::push`] would
+    /// refuse.
+    ///
+    /// # Errors
+    /// What is wrong with the element, with its line.
+    pub fn check(&self, from: &[f64], element: &Element) -> Result<(), JobError> {
+        self.job.check(from, element)
     }
 
     /// The path ends at rest. The last row is marked as the last one.

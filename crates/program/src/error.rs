@@ -263,18 +263,24 @@ impl ProgramError {
         error: JobError,
     ) -> Self {
         let line = planner_line(&error);
-        let fault = match &error {
+        Self::new(path, line, Fault::of_planner(machine, error))
+    }
+}
+
+impl Fault {
+    /// What the planner refuses, in the units of the machine.
+    pub(crate) fn of_planner(machine: &carrystep_files::Machine, error: JobError) -> Self {
+        match &error {
             JobError::Travel { axis, steps, low, high, .. } => {
                 let known = machine.axes.iter().find(|known| known.name == *axis);
                 let steps_per_unit = known.map_or(1.0, |axis| axis.unit.steps);
                 let [place, low, high] =
                     [steps, low, high].map(|&steps| digits(steps as f64 / steps_per_unit));
                 let unit = letter_of(axis).map_or("", unit);
-                Fault::Travel { axis: axis.clone(), unit, place, low, high }
+                Self::Travel { axis: axis.clone(), unit, place, low, high }
             }
-            _ => Fault::Plan(error),
-        };
-        Self::new(path, line, fault)
+            _ => Self::Plan(error),
+        }
     }
 }
 

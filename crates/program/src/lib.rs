@@ -8,6 +8,7 @@
 //!                                    |-> rows   the planner's segments -> survey: figures, limits
 //!                                    |-> legs   the programmed path in straight legs, for the checker
 //!                                    '-> marks  the legs between which outputs change, for it
+//! line of a sender -> lines: the same events as the planner's items, line by line
 //! ```
 //!
 //! An [`Entry`] takes the place of the blocks before the one with which a program begins; [`Blocks`]
@@ -24,10 +25,12 @@ mod error;
 mod event;
 mod events;
 mod file;
+mod items;
 mod laser;
 mod legs;
 mod letter;
 mod letters;
+mod lines;
 mod marks;
 mod outputs;
 mod pause;
@@ -36,6 +39,7 @@ mod rows;
 mod survey;
 mod switch;
 mod sync;
+mod translate;
 
 pub use blocks::{Blocks, TimedBlock};
 pub use carrystep_gcode::{
@@ -46,12 +50,13 @@ pub use counts::Counts;
 pub use entry::{DEFAULT_SPINDLE_DWELL, ENTRY_FEED, Entry, FromBlock};
 pub use error::{Fault, ProgramError};
 pub use event::{Event, ProgrammedMove, Reading};
-pub use events::{DEFAULT_TOLERANCE, Events};
+pub use events::Events;
 pub use file::{Found, ProgramFile, Resumed, Settings, is_program};
 pub use laser::LaserPower;
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
+pub use lines::{LineBreak, LineFault, Lines, PlannedLine};
 pub use marks::Marks;
 pub use pause::{Stop, stop_at};
 pub use row_outputs::RowOutputs;
@@ -59,3 +64,4 @@ pub use rows::Rows;
 pub use survey::{AxisSurvey, Survey, SurveyedRows};
 pub use switch::{Switch, SwitchCount};
 pub use sync::{SyncPoint, sync_points};
+pub use translate::DEFAULT_TOLERANCE;

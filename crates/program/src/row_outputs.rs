@@ -55,6 +55,13 @@ impl RowOutputs {
         Self { axes, ..Self::default() }
     }
 
+    /// The same with all outputs off, where the tool rests: the power of a laser stays in force for
+    /// the next move.
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        Self { duty: 0, ..self.clone() }
+    }
+
     /// What changes where the next row begins.
     pub fn change(&mut self, row: &Row) -> OutputChange {
         let mut change = OutputChange::NONE;

@@ -1,6 +1,7 @@
 //! Planned programs as a board runs them.
 //!
 //! ```text
+//! lines of a sender -> growing: rows from rest to rest, of what has come so far
 //! rows of the planner -> stretches: what the link sends between two places at which the machine
 //!                        ^          rests and somebody must let it go on (M0, M1, M6, a hold)
 //!        hold, overrides -'
@@ -9,6 +10,7 @@
 //! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
 
 mod blocks;
+mod growing;
 mod held;
 mod horizon;
 mod override_setting;
@@ -18,6 +20,7 @@ mod spindle;
 mod stretches;
 
 pub use blocks::BlockAt;
+pub use growing::{BatchEnd, Growing, GrowingRows, LINES};
 pub use horizon::Horizon;
 pub use override_setting::OverrideSetting;
 pub use settling::settling;

@@ -104,6 +104,11 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         self
     }
 
+    /// The outputs behind the rows that were read.
+    pub const fn row_outputs(&self) -> &RowOutputs {
+        &self.now.row_outputs
+    }
+
     /// The same for a board that can cut its queues: each cut keeps the rows that last for so many
     /// ticks behind those that have begun to run ([`kept_ticks`]).
     #[must_use]

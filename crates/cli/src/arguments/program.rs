@@ -92,7 +92,7 @@ pub struct ProgramArguments {
 }
 
 /// Reads a tolerance, mm.
-fn tolerance(text: &str) -> Result<f64, String> {
+pub fn tolerance(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "expected a number of mm".to_owned())?;
     if (1e-6..=1e3).contains(&value) {
         Ok(value)

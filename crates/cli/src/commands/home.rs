@@ -127,23 +127,11 @@ fn drive(
     };
     line.finish_and_clear();
     // From here until homing has succeeded, the axes to be homed have no machine coordinate.
-    (0..axes.len())
-        .filter(|number| homing.mask() >> number & 1 == 1)
-        .for_each(|number| memory.set_offset(number, None));
+    homing::forget(memory, machine, homing.mask());
     let mut edges = None;
     let ended = match outcome {
         Ok(Homed::At(places)) => {
-            for (number, home) in machine
-                .axes
-                .iter()
-                .enumerate()
-                .filter_map(|(number, axis)| Some((number, axis.home?)))
-            {
-                if homing.mask() >> number & 1 == 1 {
-                    memory.set_offset(number, Some(home.position - i64::from(places[number])));
-                    memory.set_limit(number, None);
-                }
-            }
+            homing::note(memory, machine, homing.mask(), &places);
             edges = Some(places);
             How::Done
         }

@@ -4,7 +4,7 @@ use crate::arguments::{BoardLevel, VirtualBoard};
 use crate::connection;
 use crate::failure::Failure;
 use crate::gateware;
-use crate::operated::OperatedBoard;
+use crate::operated::{OperatedBoard, ahead};
 use crate::output::{self, OutputFile};
 use crate::switches::SwitchPanel;
 use carrystep_check::{OwnCapture, PinsVcd};
@@ -21,11 +21,6 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-
-/// A fast board runs ahead of its host by at most the watchdog's time divided by this.
-const PART_OF_WATCHDOG: u64 = 4;
-/// Without a watchdog, it runs ahead by at most a second divided by this.
-const PART_OF_SECOND: u64 = 40;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -87,15 +82,6 @@ fn serve(
     }
     let files = vcd.map(OutputFile::appear).transpose()?.into_iter().collect();
     tell(&served(&operated.real_time.board, machine, files), arguments.json)
-}
-
-/// How far a fast board may run ahead of its host, in clocks.
-fn ahead(build: &EngineBuild) -> u64 {
-    let (guard, time) = (&build.guard, &build.timebase);
-    match u64::from(guard.watchdog) * u64::from(guard.round) * u64::from(time.clocks_per_tick()) {
-        0 => time.clock_hz() / PART_OF_SECOND,
-        watchdog => watchdog / PART_OF_WATCHDOG,
-    }
 }
 
 /// Runs the board and records its pins. The capture begins at the first start, because no pin

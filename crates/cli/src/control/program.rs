@@ -57,6 +57,11 @@ impl ProgramControl {
         self.overrides
     }
 
+    /// Sets the overrides, percent.
+    pub const fn set_overrides(&mut self, overrides: OverrideSetting) {
+        self.overrides = overrides;
+    }
+
     /// Notes a wish for other overrides. Returns the answer: all overrides, or the reason why they
     /// are as before.
     pub(super) fn overrides_as(&mut self, text: &str) -> String {
@@ -79,6 +84,11 @@ impl ProgramControl {
     pub fn rests(&mut self, waits: String) {
         (self.waits, self.resumed, self.rested) = (Some(waits), false, interrupt::count());
         self.reads = false;
+    }
+
+    /// Whether the program rests, and waits for somebody.
+    pub const fn is_waiting(&self) -> bool {
+        self.waits.is_some()
     }
 
     /// The program rests from now on, and waits for an input. Nobody else can let it go on.
@@ -120,6 +130,11 @@ impl ProgramControl {
     /// It was done, with this result.
     pub fn did(&mut self, result: String) {
         (self.wish, self.result) = (None, Some(result));
+    }
+
+    /// Nothing is held or overridden any more.
+    pub fn restart(&mut self) {
+        *self = Self { before: interrupt::count(), ..Self::new(self.spindle) };
     }
 
     /// The program cannot go on for this reason: it waits again.

@@ -20,10 +20,7 @@ pub(super) fn settling_ticks(machine: &Machine) -> u32 {
 }
 
 /// Brings P of all axes, which rest, to its start value. No axis makes a step.
-pub(super) fn settle(
-    board: &mut ConnectedBoard,
-    machine: &Machine,
-) -> Result<(), ConnectedBoardError> {
+pub fn settle(board: &mut ConnectedBoard, machine: &Machine) -> Result<(), ConnectedBoardError> {
     let snapshot = board.snapshot()?;
     let places: Vec<i128> = snapshot.axes.iter().take(machine.axes.len()).map(off).collect();
     let parts = settling(&places, settling_ticks(machine));

@@ -71,6 +71,16 @@ mod reports;
 #[cfg(unix)]
 mod run_programs;
 mod schemas;
+#[cfg(unix)]
+mod sender;
+#[cfg(unix)]
+mod serve_connections;
+#[cfg(unix)]
+mod serve_holds;
+#[cfg(unix)]
+mod serve_states;
+#[cfg(unix)]
+mod serve_streams;
 mod shard_merges;
 #[cfg(unix)]
 mod stop_on_the_wire;

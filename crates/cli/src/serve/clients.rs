@@ -1,0 +1,230 @@
+//! The connections of senders: a pseudo-terminal and TCP. The first one drives the machine; the
+//! others only watch. Nothing blocks, and what waits for a slow reader is bounded.
+
+use super::http::{Beginning, Judged};
+use super::pty::Pty;
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+
+/// Most connections by TCP. Further ones are closed at once.
+const MOST: usize = 10;
+/// Bytes that are read of a connection at once.
+const READ: usize = 4096;
+/// Bytes that wait for a reader from which on it gets no reports, and no line of it is taken.
+const SLOW: usize = 4096;
+/// Bytes that wait for a watcher at most; then its connection is closed.
+const MOST_WAITING: usize = 1 << 16;
+
+/// The number of a connection.
+pub type Id = u64;
+
+/// What has happened to a connection.
+#[derive(Debug)]
+pub enum Heard {
+    /// It is new; whether it drives.
+    Came(Id, bool),
+    /// It has sent these bytes.
+    Bytes(Id, Vec<u8>),
+    /// One is gone; whether it drove.
+    Gone(bool),
+}
+
+struct Client {
+    id: Id,
+    /// `None`: the pseudo-terminal.
+    stream: Option<TcpStream>,
+    beginning: Beginning,
+    out: VecDeque<u8>,
+    is_gone: bool,
+}
+
+/// All connections.
+pub struct Clients {
+    pty: Pty,
+    listener: Option<TcpListener>,
+    clients: Vec<Client>,
+    next: Id,
+    driver: Option<Id>,
+}
+
+impl Clients {
+    /// No connections yet.
+    ///
+    /// # Errors
+    /// The listener cannot be made non-blocking.
+    pub fn new(pty: Pty, listener: Option<TcpListener>) -> io::Result<Self> {
+        listener.as_ref().map_or(Ok(()), |listener| listener.set_nonblocking(true))?;
+        Ok(Self { pty, listener, clients: Vec::new(), next: 1, driver: None })
+    }
+
+    /// The connection that drives.
+    pub const fn driver(&self) -> Option<Id> {
+        self.driver
+    }
+
+    /// What has happened since the last call. With `full`, nothing is read of the connection that
+    /// drives.
+    ///
+    /// # Errors
+    /// The pseudo-terminal has failed.
+    pub fn poll(&mut self, full: bool) -> io::Result<Vec<Heard>> {
+        let mut heard = Vec::new();
+        self.accept(&mut heard);
+        self.read_terminal(full, &mut heard)?;
+        for at in 0..self.clients.len() {
+            let drives = self.driver == Some(self.clients[at].id);
+            if !(drives && full) {
+                self.clients[at].read_stream(&mut heard);
+            }
+        }
+        self.flush()?;
+        let gone: Vec<Id> =
+            self.clients.iter().filter(|client| client.is_gone).map(|client| client.id).collect();
+        self.clients.retain(|client| !client.is_gone);
+        for id in gone {
+            let drove = self.driver == Some(id);
+            heard.push(Heard::Gone(drove));
+            if drove {
+                self.driver = None;
+            }
+        }
+        // The one that has been there longest takes over.
+        if self.driver.is_none()
+            && let Some(client) = self.clients.first()
+        {
+            self.driver = Some(client.id);
+            heard.push(Heard::Came(client.id, true));
+        }
+        Ok(heard)
+    }
+
+    fn add(&mut self, stream: Option<TcpStream>, heard: &mut Vec<Heard>) {
+        let id = self.next;
+        self.next += 1;
+        let (beginning, out) = (Beginning::default(), VecDeque::new());
+        self.clients.push(Client { id, stream, beginning, out, is_gone: false });
+        if self.driver.is_some() {
+            heard.push(Heard::Came(id, false));
+        } else {
+            self.driver = Some(id);
+            heard.push(Heard::Came(id, true));
+        }
+    }
+
+    fn accept(&mut self, heard: &mut Vec<Heard>) {
+        while let Some(Ok((stream, _))) = self.listener.as_ref().map(TcpListener::accept) {
+            let count = self.clients.iter().filter(|client| client.stream.is_some()).count();
+            let ready = stream.set_nonblocking(true).and_then(|()| stream.set_nodelay(true));
+            if count < MOST && ready.is_ok() {
+                self.add(Some(stream), heard);
+            }
+        }
+    }
+
+    fn read_terminal(&mut self, full: bool, heard: &mut Vec<Heard>) -> io::Result<()> {
+        let at = self.clients.iter().position(|client| client.stream.is_none());
+        let drives = at.is_some_and(|at| self.driver == Some(self.clients[at].id));
+        if full && drives {
+            return Ok(());
+        }
+        let mut bytes = [0; READ];
+        let read = self.pty.read(&mut bytes)?;
+        if at.is_none() && self.pty.is_open() {
+            self.add(None, heard);
+        }
+        let client = self.clients.iter_mut().find(|client| client.stream.is_none());
+        match (read, client) {
+            (Some(count), Some(client)) if count > 0 => {
+                heard.push(Heard::Bytes(client.id, bytes[..count].to_vec()));
+            }
+            (None, Some(client)) => client.is_gone = true,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Sends what waits, as far as there is room.
+    fn flush(&mut self) -> io::Result<()> {
+        let pty = &mut self.pty;
+        for client in self.clients.iter_mut().filter(|client| !client.is_gone) {
+            while !client.out.is_empty() {
+                let (bytes, _) = client.out.as_slices();
+                let written = match &mut client.stream {
+                    None => pty.write(bytes)?,
+                    Some(stream) => match stream.write(bytes) {
+                        Ok(count) => count,
+                        Err(error) if is_late(&error) => 0,
+                        Err(_) => {
+                            client.is_gone = true;
+                            0
+                        }
+                    },
+                };
+                if written == 0 {
+                    break;
+                }
+                client.out.drain(..written);
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends a text to a connection. A watcher that reads too slowly is closed.
+    pub fn say(&mut self, to: Id, text: &str) {
+        let drives = self.driver == Some(to);
+        if let Some(client) = self.clients.iter_mut().find(|client| client.id == to) {
+            client.out.extend(text.as_bytes());
+            if !drives && client.out.len() > MOST_WAITING {
+                client.is_gone = client.stream.is_some();
+                client.out.clear();
+            }
+        }
+    }
+
+    /// Sends a text to the connection that drives, if there is one.
+    pub fn tell(&mut self, text: &str) {
+        if let Some(driver) = self.driver {
+            self.say(driver, text);
+        }
+    }
+
+    /// Whether a connection reads slower than it is answered.
+    pub fn is_slow(&self, id: Id) -> bool {
+        let waits = |client: &Client| client.id == id && client.out.len() > SLOW;
+        self.clients.iter().any(waits)
+    }
+
+    /// Whether nothing waits for the connection that drives.
+    pub fn all_is_said(&self) -> bool {
+        self.clients.iter().all(|client| client.out.is_empty())
+    }
+
+    /// Closes a connection by TCP.
+    pub fn close(&mut self, id: Id) {
+        let client = self.clients.iter_mut().find(|client| client.id == id);
+        client.into_iter().for_each(|client| client.is_gone = client.stream.is_some());
+    }
+}
+
+impl Client {
+    /// Reads what has come by TCP.
+    fn read_stream(&mut self, heard: &mut Vec<Heard>) {
+        let Some(stream) = self.stream.as_mut().filter(|_| !self.is_gone) else { return };
+        let mut bytes = [0; READ];
+        match stream.read(&mut bytes) {
+            Ok(0) => self.is_gone = true,
+            Ok(count) => match self.beginning.judge(&bytes[..count]) {
+                Judged::Http => self.is_gone = true,
+                Judged::Fine(bytes) if bytes.is_empty() => {}
+                Judged::Fine(bytes) => heard.push(Heard::Bytes(self.id, bytes)),
+            },
+            Err(error) if is_late(&error) => {}
+            Err(_) => self.is_gone = true,
+        }
+    }
+}
+
+fn is_late(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}

@@ -1,0 +1,211 @@
+//! A batch of lines on the board: stretches from rest to rest, with holds and overrides as in
+//! `run`.
+
+use super::desk::{Desk, Flush};
+use super::shop::{Next, REST, Shop};
+use crate::connection::ConnectedBoardError;
+use crate::control::Control;
+use crate::drive::settle;
+use crate::failure::Failure;
+use crate::interrupt;
+use carrystep_grbl::Alarm;
+use carrystep_job::{Hold, Pace};
+use carrystep_link::{Ended, HostError, Progress, Wish};
+use carrystep_program::LineBreak;
+use carrystep_runner::{GrowingRows, Stretches, kept_ticks};
+use std::cell::RefCell;
+use std::time::{Duration, Instant};
+
+/// Time between two looks at the connections while the axes move.
+const LOOK: Duration = Duration::from_micros(500);
+/// Time between two looks at the line that is executed.
+const LINE: Duration = Duration::from_millis(20);
+/// Time between two tries of a hold that the limits forbid, and between two changes of overrides.
+const TRY_AGAIN: Duration = Duration::from_millis(20);
+type Way = RefCell<Stretches<GrowingRows>>;
+
+impl Shop<'_> {
+    /// Executes the batch, of which the first rows are planned.
+    pub fn batch(&mut self) -> Result<Next, Failure> {
+        let way = self.way()?;
+        while way.borrow_mut().begin().is_some() {
+            let ended = self.stream(&way);
+            // Each batch begins and ends at rest.
+            self.outputs = way.borrow().row_outputs().at_rest();
+            match ended {
+                Ok(Ended::Done | Ended::SeekEnded) => {}
+                Ok(Ended::Stopped) => return self.stopped(),
+                Err(HostError::Fault { .. }) => return self.fault(),
+                Err(error) => return Err(self.lost(&error)),
+            }
+            if let Some(error) = self.failed.take() {
+                return Err(error);
+            }
+            if self.rests()? == Next::Stopped {
+                return Ok(Next::Stopped);
+            }
+            if let Some(flush) = self.desk.flush {
+                self.settles()?;
+                return self.flushed(flush);
+            }
+        }
+        if let Some(flush) = self.desk.flush {
+            return self.flushed(flush);
+        }
+        self.ends();
+        Ok(Next::GoesOn)
+    }
+
+    fn way(&mut self) -> Result<Way, Failure> {
+        let refused = |error: carrystep_job::JobError| Failure::input(error.to_string());
+        let positions = self.board.status().positions;
+        let start: Vec<i64> = self
+            .desk
+            .place
+            .zero
+            .iter()
+            .zip(positions)
+            .map(|(zero, at)| zero + i64::from(at))
+            .collect();
+        let machine = self.machine;
+        let hold = Hold::new(machine).map_err(refused)?;
+        let pace = Pace::new(machine, &start).map_err(refused)?;
+        let way = Stretches::new(self.desk.growing.rows(), &start, hold, pace, machine.queue);
+        let way = way.with_outputs(self.outputs.clone());
+        let mut way = match machine.cuts {
+            true => way.with_cuts(kept_ticks(machine.timebase.tick_ns())),
+            false => way,
+        };
+        if let Some(program) = self.control.program().filter(|_| !self.desk.jogs) {
+            way.set_overrides(program.overrides());
+        }
+        Ok(RefCell::new(way))
+    }
+
+    /// Sends a stretch.
+    fn stream(&mut self, way: &Way) -> Result<Ended, ConnectedBoardError> {
+        let Self { board, control, desk, failed, .. } = self;
+        let mut looks = Looks::new();
+        board
+            .stream(way, |progress| looks.look((&mut *desk, &mut **control), way, progress, failed))
+    }
+
+    /// Waits behind a stretch as long as a hold is in force. Returns at once if none is.
+    fn rests(&mut self) -> Result<Next, Failure> {
+        while self.desk.flush.is_none() && (self.desk.holds || interrupt::is_asked()) {
+            if self.look()? == Next::Stopped || interrupt::is_asked() {
+                self.settles()?;
+                self.desk.rests_at(&self.board.status().positions);
+                return Ok(Next::Stopped);
+            }
+            if self.board.status().answer.fault {
+                self.fault()?;
+                self.desk.flush.get_or_insert(Flush::Gone);
+            }
+            std::thread::sleep(REST);
+        }
+        Ok(Next::GoesOn)
+    }
+
+    /// Brings P of all axes to its start value, where plans begin.
+    fn settles(&mut self) -> Result<(), Failure> {
+        if self.board.status().answer.fault {
+            return Ok(());
+        }
+        settle(self.board, self.machine).map_err(|error| self.lost(&error))?;
+        self.board.read_status().map(drop).map_err(|error| self.lost(&error))
+    }
+
+    /// The batch is executed to its end.
+    fn ends(&mut self) {
+        let Some(end) = self.desk.growing.take_end() else {
+            self.desk.rests_at(&self.board.status().positions);
+            return;
+        };
+        self.desk.batch_ends(end.place);
+        if let Some(error) = end.error {
+            let why = error.to_string();
+            self.desk.alarms(Alarm::SoftLimit, &why.replace(['\n', '[', ']'], " "));
+            self.desk.rests_at(&self.board.status().positions);
+            return;
+        }
+        match end.at {
+            Some(LineBreak::Pause) => self.desk.holds = true,
+            Some(LineBreak::End) => self.desk.clients.tell(&carrystep_grbl::message("Pgm End")),
+            None => {}
+        }
+    }
+}
+
+/// When what was looked at last.
+struct Looks {
+    next: Instant,
+    line: Instant,
+    hold: Instant,
+    overrides: Instant,
+}
+
+impl Looks {
+    fn new() -> Self {
+        let now = Instant::now();
+        Self { next: now, line: now, hold: now, overrides: now }
+    }
+
+    /// What is wanted of a stretch that runs.
+    fn look(
+        &mut self,
+        (desk, control): (&mut Desk, &mut Control),
+        way: &Way,
+        progress: &Progress<'_>,
+        failed: &mut Option<Failure>,
+    ) -> Wish {
+        let now = Instant::now();
+        if now < self.next {
+            return Wish::GoOn;
+        }
+        self.next = now + LOOK;
+        if let Err(error) = desk.poll(progress.status, control) {
+            failed.get_or_insert(Failure::Run(format!("the pseudo-terminal is gone: {error}")));
+            return Wish::Stop;
+        }
+        if control.wish(progress.status) == Wish::Stop {
+            return Wish::Stop;
+        }
+        if now >= self.line {
+            self.line = now + LINE;
+            let zero = desk.place.zero.iter().zip(progress.status.positions);
+            let places: Vec<i64> = zero.map(|(zero, at)| zero + i64::from(at)).collect();
+            let block = way.borrow().block_at(&places);
+            desk.line = block.map(|block| block.line);
+            control.reached(block);
+        }
+        let wanted = control.program().map(|program| program.overrides());
+        let wanted = wanted.filter(|wanted| !desk.jogs && *wanted != way.borrow().overrides());
+        if let Some(wanted) = wanted.filter(|_| now >= self.overrides) {
+            self.overrides = now + TRY_AGAIN;
+            let mut way = way.borrow_mut();
+            match progress.queues {
+                Some(queues) => {
+                    if let Some(keep) = way.set_overrides_in(wanted, queues) {
+                        return Wish::Cut { keep };
+                    }
+                }
+                None => way.set_overrides(wanted),
+            }
+        }
+        let holds = desk.holds || desk.flush.is_some() || interrupt::is_asked();
+        if !holds || way.borrow().is_held() || now < self.hold {
+            return Wish::GoOn;
+        }
+        // A later row may begin a hold where the limits forbid one now.
+        self.hold = now + TRY_AGAIN;
+        let mut way = way.borrow_mut();
+        match progress.queues {
+            Some(queues) => way.hold_in(queues).map_or(Wish::GoOn, |keep| Wish::Cut { keep }),
+            None => {
+                way.hold();
+                Wish::GoOn
+            }
+        }
+    }
+}

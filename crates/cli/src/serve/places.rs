@@ -1,0 +1,77 @@
+//! Where the machine is when senders begin to drive it, and behind homing.
+
+use super::shop::Shop;
+use super::shown;
+use crate::drive::Place;
+use crate::failure::Failure;
+use crate::memory::BoardMemory;
+use carrystep_files::Machine;
+use carrystep_grbl::{Dialect, Settings};
+use carrystep_program::{Letters, Lines, Offsets};
+use carrystep_runner::LINES;
+
+/// The place of a board, and whether its machine zero is not known although it could home. Then the
+/// place is zero, and nothing bounds it.
+///
+/// # Errors
+/// The machine stands beyond the travel of an axis.
+pub fn find(
+    machine: &Machine,
+    letters: &Letters,
+    memory: &BoardMemory,
+    positions: &[i32],
+) -> Result<(Place, bool), Failure> {
+    let homed =
+        |number: usize| machine.axes[number].home.is_none() || memory.offset(number).is_some();
+    let lost = !(0..machine.axes.len()).all(homed);
+    Ok((Place::find(machine, letters, memory, positions, lost)?, lost))
+}
+
+/// The lines of senders from a place on.
+///
+/// # Errors
+/// Jobs cannot be planned for this machine.
+pub fn lines(
+    machine: &Machine,
+    place: &Place,
+    offsets: Offsets,
+    tolerance: Option<f64>,
+) -> Result<Lines, Failure> {
+    Lines::new(&place.bounded(machine), place.start, offsets, tolerance)
+        .map_err(|fault| Failure::input(fault.to_string()))
+}
+
+impl Shop<'_> {
+    /// Takes the place of the machine from its memory, behind homing.
+    pub fn placed(&mut self) -> Result<(), Failure> {
+        let read = self.board.read_status();
+        let positions = read.map_err(|error| self.lost(&error))?.positions;
+        let letters = self.desk.lines.letters().clone();
+        let (place, lost) = find(self.machine, &letters, self.memory, &positions)?;
+        let offsets = match (self.desk.keeps, self.memory.work()) {
+            (false, Ok(kept)) if !lost => kept.clone(),
+            _ => self.desk.lines.interpreter().offsets(),
+        };
+        self.desk.keeps = !lost;
+        let lines = lines(self.machine, &place, offsets, self.tolerance)?;
+        let settings = Settings {
+            machine: shown::settings(self.machine, &letters, &place.soft),
+            ..self.desk.dialect.settings.clone()
+        };
+        self.desk.dialect = Dialect::new(settings, LINES);
+        self.desk.placed(lines, place, &positions);
+        // At the end the file is written again.
+        let _ = self.memory.drives(self.board);
+        Ok(())
+    }
+
+    /// Keeps the work offsets if lines have changed them.
+    pub fn keeps_offsets(&mut self) {
+        let offsets = self.desk.lines.interpreter().offsets();
+        if self.desk.keeps && self.memory.work().is_ok_and(|kept| *kept != offsets) {
+            self.memory.set_work(offsets);
+            // At the end the file is written again.
+            let _ = self.memory.drives(self.board);
+        }
+    }
+}

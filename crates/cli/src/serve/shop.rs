@@ -1,0 +1,248 @@
+//! A board that senders drive: what is done at rest, and when a batch of lines begins.
+
+use super::desk::{Desk, Flush, Motion, Todo};
+use crate::connection::{self, ConnectedBoard, ConnectedBoardError};
+use crate::control::Control;
+use crate::failure::Failure;
+use crate::memory::{self, BoardMemory};
+use crate::{found, interrupt};
+use carrystep_core::engine::Cause;
+use carrystep_files::Machine;
+use carrystep_grbl::{Alarm, Dialect, ErrorCode, Pins, message};
+use carrystep_link::registers::INPUTS;
+use carrystep_link::{Ended, HostError, Wish};
+use carrystep_program::RowOutputs;
+use std::time::{Duration, Instant};
+
+/// Time between two looks at the inputs.
+const INPUTS_PERIOD: Duration = Duration::from_millis(50);
+
+/// What a machine waits for that rests in a hold, or at M0, M1 or M6.
+const WAITS: &str = "hold, M0, M1 or M6 of the sender";
+
+/// Bits of the register INPUTS behind the limits of both ends: the probe, and the interlock.
+const PROBE: u32 = 16;
+const INTERLOCK: u32 = 24;
+
+/// Time between two looks at rest.
+pub const REST: Duration = Duration::from_millis(1);
+
+/// How a batch, or the wait in it, goes on.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Next {
+    /// With what comes.
+    GoesOn,
+    /// The command ends: somebody has stopped it.
+    Stopped,
+}
+
+/// A board that senders drive.
+pub struct Shop<'a> {
+    pub board: &'a mut ConnectedBoard,
+    pub control: &'a mut Control,
+    pub memory: &'a mut BoardMemory,
+    pub machine: &'a Machine,
+    pub axes: &'a [String],
+    pub desk: Desk,
+    /// The outputs where the next batch begins.
+    pub outputs: RowOutputs,
+    /// Why the command cannot go on.
+    pub failed: Option<Failure>,
+    /// When the inputs were read last.
+    pub inputs: Instant,
+    /// The tolerance in place of that of G64, mm.
+    pub tolerance: Option<f64>,
+}
+
+impl Shop<'_> {
+    /// Serves until a signal or `carrystep stop` ends it. All axes rest then.
+    ///
+    /// # Errors
+    /// The line to the board is lost, or the pseudo-terminal.
+    pub fn serve(&mut self) -> Result<(), Failure> {
+        loop {
+            if self.look()? == Next::Stopped || interrupt::is_asked() {
+                return Ok(());
+            }
+            let next = if self.board.status().answer.fault && !self.desk.alarm {
+                self.fault()?
+            } else if let Some(flush) = self.desk.flush {
+                self.flushed(flush)?
+            } else if self.may_move() {
+                self.batch()?
+            } else if let Some(todo) = self.desk.todo.filter(|_| !self.desk.is_busy()) {
+                self.does(todo)?;
+                Next::GoesOn
+            } else {
+                std::thread::sleep(REST);
+                Next::GoesOn
+            };
+            if next == Next::Stopped {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Looks at the board, which rests, and at the connections.
+    pub fn look(&mut self) -> Result<Next, Failure> {
+        let read = self.board.read_status();
+        let status = read.map_err(|error| self.lost(&error))?;
+        if self.inputs.elapsed() >= INPUTS_PERIOD {
+            self.inputs = Instant::now();
+            let read = self.board.register(INPUTS);
+            let inputs = read.map_err(|error| self.lost(&error))?;
+            self.desk.pins = self.pins(inputs);
+            self.keeps_offsets();
+        }
+        let polled = self.desk.poll(&status, self.control);
+        polled.map_err(|error| Failure::Run(format!("the pseudo-terminal is gone: {error}")))?;
+        let holds = self.desk.holds;
+        if let Some(program) = self.control.program().filter(|one| holds && !one.is_waiting()) {
+            program.rests(WAITS.to_owned());
+        }
+        if self.control.wish(&status) == Wish::Stop { self.stopped() } else { Ok(Next::GoesOn) }
+    }
+
+    fn pins(&self, inputs: u32) -> Pins {
+        let [low, high, ..] = inputs.to_le_bytes();
+        let closed = |number: usize| (low | high) >> number & 1;
+        let letters = self.desk.lines.letters().of_axes().iter().enumerate();
+        let limits = letters.fold(0, |mask, (number, letter)| mask | closed(number) << letter);
+        let estop = self.board.status().answer;
+        Pins {
+            limits,
+            probe: inputs >> PROBE & 1 == 1,
+            door: inputs >> INTERLOCK & 1 == 1,
+            reset: estop.fault && Cause::from_number(estop.cause) == Some(Cause::EStop),
+        }
+    }
+
+    /// Whether a batch can begin; begins to plan one if lines wait.
+    fn may_move(&mut self) -> bool {
+        let desk = &mut self.desk;
+        if desk.alarm || desk.holds || desk.sleeps {
+            return false;
+        }
+        if desk.growing.waits() && !desk.growing.is_planned() {
+            match desk.lines.planner(&desk.from) {
+                Ok(planner) => desk.growing.begin(planner, desk.from.clone()),
+                Err(fault) => {
+                    desk.alarms(Alarm::SoftLimit, &fault.to_string());
+                    desk.flush = Some(Flush::Gone);
+                }
+            }
+        }
+        let ready = desk.growing.is_ready();
+        if ready {
+            desk.motion = Motion::Moves;
+        }
+        ready
+    }
+
+    /// All that was planned is dropped; the axes rest with P at its start value.
+    pub fn flushed(&mut self, flush: Flush) -> Result<Next, Failure> {
+        self.desk.rests_at(&self.board.status().positions);
+        self.desk.flush = None;
+        if flush == Flush::Reset {
+            self.desk.restarts();
+            self.control.restart_program();
+        }
+        Ok(Next::GoesOn)
+    }
+
+    /// The axes were ramped down on request.
+    pub fn stopped(&mut self) -> Result<Next, Failure> {
+        if let Some(failure) = self.failed.take() {
+            return Err(failure);
+        }
+        if !self.board.status().answer.idle {
+            self.board.stop().map_err(|error| self.lost(&error))?;
+        }
+        self.board.clear().map_err(|error| self.lost(&error))?;
+        self.desk.rests_at(&self.board.status().positions);
+        self.desk.alarms(Alarm::Abort, "stopped by `carrystep stop`");
+        Ok(Next::Stopped)
+    }
+
+    /// The machine has stopped by itself.
+    pub fn fault(&mut self) -> Result<Next, Failure> {
+        let read = self.board.read_status();
+        let status = read.map_err(|error| self.lost(&error))?;
+        let answer = status.answer;
+        if memory::freezes(answer.cause, &self.machine.guard) {
+            self.memory.forget_places();
+        }
+        let cause = found::cause(&answer);
+        if cause == Some(Cause::Limit) {
+            for axis in (0..self.axes.len()).filter(|axis| answer.culprits >> axis & 1 == 1) {
+                self.memory
+                    .set_limit(axis, self.desk.ways.get(axis).copied().filter(|way| *way != 0));
+            }
+        }
+        let names = found::names(self.axes, answer.culprits);
+        let from = if names.is_empty() { String::new() } else { format!(" from {names}") };
+        let name = cause.map_or("?", Cause::name);
+        let alarm = if cause == Some(Cause::Limit) { Alarm::HardLimit } else { Alarm::Abort };
+        self.desk.alarms(alarm, &format!("stopped by the machine: {name}{from}"));
+        self.desk.rests_at(&status.positions);
+        self.desk.flush = None;
+        Ok(Next::GoesOn)
+    }
+
+    /// Does what needs a machine at rest.
+    fn does(&mut self, todo: Todo) -> Result<(), Failure> {
+        let answer = match todo {
+            Todo::Home(axis) => self.home(axis)?,
+            Todo::Unlock => self.unlock()?,
+            Todo::Sleep => {
+                self.board.disable().map_err(|error| self.lost(&error))?;
+                self.memory.forget_places();
+                self.desk.sleeps = true;
+                message("Sleeping") + &Dialect::ok()
+            }
+            Todo::Wake => {
+                let powered = self.board.enable();
+                powered.map_err(|error| self.lost(&error))?;
+                (self.desk.sleeps, self.desk.alarm) = (false, true);
+                message("'$H'|'$X' to unlock")
+            }
+        };
+        // Until here, no further line was taken.
+        self.desk.todo = None;
+        self.desk.clients.tell(&answer);
+        Ok(())
+    }
+
+    /// Ends an alarm.
+    fn unlock(&mut self) -> Result<String, Failure> {
+        if self.board.status().answer.fault {
+            match self.board.clear() {
+                Ok(()) => {}
+                Err(error @ (HostError::StillPressed | HostError::TooLong { .. })) => {
+                    return Ok(message(&error.to_string()) + &Dialect::error(ErrorCode::NotIdle));
+                }
+                Err(error) => return Err(self.lost(&error)),
+            }
+        }
+        self.desk.rests_at(&self.board.status().positions);
+        self.desk.alarm = false;
+        Ok(message("Caution: Unlocked") + &Dialect::ok())
+    }
+
+    /// The failure for an error of the board.
+    pub fn lost(&mut self, error: &ConnectedBoardError) -> Failure {
+        let failure = connection::lost(error, self.axes, self.board.facts());
+        self.desk.alarms(Alarm::Abort, "the board is gone");
+        failure
+    }
+
+    /// Powers the drivers.
+    ///
+    /// # Errors
+    /// The line to the board is lost.
+    pub fn powers(&mut self) -> Result<Ended, Failure> {
+        let Self { board, control, .. } = self;
+        let powered = board.enable_while(|progress| control.wish(progress.status));
+        powered.map_err(|error| self.lost(&error))
+    }
+}
