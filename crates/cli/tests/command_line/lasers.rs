@@ -3,6 +3,7 @@
 use crate::command::Folder;
 use crate::run_programs::{MACHINE, begins, done, folder, hold, resume, run, waits};
 use crate::schemas;
+use crate::sender::{Sender, Served};
 use crate::stops::moving;
 use crate::virtual_boards::{Board, passed};
 
@@ -189,4 +190,41 @@ fn power_follows_the_speed_under_an_override() {
     assert!(middle[0].1);
     let part = (fall - rise) as f64 / (next - rise) as f64;
     assert!((part - 0.5 * 0.5 * 0.8).abs() < 0.001, "{part}");
+}
+
+/// Each line of a sender that waits is planned by itself. The power is in force until another one
+/// is said, and a jog is dark.
+#[test]
+fn power_of_a_sender_stays_in_force() {
+    let folder = laser_folder("");
+    let board = Board::new(&folder, "--vcd a.vcd --fast");
+    let served = Served::with(&folder, &format!("--port {}", board.port));
+    let mut sender = Sender::tcp(&served);
+    sender.simple("M4 S500\nG1 X1 F1800");
+    sender.place();
+    sender.simple("G1 X2");
+    sender.place();
+    sender.simple("$J=G91 X1 F1800");
+    sender.place();
+    sender.simple("G1 X4");
+    assert_eq!(sender.place(), [4.0, 0.0, 0.0]);
+    assert_eq!(served.interrupt().0, 0);
+    board.end();
+    let vcd = read(&folder, "a.vcd");
+    let (pwm, x) = (code(&vcd, "pwm"), code(&vcd, "position"));
+    let (mut steps, mut lit) = (0, Vec::new());
+    for line in vcd.lines() {
+        if let Some(bits) =
+            line.strip_prefix('b').and_then(|line| line.strip_suffix(&format!(" {x}")))
+        {
+            steps = u32::from_str_radix(bits, 2).unwrap();
+        } else if line.get(1..) == Some(pwm) && line.starts_with('1') {
+            lit.push(steps);
+        }
+    }
+    // The motion is slow at its ends, where steps are long.
+    let of = |mm: u32| lit.iter().filter(|&&at| (mm * 80 + 5..mm * 80 + 75).contains(&at)).count();
+    let [first, second, jog, last] = [of(0), of(1), of(2), of(3)];
+    assert!(first > 100 && second > 100 && last > 100, "{first} {second} {last}");
+    assert_eq!(jog, 0);
 }
