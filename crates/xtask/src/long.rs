@@ -33,7 +33,7 @@ struct Run {
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its
 /// `FIGURES`.
-const RUNS: [Run; 15] = [
+const RUNS: [Run; 16] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -121,6 +121,12 @@ const RUNS: [Run; 15] = [
         what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_is_its_verilog"],
+    },
+    Run {
+        name: "self-test",
+        what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and read back from bitstream or EDIF; planted faults",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["--test", "a_self_test_shows_every_pin"],
     },
     Run {
         name: "holds",
