@@ -8,6 +8,7 @@ mod plan;
 mod port;
 mod profile;
 mod program;
+mod selftest;
 mod sweep;
 mod table;
 
@@ -28,6 +29,7 @@ pub use port::{
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
+pub use selftest::SelftestArguments;
 use std::path::PathBuf;
 use std::str::FromStr;
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -111,6 +113,9 @@ pub enum Subcommand {
     Machine(MachineArguments),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
     Build(BuildArguments),
+    /// Make the self-test of a board: a bitstream that moves nothing, with which a meter and a
+    /// jumper prove the wiring before a motor is connected (docs/self-test.md).
+    Selftest(SelftestArguments),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the cause of each problem.

@@ -70,6 +70,7 @@ mod reports;
 #[cfg(unix)]
 mod run_programs;
 mod schemas;
+mod selftests;
 mod shard_merges;
 #[cfg(unix)]
 mod stop_on_the_wire;
