@@ -15,8 +15,8 @@
 //! text in the memory of `speech`; the board's top level connects the bits that have a pin. The
 //! module does not drive `enable_n`: that is a constant of the top level.
 //!
-//! Cost: block RAM for 64 bytes per pin, three flip-flops per input, one per output, the UART, and a
-//! timer of half a second.
+//! Cost: block RAM for 64 bytes per pin, three flip-flops per input, one per output, the UART, and
+//! a timer of half a second.
 
 use crate::line::UartLine;
 use crate::primitives::register::Input;

@@ -5,8 +5,8 @@
 //! changed  ______/^^^\____________________       input F+1 differs: its new level is reported
 //! ```
 //!
-//! Interface: `changed` is asserted in the clock in which a difference is found, with the row of the
-//! input. The reported level is part of `seen` from the next clock on.
+//! Interface: `changed` is asserted in the clock in which a difference is found, with the row of
+//! the input. The reported level is part of `seen` from the next clock on.
 //!
 //! Cost: three flip-flops for each input and two multiplexers of them.
 
