@@ -2,6 +2,7 @@
 //! benches, mutants and proofs.
 
 pub mod axis_bench;
+pub mod board_clock;
 pub mod board_session;
 pub mod closed_form;
 pub mod dense;
@@ -20,5 +21,7 @@ pub mod planted;
 pub mod programs;
 pub mod proofs;
 pub mod random_moves;
+pub mod self_test_bench;
+pub mod self_test_board;
 pub mod sources;
 pub mod twins;

@@ -13,7 +13,8 @@ pub use frames::{Said, on_the_line, owners_read, read, summed, unframe, wide, wr
 pub use host::Host;
 pub use ports::Both;
 
-use hosts::{Receiver, Sender, SpiHost};
+use hosts::SpiHost;
+pub(crate) use hosts::{Receiver, Sender};
 
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs};

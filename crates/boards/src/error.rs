@@ -2,6 +2,8 @@
 
 use super::{boards, names};
 use crate::clock::ClockError;
+use carrystep_core::link::BaudError;
+use carrystep_core::self_test::SelfTestError;
 use carrystep_core::tick::mhz;
 use carrystep_files::did_you_mean;
 use thiserror::Error;
@@ -114,5 +116,21 @@ pub enum BoardError {
         measured_hz: u64,
         /// The clocks that the board is known to make.
         proposed: String,
+    },
+    /// The clock does not make the baud rate of self-tests.
+    #[error("{board}: {source}; a self-test has this rate")]
+    SelfTestBaud {
+        /// Name of the board.
+        board: String,
+        /// The error of the UART.
+        source: BaudError,
+    },
+    /// The board's pins or names do not fit in a self-test.
+    #[error("{board}: {source}")]
+    SelfTest {
+        /// Name of the board.
+        board: String,
+        /// The error of the self-test.
+        source: SelfTestError,
     },
 }

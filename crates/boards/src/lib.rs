@@ -24,6 +24,7 @@ mod measured;
 mod port;
 mod raw;
 mod reach;
+mod self_test;
 mod toolchain;
 
 pub use configuration::{ConfigurationMode, Gate, Shared};
@@ -31,6 +32,7 @@ pub use error::BoardError;
 pub use family::{Family, FpgaFamily, IoStandard, PllInput};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
+pub use self_test::{BoardSelfTest, SELF_TEST_BAUD};
 pub use toolchain::{ISE, Toolchain};
 
 /// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,

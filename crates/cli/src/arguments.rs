@@ -8,6 +8,7 @@ mod plan;
 mod port;
 mod profile;
 mod program;
+mod selftest;
 #[cfg(unix)]
 mod serve;
 mod sweep;
@@ -30,6 +31,7 @@ pub use port::{
 };
 pub use profile::ProfileArguments;
 pub use program::{PlannerArguments, ProgramArguments};
+pub use selftest::SelftestArguments;
 #[cfg(unix)]
 pub use serve::{ServeArguments, WhenGone};
 use std::path::PathBuf;
@@ -119,6 +121,9 @@ pub enum Subcommand {
     Machine(MachineArguments),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
     Build(BuildArguments),
+    /// Make the self-test of a board: a bitstream that moves nothing, with which a meter and a
+    /// jumper prove the wiring before a motor is connected (docs/self-test.md).
+    Selftest(SelftestArguments),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the cause of each problem.

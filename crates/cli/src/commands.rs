@@ -21,6 +21,7 @@ pub mod profile;
 pub mod run;
 pub mod run_program;
 pub mod schemas;
+pub mod selftest;
 #[cfg(unix)]
 pub mod serve;
 pub mod simulate;

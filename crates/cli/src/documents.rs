@@ -7,7 +7,7 @@
 
 use crate::commands::{
     boards, build, check, check_program, doctor, home, linuxcnc, list_blocks, machine, offset,
-    plan, plan_program, profile, sweep, table, verilog,
+    plan, plan_program, profile, selftest, sweep, table, verilog,
 };
 use crate::document::{Document, schema};
 use crate::{drive, ending, found, job, pause, program_run};
@@ -48,6 +48,7 @@ documents! {
     "plan-row", 1: plan_program::PlannedRow<'_>;
     "probe", 1: drive::Probed;
     "profile", 1: profile::Profiles<'_>;
+    "selftest", 1: selftest::SelftestReport;
     "simulate", 1: job::RunResult;
     "simulate-program", 1: program_run::ProgramResult;
     "status", 1: found::FoundBoard;

@@ -86,6 +86,7 @@ fn main() -> ExitCode {
         Subcommand::Linuxcnc(linuxcnc) => commands::linuxcnc::run(linuxcnc),
         Subcommand::Machine(machine) => commands::machine::run(machine),
         Subcommand::Build(build) => commands::build::run(build),
+        Subcommand::Selftest(selftest) => commands::selftest::run(selftest),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
         Subcommand::Completions(completions) => commands::completions::run(completions),

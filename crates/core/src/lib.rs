@@ -32,6 +32,8 @@ mod profile_kind;
 mod schedule;
 pub mod segment;
 #[cfg(feature = "alloc")]
+pub mod self_test;
+#[cfg(feature = "alloc")]
 pub mod tick;
 
 #[cfg(feature = "alloc")]
@@ -42,6 +44,7 @@ pub use self::{
     fixed::StartPhase,
     profile_kind::ProfileKind,
     segment::{Command, Program},
+    self_test::SelfTest,
     tick::ChosenTick,
 };
 pub use output_change::OutputChange;

@@ -1,6 +1,6 @@
 //! The gateware of carrystep, written as Rust-HDL modules.
 //!
-//! The modules implement docs/clock-by-clock.md register by register. The crate `carrystep-verilog`
+//! The modules implement docs/clock-by-clock.md register by register, and docs/self-test.md. The crate `carrystep-verilog`
 //! exports them as Verilog; the `*Sim` types of this crate simulate them clock by clock.
 //!
 //! - [`mod@engine`]: the product. One adder serves up to eight axes, each in its own time slot.
@@ -9,6 +9,7 @@
 //! - [`parts`]: the modules of the parallel core that form pulses and divide time: the shaper, the
 //!   edge and the tick. The engine uses the tick as well.
 //! - [`mod@link`] and [`line`]: the host's requests, and the UART or SPI that carries their bytes.
+//! - [`mod@self_test`]: a gateware of its own, with which a meter and a jumper prove the wiring.
 //! - [`primitives`]: registers, memories, words and constants that Rust-HDL does not have.
 //!
 //! The folder of a module contains `promises.sv` where properties of the module are proved; the
@@ -24,6 +25,7 @@ pub mod parallel;
 pub mod parameters;
 pub mod parts;
 pub mod primitives;
+pub mod self_test;
 mod sim;
 
 pub use engine::{AnyEngine, EngineSim, engine};
@@ -32,6 +34,7 @@ pub use link::{AnyLink, LinkSim, link};
 pub use parallel::{
     AnyParallelCore, AxisSim, ParallelAxis, ParallelCore, ParallelSim, parallel_core,
 };
+pub use self_test::{SelfTest, SelfTestSim};
 
 use carrystep_core::build::{MAX_CLOCKS, ParallelAxesError};
 use carrystep_core::engine::EngineError;

@@ -208,9 +208,15 @@ pub const BIT_CLOCKS: Described = Described::new(
     "8 to 40000",
     "length of a UART bit in clocks: clock frequency / baud rate",
 );
+/// Half a period of the self-test.
+pub const HALF_CLOCKS: Described = Described::new(
+    "HALF_CLOCKS",
+    "1 to 2^30",
+    "length of half a period in clocks; an output is active for one period, a second",
+);
 
 /// All parameters, in the order in which a module lists them.
-pub const PARAMETERS: [Described; 30] = [
+pub const PARAMETERS: [Described; 31] = [
     BUILD_ID,
     CLOCK_HZ,
     TICK_NS,
@@ -241,6 +247,7 @@ pub const PARAMETERS: [Described; 30] = [
     PWM_DIVIDER,
     CUTS,
     EVENT_MEMORY,
+    HALF_CLOCKS,
 ];
 
 /// The parameter with this name, and the number of its axis or latch if the name ends with one.

@@ -23,6 +23,8 @@ mod register_mirror;
 mod spi;
 mod uart;
 
+pub(crate) use uart::{Receiver, Transmitter};
+
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
     EngineInputs, EngineOutputs, MAX_LATCHES, Put, SeekSource, StateWord,

@@ -7,9 +7,11 @@
 mod clock;
 mod gateware;
 mod page;
+mod self_test;
 
 pub use gateware::{Gateware, shipped_machine};
 pub(crate) use page::pages;
+pub use self_test::SelfTestGateware;
 
 use crate::ExportError;
 use crate::prefix::Prefix;

@@ -1,17 +1,17 @@
 //! Writes a core as one file: a header, and then every module once, children first.
 
 use crate::docs::{self, wrapped};
-use crate::header::{Facts, header};
+use crate::header::{Facts, MOTION, SELF_TEST, header};
 use crate::module::{COLUMNS, module_text};
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
 use crate::prefix::Prefix;
-use crate::purposes::{ENGINE_NAME, LINK_NAME, parallel_name, purpose};
+use crate::purposes::{ENGINE_NAME, LINK_NAME, SELF_TEST_NAME, parallel_name, purpose};
 use crate::synchronizers::{self, Synchronizer};
 use crate::write::{TextFile, write};
 use crate::{ExportError, guard, instances, parameters};
 use carrystep_core::link::{BYTE_PORTS, LineKind};
-use carrystep_core::{Build, EngineBuild};
+use carrystep_core::{Build, EngineBuild, SelfTest};
 use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, Spi, UartLine, engine, link, parallel_core};
 use rust_hdl::prelude::{Block, check_all};
@@ -28,6 +28,9 @@ const LINK_WAIVERS: &str = include_str!("carrystep_link.vlt");
 
 /// Verilator's waivers for the UART, each with its reason.
 const UART_WAIVERS: &str = include_str!("carrystep_uart.vlt");
+
+/// Verilator's waivers for the self-test, each with its reason.
+pub const SELF_TEST_WAIVERS: &str = include_str!("carrystep_self_test.vlt");
 
 /// The parallel core of this build with this number of axes, 1 to 6, as Verilog-2005 with the top
 /// module [`parallel_name`]. `description` is a line that names the source of the build. The same
@@ -74,6 +77,15 @@ pub fn line_verilog(line: LineKind, description: &str) -> Result<String, ExportE
     Ok(line_of(line, &Prefix::default(), description)?.text)
 }
 
+/// The self-test of this build as Verilog-2005 with the top module [`SELF_TEST_NAME`]. Otherwise as
+/// [`parallel_verilog`].
+///
+/// # Errors
+/// [`ExportError`] if the module cannot be generated.
+pub fn self_test_verilog(test: &SelfTest, description: &str) -> Result<String, ExportError> {
+    Ok(self_test_of(test, &Prefix::default(), description)?.text)
+}
+
 /// The parallel core, exported.
 pub(crate) fn parallel_of(
     build: &Build,
@@ -112,7 +124,7 @@ pub(crate) fn link_of(
         "// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n",
         build.timebase.clock_hz()
     );
-    let facts = Facts { title: "the host link of an engine".to_owned(), lines };
+    let facts = Facts { title: "the host link of an engine".to_owned(), notes: MOTION, lines };
     let top = Top { name: LINK_NAME, kind: "Link", waivers: Some(LINK_WAIVERS) };
     Exported::new(link(build, id)?.as_mut(), top, prefix, &facts, description)
 }
@@ -125,6 +137,7 @@ pub(crate) fn line_of(
 ) -> Result<Exported, ExportError> {
     let facts = Facts {
         title: "the line to the host".to_owned(),
+        notes: MOTION,
         lines: format!("// Line         {line}\n"),
     };
     let (kind, waivers) = match line {
@@ -133,6 +146,27 @@ pub(crate) fn line_of(
     };
     let top = Top { name: line_name(line), kind, waivers };
     Exported::new(line_block(line).as_mut(), top, prefix, &facts, description)
+}
+
+/// The self-test, exported.
+pub(crate) fn self_test_of(
+    test: &SelfTest,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let lines =
+        format!("// Line         {}\n// Rows         {}\n", test.uart(), test.last_row() + 1);
+    let title = "the self-test of a board".to_owned();
+    let facts = Facts { title, notes: SELF_TEST, lines };
+    let top = Top { name: SELF_TEST_NAME, kind: "SelfTest", waivers: Some(SELF_TEST_WAIVERS) };
+    Exported::new(&mut carrystep_hdl::SelfTest::new(test), top, prefix, &facts, description)
+}
+
+/// The parameters of the self-test's module, with their values in this build.
+pub(crate) fn self_test_parameters(test: &SelfTest) -> Result<Vec<ParameterValue>, ExportError> {
+    let mut block = carrystep_hdl::SelfTest::new(test);
+    block.connect_all();
+    parameters::of(&netlist::read(&block)?)
 }
 
 fn line_block(line: LineKind) -> Box<dyn Block> {

@@ -6,10 +6,30 @@ use carrystep_core::{PinTiming, StartPhase, Timebase};
 /// The version that the workspace pins.
 const RUST_HDL: &str = "0.46.0";
 
+/// The notes of a core that moves motors.
+pub(crate) const MOTION: &str = "\
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
+";
+
+/// The notes of the self-test.
+pub(crate) const SELF_TEST: &str = "\
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it. Signals are
+// active high. An asynchronous input may come directly from a pin.
+";
+
 /// Contents of the header.
 pub(crate) struct Facts {
     /// The module in a few words.
     pub(crate) title: String,
+    /// Comment lines about all ports and parameters.
+    pub(crate) notes: &'static str,
     /// Comment lines about the build.
     pub(crate) lines: String,
 }
@@ -54,14 +74,15 @@ impl Facts {
                  DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
             ));
         }
-        Self { title: format!("step and direction for {axes}"), lines: lines + guard }
+        let title = format!("step and direction for {axes}");
+        Self { title, notes: MOTION, lines: lines + guard }
     }
 }
 
 /// The header of the file of this top module.
 pub(crate) fn header(name: &str, facts: &Facts, description: &str) -> String {
     let description = description.replace(['\n', '\r'], " ");
-    let Facts { title, lines } = facts;
+    let Facts { title, notes, lines } = facts;
     format!(
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
@@ -72,15 +93,7 @@ pub(crate) fn header(name: &str, facts: &Facts, description: &str) -> String {
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
 //
-// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
-// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
-// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
-// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
-//
-// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
-// the host link too: by this id the host knows the parameters for which it plans moves. With the id
-// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
-//
+{notes}//
 {lines}
 `default_nettype none
 ",

@@ -32,14 +32,14 @@ mod synchronizers;
 mod tests;
 mod write;
 
-pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
+pub use crate::board::{CLOCK_NAME, Design, Gateware, SelfTestGateware, shipped_machine};
 pub use crate::core::{
-    ENGINE_WAIVERS, PARALLEL_WAIVERS, engine_verilog, line_name, line_verilog, link_verilog,
-    parallel_verilog, write_engine, write_parallel,
+    ENGINE_WAIVERS, PARALLEL_WAIVERS, SELF_TEST_WAIVERS, engine_verilog, line_name, line_verilog,
+    link_verilog, parallel_verilog, self_test_verilog, write_engine, write_parallel,
 };
 pub use crate::generated::{generated_files, write_generated_files};
 pub use crate::prefix::{Prefix, PrefixError};
-pub use crate::purposes::{ENGINE_NAME, LINK_NAME, parallel_name};
+pub use crate::purposes::{ENGINE_NAME, LINK_NAME, SELF_TEST_NAME, parallel_name};
 pub use crate::write::{TextFile, write};
 
 use carrystep_boards::BoardError;

@@ -17,8 +17,11 @@ pub const ENGINE_NAME: &str = "carrystep_engine";
 /// Name of the host link's top module and of its file.
 pub const LINK_NAME: &str = "carrystep_link";
 
+/// Name of the self-test's module and of its file.
+pub const SELF_TEST_NAME: &str = "carrystep_self_test";
+
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 46] = [
+const PURPOSES: [(&str, &str); 51] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -162,6 +165,14 @@ const PURPOSES: [(&str, &str); 46] = [
     (
         LINK_NAME,
         "The host link: receives requests, passes segments to the engine and sends answers.",
+    ),
+    ("carrystep_walk", "The walk: one output at a time is 1, for a second."),
+    ("carrystep_watch", "The watch: compares the inputs with the levels that were reported last."),
+    ("carrystep_texts", "Memory of carrystep_speech: a line of text for each pin."),
+    ("carrystep_speech", "Sends the names of pins over the UART, and echoes what the host sends."),
+    (
+        SELF_TEST_NAME,
+        "The self-test of a board: outputs become active one by one, and inputs are reported.",
     ),
     (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
 ];

@@ -123,6 +123,12 @@ const RUNS: [Run; 16] = [
         cargo: &["--test", "a_board_is_its_verilog"],
     },
     Run {
+        name: "self-test",
+        what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and read back from bitstream or EDIF; planted faults",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["--test", "a_self_test_shows_every_pin"],
+    },
+    Run {
         name: "holds",
         what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from the planned curve, the end",
         asks: &[("CARRYSTEP_HOLDS", "500")],

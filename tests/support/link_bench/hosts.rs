@@ -4,21 +4,21 @@ use carrystep_core::link::END;
 use std::collections::VecDeque;
 
 /// The host's transmitter.
-pub(super) struct Sender {
+pub(crate) struct Sender {
     bit_clocks: u32,
     /// Bits of the present byte, least significant first: start bit, eight data bits, stop bit.
     bits: u32,
     /// Clocks that they still take.
-    pub(super) left: u32,
+    pub(crate) left: u32,
 }
 
 impl Sender {
-    pub(super) fn new(bit_clocks: u32) -> Self {
+    pub(crate) fn new(bit_clocks: u32) -> Self {
         Self { bit_clocks, bits: 0, left: 0 }
     }
 
     /// The level of the line in this cycle.
-    pub(super) fn clock(&mut self, bytes: &mut VecDeque<u8>) -> bool {
+    pub(crate) fn clock(&mut self, bytes: &mut VecDeque<u8>) -> bool {
         if self.left == 0 {
             let Some(byte) = bytes.pop_front() else { return true };
             self.bits = 1 << 9 | u32::from(byte) << 1;
@@ -34,7 +34,7 @@ impl Sender {
 }
 
 /// The host's receiver, which samples the middle of each bit.
-pub(super) struct Receiver {
+pub(crate) struct Receiver {
     bit_clocks: u32,
     /// Clocks since the beginning of the start bit.
     since: Option<u32>,
@@ -42,12 +42,12 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
-    pub(super) fn new(bit_clocks: u32) -> Self {
+    pub(crate) fn new(bit_clocks: u32) -> Self {
         Self { bit_clocks, since: None, bits: 0 }
     }
 
     /// Samples one cycle of the line and returns the byte that is complete with it.
-    pub(super) fn clock(&mut self, line: bool) -> Option<u8> {
+    pub(crate) fn clock(&mut self, line: bool) -> Option<u8> {
         let since = match self.since {
             None if line => return None,
             None => 0,

@@ -1,41 +1,12 @@
 //! iCE40 boards: the Verilog of a whole board, and its bitstream read back. At both stages the PLL
-//! is replaced by one model of the bench, which passes its reference clock on and is locked from
-//! the start. The designs contain no other hard blocks except block RAMs.
+//! is that of the bench. The designs contain no other hard blocks except block RAMs.
 
 use carrystep_boards::{Board, Family, board, boards};
+use carrystep_tests::board_clock::with_bench_pll as simulated;
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 use carrystep_tools::ice40::{self, NextpnrPart};
 use carrystep_tools::kept;
-
-const PLL: &str = "
-module bench_pll #(
-    parameter FEEDBACK_PATH = 0, DELAY_ADJUSTMENT_MODE_FEEDBACK = 0, DELAY_ADJUSTMENT_MODE_RELATIVE = 0, PLLOUT_SELECT = 0,
-    parameter SHIFTREG_DIV_MODE = 0, FDA_FEEDBACK = 0, FDA_RELATIVE = 0, DIVR = 0, DIVF = 0, DIVQ = 0, FILTER_RANGE = 0,
-    parameter ENABLE_ICEGATE = 0, TEST_MODE = 0
-) (
-    input REFERENCECLK, EXTFEEDBACK, BYPASS, RESETB, LATCHINPUTVALUE, SDI, SCLK,
-    input [7:0] DYNAMICDELAY,
-    output PLLOUTCORE, PLLOUTGLOBAL, LOCK, SDO
-);
-    assign PLLOUTCORE = REFERENCECLK;
-    assign PLLOUTGLOBAL = REFERENCECLK;
-    assign LOCK = 1'b1;
-endmodule
-";
-
-/// The Verilog with yosys' models of its cells and the bench's PLL, whose reference comes from a
-/// pad or from a wire.
-fn simulated(verilog: &str) -> String {
-    let verilog =
-        verilog.replace("SB_PLL40_CORE", "bench_pll").replace("SB_PLL40_PAD", "bench_pll");
-    let pll = if verilog.contains(".PACKAGEPIN(") {
-        PLL.replace("REFERENCECLK", "PACKAGEPIN")
-    } else {
-        PLL.to_owned()
-    };
-    ice40::simulated(&verilog).expect("models of its cells") + &pll
-}
 
 /// The configuration with one bit of the link's first instructions flipped. The link's program
 /// fills its block RAM more than any other memory.

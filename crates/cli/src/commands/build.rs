@@ -5,7 +5,7 @@ use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
 use crate::progress::Stages;
-use carrystep_boards::Board;
+use carrystep_boards::{Board, Part};
 use carrystep_core::tick::mhz;
 use carrystep_files::{InputError, Machine};
 use carrystep_tools::board::{BuildJob, Built, build};
@@ -13,6 +13,7 @@ use carrystep_tools::{ice40, kept};
 use carrystep_verilog::{Gateware, TextFile};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::fmt;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -41,9 +42,19 @@ pub struct BuildReport {
 
 /// A used amount and the available amount.
 #[derive(JsonSchema, Serialize)]
-struct Use {
-    used: u32,
-    of: Option<u32>,
+pub(super) struct Use {
+    pub(super) used: u32,
+    pub(super) of: Option<u32>,
+}
+
+impl fmt::Display for Use {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { used, of } = self;
+        match of {
+            Some(of) => write!(f, "{used:>6}  of {of}, {} %", used * 100 / of),
+            None => write!(f, "{used:>6}"),
+        }
+    }
 }
 
 /// Writes the board's folder and the bitstream into it.
@@ -59,11 +70,8 @@ pub fn run(arguments: &BuildArguments) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
     carrystep_verilog::write(&out, &files)?;
-    let toolchain = board.family.facts().toolchain();
-    match toolchain.by_hand {
-        None => bitstream(arguments, &board, &gateware, &files, &out),
-        Some(how) => Err(not_ours(&out, toolchain.title, how)),
-    }
+    by_hand(&board, &out)?;
+    bitstream(arguments, &board, &gateware, &files, &out)
 }
 
 /// Refuses a clock that placement has been measured not to reach, because placement would need
@@ -79,20 +87,26 @@ fn reachable(board: &Board, part: Option<&str>, machine: &Path) -> Result<(), Fa
     })
 }
 
-fn not_ours(out: &Path, name: &str, how: &str) -> Failure {
-    let out = out.display();
-    Failure::Tool(format!(
+/// Refuses a board whose toolchain carrystep does not run, after its folder was written.
+pub(super) fn by_hand(board: &Board, out: &Path) -> Result<(), Failure> {
+    let toolchain = board.family.facts().toolchain();
+    let Some(how) = toolchain.by_hand else { return Ok(()) };
+    let (name, out) = (toolchain.title, out.display());
+    Err(Failure::Tool(format!(
         "{name} makes this board's bitstreams, and carrystep does not run it. All that it needs is in {out}; there: {how}"
-    ))
+    )))
 }
 
-fn bitstream(
-    arguments: &BuildArguments,
+/// Builds these files and writes the bitstream into the folder, if the clock is reached. Returns
+/// what the tools reported, and the path of the bitstream.
+pub(super) fn make(
     board: &Board,
-    gateware: &Gateware<'_>,
+    part: &Part,
+    top: &str,
+    clock_hz: u64,
     files: &[TextFile],
     out: &Path,
-) -> Result<(), Failure> {
+) -> Result<(Built, Option<PathBuf>), Failure> {
     let texts = |extension: &str| {
         files
             .iter()
@@ -100,11 +114,9 @@ fn bitstream(
             .map(|file| file.text.as_str())
             .collect::<String>()
     };
-    let (part, top) = (gateware.part(), gateware.top());
-    let clock_hz = gateware.build().timebase.clock_hz();
     let job = BuildJob {
         verilog: &texts(".v"),
-        top: &top,
+        top,
         pcf: &texts(".pcf"),
         part: ice40::NextpnrPart { device: &part.name, package: &part.package },
         clock_hz,
@@ -114,13 +126,27 @@ fn bitstream(
     let mut stages = Stages::new();
     let built = build(&job, &mut |stage| stages.next(stage))?;
     drop(stages);
-    let passed = built.reaches(clock_hz);
-    if passed {
-        whole
-            .write_all(&built.bitstream)
-            .map_err(|error| Failure::input(format!("cannot write {}: {error}", file.display())))?;
-        whole.keep()?;
+    if !built.reaches(clock_hz) {
+        return Ok((built, None));
     }
+    whole
+        .write_all(&built.bitstream)
+        .map_err(|error| Failure::input(format!("cannot write {}: {error}", file.display())))?;
+    whole.keep()?;
+    Ok((built, Some(file)))
+}
+
+fn bitstream(
+    arguments: &BuildArguments,
+    board: &Board,
+    gateware: &Gateware<'_>,
+    files: &[TextFile],
+    out: &Path,
+) -> Result<(), Failure> {
+    let (part, top) = (gateware.part(), gateware.top());
+    let clock_hz = gateware.build().timebase.clock_hz();
+    let (built, made) = make(board, part, &top, clock_hz, files, out)?;
+    let (passed, file) = (made.is_some(), out.join(format!("{top}.{}", board.bitstream)));
     let report = BuildReport {
         passed,
         tried_on_hardware: false,
@@ -133,7 +159,7 @@ fn bitstream(
         mhz: built.mhz,
         icetime_mhz: built.icetime_mhz,
         seed: built.seed,
-        bitstream: passed.then(|| file.clone()),
+        bitstream: made,
         load: board.flash.replace("FILE", &file.display().to_string()),
     };
     if arguments.json {
@@ -145,15 +171,11 @@ fn bitstream(
 }
 
 fn told(report: &BuildReport, built: &Built, proposed: &str) -> String {
-    let share = |Use { used, of }: &Use| match of {
-        Some(of) => format!("{used:>6}  of {of}, {} %", used * 100 / of),
-        None => format!("{used:>6}"),
-    };
     let BuildReport { board, part, build_id, clock_hz, seed, .. } = report;
     let head = format!(
         "{board}: {part}, build {build_id}\nlogic cells  {}\nblock RAMs   {}\nclock        {:>6.1}  MHz by nextpnr (seed {seed}), {:.1} by icetime, {} needed\n",
-        share(&report.logic_cells),
-        share(&report.block_rams),
+        report.logic_cells,
+        report.block_rams,
         built.mhz,
         built.icetime_mhz,
         mhz(*clock_hz)

@@ -139,9 +139,11 @@ fn missing_tool_is_reported_as_a_document() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
         folder.output(command.args(arguments.split(' ')).env("PATH", folder.path("no-tools")))
     };
-    for arguments in
-        ["simulate move.toml --level icarus --json", "build --board icestick --out out --json"]
-    {
+    for arguments in [
+        "simulate move.toml --level icarus --json",
+        "build --board icestick --out out --json",
+        "selftest --board icestick --out out --json",
+    ] {
         let found = error(&without_tools(arguments), 3);
         assert_eq!(found["kind"], "tool");
         assert!(found["message"].as_str().unwrap().contains("is not installed"), "{found}");

@@ -29,7 +29,7 @@ fn ends(folder: &Folder, arguments: &str) -> Ran {
 }
 
 /// Every command line that reads a file; `FILE` stands for the file.
-const READERS: [&str; 13] = [
+const READERS: [&str; 14] = [
     "plan FILE",
     "simulate FILE",
     "check FILE move.toml",
@@ -37,6 +37,7 @@ const READERS: [&str; 13] = [
     "verilog --machine FILE --out out",
     "verilog --board FILE --out out",
     "build --board icebreaker --machine FILE --out out",
+    "selftest --board FILE --out out",
     "boards FILE",
     "sweep FILE",
     "sweep --merge FILE",

@@ -71,6 +71,7 @@ mod reports;
 #[cfg(unix)]
 mod run_programs;
 mod schemas;
+mod selftests;
 #[cfg(unix)]
 mod sender;
 #[cfg(unix)]

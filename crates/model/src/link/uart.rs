@@ -6,7 +6,7 @@ const MARK: u16 = 0x100;
 
 /// The receiver. It samples the line in the middle of each bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Receiver {
+pub(crate) struct Receiver {
     bit_clocks: u32,
     /// The line one clock ago (`sync`) and two clocks ago (`now`).
     sync: bool,
@@ -17,19 +17,19 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
-    pub(super) const fn new(bit_clocks: u32) -> Self {
+    pub(crate) const fn new(bit_clocks: u32) -> Self {
         Self { bit_clocks, sync: true, now: true, byte: None }
     }
 
     /// The byte whose stop bit is sampled in this clock, if the stop bit is 1.
-    pub(super) fn byte(&self) -> Option<u8> {
+    pub(crate) fn byte(&self) -> Option<u8> {
         match self.byte {
             Some((0, bits)) if bits & 1 == 1 && self.now => Some((bits >> 1) as u8),
             _ => None,
         }
     }
 
-    pub(super) fn clock(&mut self, rx: bool) {
+    pub(crate) fn clock(&mut self, rx: bool) {
         self.byte = match self.byte {
             None if self.now => None,
             None => Some((self.bit_clocks + self.bit_clocks / 2 - 1, MARK)),
@@ -45,7 +45,7 @@ impl Receiver {
 
     /// The number of clocks in which the receiver only counts, provided that the line stays at
     /// `rx`.
-    pub(super) fn quiet(&self, rx: bool) -> u64 {
+    pub(crate) fn quiet(&self, rx: bool) -> u64 {
         match self.byte {
             Some((left, _)) => left.into(),
             None if self.now && self.sync && rx => u64::MAX,
@@ -53,7 +53,7 @@ impl Receiver {
         }
     }
 
-    pub(super) fn pass(&mut self, clocks: u64, rx: bool) {
+    pub(crate) fn pass(&mut self, clocks: u64, rx: bool) {
         if let Some((left, _)) = &mut self.byte {
             *left -= clocks as u32;
         }
@@ -67,7 +67,7 @@ impl Receiver {
 
 /// The transmitter.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Transmitter {
+pub(crate) struct Transmitter {
     bit_clocks: u32,
     line: bool,
     /// Clocks to the next bit.
@@ -77,20 +77,20 @@ pub(super) struct Transmitter {
 }
 
 impl Transmitter {
-    pub(super) const fn new(bit_clocks: u32) -> Self {
+    pub(crate) const fn new(bit_clocks: u32) -> Self {
         Self { bit_clocks, line: true, left: 0, bits: 0 }
     }
 
-    pub(super) const fn line(&self) -> bool {
+    pub(crate) const fn line(&self) -> bool {
         self.line
     }
 
     /// True if an offered byte is accepted in this clock.
-    pub(super) const fn takes(&self, offered: bool) -> bool {
+    pub(crate) const fn takes(&self, offered: bool) -> bool {
         offered && self.left == 0 && self.bits == 0
     }
 
-    pub(super) fn clock(&mut self, taken: Option<u8>) {
+    pub(crate) fn clock(&mut self, taken: Option<u8>) {
         if let Some(byte) = taken {
             *self = Self {
                 line: false,
@@ -109,11 +109,11 @@ impl Transmitter {
 
     /// The number of clocks in which the transmitter only counts, provided that `offered` stays the
     /// same.
-    pub(super) fn quiet(&self, offered: bool) -> u64 {
+    pub(crate) fn quiet(&self, offered: bool) -> u64 {
         if self.bits == 0 && !offered { u64::MAX } else { self.left.into() }
     }
 
-    pub(super) fn pass(&mut self, clocks: u64) {
+    pub(crate) fn pass(&mut self, clocks: u64) {
         self.left = u64::from(self.left).saturating_sub(clocks) as u32;
     }
 }

@@ -22,7 +22,7 @@ mod pins;
 
 /// The list of the Verilog files, one in a line, in the format of the option `-f` of Icarus and
 /// Verilator.
-const FILE_LIST: &str = "files.f";
+pub(super) const FILE_LIST: &str = "files.f";
 
 /// The machine that boards are built for where no other is asked for; clock, tick and limits are
 /// put before its axes.
@@ -282,6 +282,6 @@ fn unlinked(between: &Ports) -> impl Iterator<Item = &'static Port> {
 }
 
 /// The range of a vector, `[5:0] `; empty for a single bit.
-fn range(width: usize) -> String {
+pub(super) fn range(width: usize) -> String {
     if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
 }

@@ -54,7 +54,7 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 15] = [
+pub const INPUTS: [Inputs; 16] = [
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
     (
@@ -131,6 +131,22 @@ pub const INPUTS: [Inputs; 15] = [
             "hdl-out/",
             "tests/system/a_board_is_its_verilog",
             "tests/support/board_session.rs",
+        ],
+    ),
+    (
+        "self-test",
+        &[
+            "crates/core/",
+            "crates/boards/",
+            "crates/model/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/tools/",
+            "crates/simulators/",
+            "docs/self-test.md",
+            "tests/support/self_test_bench.rs",
+            "tests/support/self_test_board.rs",
+            "tests/system/a_self_test_shows_every_pin/",
         ],
     ),
     (
