@@ -54,7 +54,7 @@ const GATEWARE: &[&str] = &[
 ];
 
 /// The inputs of each run.
-pub const INPUTS: [Inputs; 16] = [
+pub const INPUTS: &[Inputs] = &[
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
     (
@@ -164,6 +164,19 @@ pub const INPUTS: [Inputs; 16] = [
     ),
     ("kills", RUN),
     (
+        "hours",
+        &[
+            "crates/core/",
+            "crates/gcode/",
+            "crates/job/",
+            "crates/link/",
+            "crates/model/",
+            "crates/program/",
+            "crates/runner/",
+            "crates/virtual-board/",
+        ],
+    ),
+    (
         "linuxcnc",
         &[
             "crates/core/",
@@ -213,7 +226,16 @@ mod tests {
         assert!(runs_of(&["README.md", "crates/report/src/lib.rs"]).is_empty());
         assert_eq!(
             runs_of(&["crates/link/src/lib.rs"]),
-            ["repeats", "bad-line", "garbage", "dead-host", "verilog-board", "kills", "linuxcnc"]
+            [
+                "repeats",
+                "bad-line",
+                "garbage",
+                "dead-host",
+                "verilog-board",
+                "kills",
+                "hours",
+                "linuxcnc"
+            ]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
         assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());
@@ -230,6 +252,7 @@ mod tests {
     #[test]
     fn every_run_has_inputs() {
         let names: Vec<&str> = INPUTS.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names, crate::long::RUNS.map(|run| run.name));
+        let runs: Vec<&str> = crate::long::RUNS.iter().map(|run| run.name).collect();
+        assert_eq!(names, runs);
     }
 }
