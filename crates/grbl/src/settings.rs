@@ -47,6 +47,8 @@ pub struct MachineSettings {
     pub homing: Option<HomingSettings>,
     /// Greatest speed of the spindle, turns per minute; 0 without one.
     pub spindle: u32,
+    /// Whether the spindle is a laser.
+    pub laser: bool,
     /// Tolerance of the path, mm: what is nearest to Grbl's junction deviation.
     pub tolerance: f64,
     /// Each axis.
@@ -114,7 +116,7 @@ impl Settings {
             of(27, real(homing.pull_off), "pull_off in home"),
             of(30, whole(machine.spindle), "spindle_rpm in [machine.outputs]"),
             of(31, whole(0), "spindle_rpm in [machine.outputs]"),
-            of(32, whole(0), "the machine: there is no laser mode"),
+            of(32, flag(machine.laser), "laser in [machine.outputs]"),
         ];
         for (first, key) in
             [(100, "steps_per"), (110, "speed"), (120, "acceleration"), (130, "travel")]

@@ -62,6 +62,7 @@ pub fn settings(machine: &Machine, letters: &Letters, soft: &[bool]) -> MachineS
         hard_limits: machine.guard.limits != LimitWiring::None,
         homing,
         spindle: machine.output_uses.spindle_rpm.unwrap_or_default(),
+        laser: machine.output_uses.laser,
         tolerance: DEFAULT_TOLERANCE,
         axes: axes.collect(),
     }

@@ -200,6 +200,7 @@ fn power_of_a_sender_stays_in_force() {
     let board = Board::new(&folder, "--vcd a.vcd --fast");
     let served = Served::with(&folder, &format!("--port {}", board.port));
     let mut sender = Sender::tcp(&served);
+    assert!(sender.ask("$$").contains(&"$32=1".to_owned()));
     sender.simple("M4 S500\nG1 X1 F1800");
     sender.place();
     sender.simple("G1 X2");
