@@ -304,7 +304,7 @@ fn homing_page_gives_the_reserve_of_the_approach() {
 fn virtual_board_page_gives_the_times_of_its_pace() {
     let pace = |name| constant("crates/virtual-board/src/pace.rs", name);
     let (late, gone) = (pace("BEHIND"), whole(pace("GONE")));
-    let board = |name| constant("crates/cli/src/commands/virtual_board.rs", name);
+    let board = |name| constant("crates/cli/src/operated.rs", name);
     let of_watchdog = part(whole(board("PART_OF_WATCHDOG")));
     let ms = 1000.0 / board("PART_OF_SECOND");
     let kept = whole(constant("crates/virtual-board/src/gateware.rs", "KEPT"));
