@@ -2,6 +2,7 @@
 //! reports; the logic is in those crates.
 
 mod arguments;
+mod bitstream;
 mod capture;
 mod colour;
 mod commands;

@@ -173,8 +173,7 @@ impl<R: Read + Seek> Interpreter<R> {
     /// Reports the real machine place after a stop ([`Canon::Pause`] or [`Canon::ChangeTool`]),
     /// before the next step is asked for. The coordinates must be finite.
     pub fn set_place(&mut self, at: Point) {
-        self.state.machine = at;
-        self.state.program = self.state.frame.to_program(&at);
+        self.state.set_place(at);
     }
 
     /// Reports the machine place at which the last [`Canon::Probe`] ended and whether the probe

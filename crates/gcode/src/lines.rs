@@ -10,7 +10,6 @@ use crate::evaluate::Values as _;
 use crate::interpreter::Interpreter;
 use crate::kept::Offsets;
 use crate::modes::Modes;
-use crate::motion::record_probe;
 use crate::options::Options;
 use crate::state::{Motion, State};
 use std::io::Cursor;
@@ -108,15 +107,7 @@ impl LineInterpreter {
 
     /// Reports the real machine place. The coordinates must be finite.
     pub fn set_place(&mut self, at: Point) {
-        self.state.machine = at;
-        self.state.program = self.state.frame.to_program(&at);
-    }
-
-    /// Reports the machine place at which the last [`Canon::Probe`] ended and whether the probe
-    /// tripped. The coordinates must be finite.
-    pub fn probed(&mut self, at: Point, tripped: bool) {
-        self.set_place(at);
-        record_probe(&mut self.state, tripped);
+        self.state.set_place(at);
     }
 
     /// The offsets that the machine keeps.

@@ -121,6 +121,12 @@ pub(crate) struct State {
 }
 
 impl State {
+    /// The machine is at this place.
+    pub(crate) fn set_place(&mut self, at: Point) {
+        self.machine = at;
+        self.program = self.frame.to_program(&at);
+    }
+
     /// A machine at this place, with the modes in which LinuxCNC starts in millimetres.
     pub(crate) fn new(machine: Point, tools: Option<ToolTable>) -> Self {
         let modal = Modal {

@@ -1,7 +1,8 @@
 //! The gateware of carrystep, written as Rust-HDL modules.
 //!
-//! The modules implement docs/clock-by-clock.md register by register, and docs/self-test.md. The crate `carrystep-verilog`
-//! exports them as Verilog; the `*Sim` types of this crate simulate them clock by clock.
+//! The modules implement docs/clock-by-clock.md register by register, and docs/self-test.md. The
+//! crate `carrystep-verilog` exports them as Verilog; the `*Sim` types of this crate simulate them
+//! clock by clock.
 //!
 //! - [`mod@engine`]: the product. One adder serves up to eight axes, each in its own time slot.
 //! - [`parallel`]: the reference core. Each of up to six axes has its own adders, as the article

@@ -4,8 +4,8 @@
 //!
 //! The model is written from docs/clock-by-clock.md, docs/link.md and docs/self-test.md, and uses
 //! nothing of `crates/hdl`. The two implementations share no code, so their agreement is evidence
-//! that both are right (docs/decisions/0004). [`parallel::axis::tick`] is the central function and the best place to
-//! start reading.
+//! that both are right (docs/decisions/0004). [`parallel::axis::tick`] is the central function and
+//! the best place to start reading.
 //!
 //! Any change of behaviour here must be made in docs/clock-by-clock.md and in `crates/hdl` as well;
 //! the tests compare them in every clock.

@@ -62,10 +62,7 @@ impl<'a> PinFeed<'a> {
     pub fn outputs(&mut self, cycle: u64, levels: u8) {
         if self.failed.is_none() && levels != self.outputs {
             self.outputs = levels;
-            self.send();
-            if self.failed.is_none() {
-                self.failed = self.sink.outputs(self.timebase.clock_to_ps(cycle), levels).err();
-            }
+            self.send_behind(cycle, |sink, ps| sink.outputs(ps, levels));
         }
     }
 
@@ -73,10 +70,19 @@ impl<'a> PinFeed<'a> {
     pub fn pwm(&mut self, cycle: u64, level: bool) {
         if self.failed.is_none() && level != self.pwm {
             self.pwm = level;
-            self.send();
-            if self.failed.is_none() {
-                self.failed = self.sink.pwm(self.timebase.clock_to_ps(cycle), level).err();
-            }
+            self.send_behind(cycle, |sink, ps| sink.pwm(ps, level));
+        }
+    }
+
+    /// Sends what waits, and then the change of a cycle.
+    fn send_behind(
+        &mut self,
+        cycle: u64,
+        change: impl FnOnce(&mut dyn PinSink, u64) -> Result<(), TraceError>,
+    ) {
+        self.send();
+        if self.failed.is_none() {
+            self.failed = change(self.sink, self.timebase.clock_to_ps(cycle)).err();
         }
     }
 

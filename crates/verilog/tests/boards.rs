@@ -2,11 +2,12 @@
 //! impossible requests must be refused.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod common;
+
 use carrystep_boards::{Board, OSCILLATOR, PORTS, Way, board, boards};
 use carrystep_files::SourceText;
 use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped_machine};
 use std::path::Path;
-use std::process::Command;
 
 /// All bits of a board's ports that have pins of their own.
 fn ports(board: &Board) -> Vec<String> {
@@ -82,11 +83,8 @@ fn folder(board: &Board) -> tempfile::TempDir {
 }
 
 fn run(tool: &str, arguments: &[&str], folder: &Path) {
-    let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output
-        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{tool} {arguments:?}: {said}");
+    let (ok, said) = common::run(tool, arguments, folder);
+    assert!(ok, "{tool} {arguments:?}: {said}");
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin

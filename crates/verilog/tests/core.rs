@@ -2,6 +2,8 @@
 //! date.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod common;
+
 use carrystep_core::engine::{Guard, LimitWiring};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
@@ -9,8 +11,8 @@ use carrystep_verilog::{
     ENGINE_NAME, ENGINE_WAIVERS, ExportError, PARALLEL_WAIVERS, Prefix, engine_verilog,
     generated_files, parallel_name, parallel_verilog, write_engine, write_parallel,
 };
+use common::run;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
@@ -74,15 +76,6 @@ fn engine_of(axes: usize) -> EngineBuild {
 fn build(clock_hz: u64, phases: u32) -> Build {
     let timebase = Timebase::new(clock_hz, 1000, phases).unwrap();
     Build { timebase, phase: StartPhase::Half, pins: pins() }
-}
-
-/// Runs a tool in a directory with the core. Returns whether it succeeded, and its output.
-fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
-    let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output
-        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    (output.status.success(), said.into_owned())
 }
 
 /// Runs a tool on each core in some builds, and on cores of each number of axes, each in a fresh

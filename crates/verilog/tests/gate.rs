@@ -2,6 +2,8 @@
 //! the gate's input allows it.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod common;
+
 use carrystep_boards::{Board, Way, board, boards};
 use carrystep_files::SourceText;
 use carrystep_verilog::{CLOCK_NAME, Gateware, shipped_machine};
@@ -86,12 +88,8 @@ endmodule
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("all.v"), bench + verilog).unwrap();
     let run = |tool: &str, arguments: &[&str]| {
-        let output = Command::new(tool).args(arguments).current_dir(folder.path()).output();
-        let output = output
-            .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-        let said =
-            String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{tool}: {said}");
+        let (ok, said) = common::run(tool, arguments, folder.path());
+        assert!(ok, "{tool}: {said}");
         said.trim().to_owned()
     };
     run("iverilog", &["-g2005", "-s", "bench", "-o", "bench.vvp", "all.v"]);

@@ -2,6 +2,8 @@
 //! ports, names with a prefix, templates of instances, constraints, and the file for FuseSoC.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod common;
+
 use carrystep_boards::board;
 use carrystep_core::engine::{ENGINE_PORTS, Latch, LimitWiring};
 use carrystep_core::link::{LineKind, Uart, line_ports};
@@ -11,10 +13,10 @@ use carrystep_verilog::{
     Gateware, Prefix, TextFile, engine_verilog, generated_files, line_verilog, link_verilog,
     parallel_verilog, write_engine, write_parallel,
 };
+use common::run;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
@@ -55,15 +57,6 @@ fn save(folder: &Path, files: &[TextFile]) {
 
 fn read(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-/// Runs a tool in a folder. Returns whether it succeeded, and its output.
-fn run(tool: &str, arguments: &[&str], folder: &Path) -> (bool, String) {
-    let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output
-        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    (output.status.success(), said.into_owned())
 }
 
 /// Elaborates all Verilog files of a folder in Icarus without a warning.

@@ -2,11 +2,12 @@
 //! ports.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod common;
+
 use carrystep_boards::{board, boards};
 use carrystep_verilog::{SELF_TEST_NAME, SELF_TEST_WAIVERS, SelfTestGateware, TextFile};
+use common::run;
 use std::collections::BTreeSet;
-use std::path::Path;
-use std::process::Command;
 
 /// The board with the fewest pins, one with a gate, and the one with the most pins.
 const SOME: [&str; 3] = ["icestick", "mojo-v3", "alchitry-cu"];
@@ -14,14 +15,6 @@ const SOME: [&str; 3] = ["icestick", "mojo-v3", "alchitry-cu"];
 fn files(name: &str) -> Vec<TextFile> {
     let board = board(name).unwrap();
     SelfTestGateware::new(board, &board.parts[0], false).unwrap().files().unwrap()
-}
-
-fn run(tool: &str, arguments: &[&str], folder: &Path) -> (bool, String) {
-    let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output
-        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    (output.status.success(), said.into_owned())
 }
 
 fn folder(name: &str) -> tempfile::TempDir {
@@ -51,8 +44,8 @@ fn yosys_finds_no_latch_and_no_undriven_wire() {
         let top = format!("carrystep_{}_selftest", name.replace('-', "_"));
         // The clock module contains cells of the vendor, which this check does not know.
         let script = format!(
-            "read_verilog {top}.v {SELF_TEST_NAME}.v; read_verilog -lib carrystep_clock.v; hierarchy -check -top {top}; \
-             proc; flatten; opt_clean; check -assert; select -assert-none t:$dlatch"
+            "read_verilog {top}.v {SELF_TEST_NAME}.v; read_verilog -lib carrystep_clock.v; \
+             hierarchy -check -top {top}; proc; flatten; opt_clean; check -assert; select -assert-none t:$dlatch"
         );
         let (ok, said) = run("yosys", &["-q", "-p", &script], folder.path());
         // The lines to the host of a board with a gate are held by tri-state buffers, which yosys

@@ -145,7 +145,8 @@ fn every_pin_of_a_board_is_what_its_self_test_says() {
     let chosen: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
     jobs::each(&chosen, |board| on_the_pins(board, false));
     effort::figures(&format!(
-        "{} self-tests from their pins, as Verilog and read back from bitstream or EDIF, three planted faults seen on each",
+        "{} self-tests from their pins, as Verilog and read back from bitstream or EDIF, three \
+         planted faults seen on each",
         chosen.len()
     ));
 }

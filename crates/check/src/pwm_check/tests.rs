@@ -72,7 +72,9 @@ proptest! {
     }
 
     #[test]
-    fn edge_that_is_a_clock_off_or_missing_is_caught(due in duties(), which in any::<prop::sample::Index>(), bug in 0..3) {
+    fn edge_that_is_a_clock_off_or_missing_is_caught(
+        due in duties(), which in any::<prop::sample::Index>(), bug in 0..3,
+    ) {
         let end = due[due.len() - 1].0 + 2 * PERIOD;
         let mut edges = pin(&due, end);
         prop_assume!(edges.len() > 1);
