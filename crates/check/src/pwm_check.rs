@@ -12,8 +12,9 @@
 //! differs        ##                                          at most as long as the bound
 //! ```
 //!
-//! The check needs no pairing of edges, so that a pulse that a capture is too slow to show spoils
-//! nothing. Its memory holds the duties that are due and have not taken effect.
+//! The check compares levels and pairs no edges: a capture that misses a pulse shorter than its
+//! sampling time is off for as long as this pulse, and fits again behind it. Memory holds the duties
+//! that are due and have not taken effect.
 
 use carrystep_core::Timebase;
 use carrystep_core::engine::PWM_STEPS;

@@ -3,37 +3,37 @@
 //! ```text
 //! pty, http  the pseudo-terminal; HTTP, which is refused
 //! clients    the connections: the first one drives, the others watch
-//! desk       what is asked for, planned and left to do; it moves nothing
-//! taking     the lines: answered, refused, or given to the plan
-//! hearing    real-time characters, and the connections
-//! shop       the board at rest: alarms, homing (home), when a batch begins
+//! real_time  real-time characters, and the connections
+//! new_lines  the lines: answered, refused, or given to the plan
+//! requests   what is asked for, planned and left to do; it moves nothing
+//! server     the board at rest: alarms, homing (home), when a batch begins
 //! motion     a batch: stretches from rest to rest, with the holds and overrides of `run`
-//! seeing     what status reports say
-//! shown      settings, offsets and modes in the terms of Grbl; refusal: its errors
+//! reports    what status reports say
+//! terms      settings, offsets and modes in the terms of Grbl; refusal: its errors
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
 
 mod clients;
-mod desk;
-mod hearing;
 mod home;
 mod http;
 mod link;
 mod motion;
+mod new_lines;
 mod places;
 mod pty;
+mod real_time;
 mod refusal;
-mod seeing;
-mod shop;
-mod shown;
+mod reports;
+mod requests;
+mod server;
 mod simulated;
-mod taking;
+mod terms;
 
 pub use clients::Clients;
-pub use desk::Desk;
 pub use link::Link;
 pub use places::{find, lines};
 pub use pty::Pty;
-pub use shop::Shop;
-pub use shown::settings;
+pub use requests::Requests;
+pub use server::Server;
 pub use simulated::simulate;
+pub use terms::settings;

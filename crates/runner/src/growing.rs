@@ -6,10 +6,10 @@
 //! rest     ^               ^   ^
 //! ```
 //!
-//! The lines of a batch are planned together, in a thread of their own. A batch ends where a line
-//! says so (M0, M2), or with the last line that has come if the rows that are ready get few and no
-//! line waits: the plan then ends at rest there. So there is always a plan that ends at rest, and a
-//! sender that is late makes the machine rest on its path, but never makes a queue run dry.
+//! The lines of a batch are planned together, in a thread of their own. The plan of a batch ends at
+//! rest. A line can end the batch (M0, M2). Otherwise the last line that has come ends it, as soon as
+//! no line waits and few planned rows are left to send. So a sender that is late makes the machine
+//! rest on its path, and no queue of the board runs dry.
 
 use carrystep_job::{Item, JobError, Planner};
 use carrystep_program::{LineBreak, PlannedLine, Row};

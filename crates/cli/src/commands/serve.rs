@@ -5,7 +5,7 @@ use crate::connection::{self, Connection};
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use crate::output;
-use crate::serve::{Clients, Desk, Link, Pty, Shop, find, lines, settings, simulate};
+use crate::serve::{Clients, Link, Pty, Requests, Server, find, lines, settings, simulate};
 use carrystep_files::Machine;
 use carrystep_grbl::{Dialect, Settings};
 use carrystep_link::Ended;
@@ -45,32 +45,32 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     let name = pty.name().to_owned();
     let address = listener.as_ref().map(TcpListener::local_addr).transpose();
     let clients = Clients::new(pty, listener).map_err(|error| Failure::Run(error.to_string()))?;
-    let mut desk = Desk::new((dialect, clients), lines, place, arguments.when_gone);
-    (desk.alarm, desk.keeps) = (lost, !lost);
-    desk.begins();
+    let mut requests = Requests::new((dialect, clients), lines, place, arguments.when_gone);
+    (requests.alarm, requests.keeps) = (lost, !lost);
+    requests.begins();
     control.runs_program(machine.output_uses.spindle_rpm.is_some());
     let outputs = RowOutputs::new(&machine, &letters);
-    let mut shop = Shop {
+    let mut server = Server {
         board: &mut board,
         control: &mut control,
         memory: &mut memory,
         machine: &machine,
         axes: &axes,
-        desk,
+        requests,
         outputs,
         failed: None,
         inputs: Instant::now(),
         tolerance: arguments.tolerance,
     };
-    if shop.powers()? == Ended::Stopped {
+    if server.powers()? == Ended::Stopped {
         return Err(Failure::Run("stopped before the first sender came".to_owned()));
     }
     // Otherwise, a command that is killed leaves a file that does not match.
-    let _ = shop.memory.drives(shop.board);
+    let _ = server.memory.drives(server.board);
     tell(&name, arguments, address.ok().flatten(), &port)?;
-    let served = shop.serve();
-    shop.keeps_offsets();
-    shop.desk.farewell();
+    let served = server.serve();
+    server.keeps_offsets();
+    server.requests.farewell();
     drop(link);
     // If the file cannot be written, the old one no longer matches the board and is ignored.
     let _ = memory.keep(&mut board);

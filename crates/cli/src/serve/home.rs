@@ -1,13 +1,13 @@
 //! `$H`: the homing of `carrystep home`.
 
-use super::desk::Flush;
-use super::shop::Shop;
+use super::requests::Flush;
+use super::server::Server;
 use crate::failure::Failure;
 use crate::homing;
 use carrystep_grbl::{Alarm, Dialect, ErrorCode, message};
 use carrystep_link::{Homed, HomingFault, HostError, Wish};
 
-impl Shop<'_> {
+impl Server<'_> {
     /// Homes all axes that can, or one, and returns the answer.
     pub fn home(&mut self, axis: Option<char>) -> Result<String, Failure> {
         let names: Vec<String> = axis.iter().map(|axis| axis.to_ascii_lowercase().into()).collect();
@@ -30,20 +30,20 @@ impl Shop<'_> {
             cleared.map_err(|error| self.lost(&error))?;
         }
         homing.others = homing::others(machine, homing.mask(), self.board.status(), self.memory);
-        (self.desk.homes, self.desk.alarm) = (true, false);
-        let Self { board, control, desk, failed, .. } = self;
+        (self.requests.homes, self.requests.alarm) = (true, false);
+        let Self { board, control, requests, failed, .. } = self;
         let outcome = board.home(&homing, |_, _, progress| {
-            if let Err(error) = desk.poll(progress.status, control) {
+            if let Err(error) = requests.poll(progress.status, control) {
                 failed.get_or_insert(Failure::Run(format!("the pseudo-terminal is gone: {error}")));
                 return Wish::Stop;
             }
-            if desk.flush == Some(Flush::Reset) {
+            if requests.flush == Some(Flush::Reset) {
                 Wish::Stop
             } else {
                 control.wish(progress.status)
             }
         });
-        self.desk.homes = false;
+        self.requests.homes = false;
         // Until homing has succeeded, the axes to be homed have no machine coordinate.
         let mask = homing.mask();
         homing::forget(self.memory, machine, mask);
@@ -74,8 +74,8 @@ impl Shop<'_> {
     }
 
     fn unhomed(&mut self, alarm: Alarm, why: &str) -> String {
-        self.desk.alarms(alarm, why);
-        self.desk.rests_at(&self.board.status().positions);
+        self.requests.alarms(alarm, why);
+        self.requests.rests_at(&self.board.status().positions);
         Dialect::error(ErrorCode::Locked)
     }
 }

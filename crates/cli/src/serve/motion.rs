@@ -1,8 +1,8 @@
 //! A batch of lines on the board: stretches from rest to rest, with holds and overrides as in
 //! `run`.
 
-use super::desk::{Desk, Flush};
-use super::shop::{Next, REST, Shop};
+use super::requests::{Flush, Requests};
+use super::server::{Next, REST, Server};
 use crate::connection::ConnectedBoardError;
 use crate::control::Control;
 use crate::drive::settle;
@@ -24,7 +24,7 @@ const LINE: Duration = Duration::from_millis(20);
 const TRY_AGAIN: Duration = Duration::from_millis(20);
 type Way = RefCell<Stretches<GrowingRows>>;
 
-impl Shop<'_> {
+impl Server<'_> {
     /// Executes the batch, of which the first rows are planned.
     pub fn batch(&mut self) -> Result<Next, Failure> {
         let way = self.way()?;
@@ -44,12 +44,12 @@ impl Shop<'_> {
             if self.rests()? == Next::Stopped {
                 return Ok(Next::Stopped);
             }
-            if let Some(flush) = self.desk.flush {
+            if let Some(flush) = self.requests.flush {
                 self.settles()?;
                 return self.flushed(flush);
             }
         }
-        if let Some(flush) = self.desk.flush {
+        if let Some(flush) = self.requests.flush {
             return self.flushed(flush);
         }
         self.ends();
@@ -60,7 +60,7 @@ impl Shop<'_> {
         let refused = |error: carrystep_job::JobError| Failure::input(error.to_string());
         let positions = self.board.status().positions;
         let start: Vec<i64> = self
-            .desk
+            .requests
             .place
             .zero
             .iter()
@@ -70,13 +70,13 @@ impl Shop<'_> {
         let machine = self.machine;
         let hold = Hold::new(machine).map_err(refused)?;
         let pace = Pace::new(machine, &start).map_err(refused)?;
-        let way = Stretches::new(self.desk.growing.rows(), &start, hold, pace, machine.queue);
+        let way = Stretches::new(self.requests.growing.rows(), &start, hold, pace, machine.queue);
         let way = way.with_outputs(self.outputs.clone());
         let mut way = match machine.cuts {
             true => way.with_cuts(kept_ticks(machine.timebase.tick_ns())),
             false => way,
         };
-        if let Some(program) = self.control.program().filter(|_| !self.desk.jogs) {
+        if let Some(program) = self.control.program().filter(|_| !self.requests.jogs) {
             way.set_overrides(program.overrides());
         }
         Ok(RefCell::new(way))
@@ -84,23 +84,24 @@ impl Shop<'_> {
 
     /// Sends a stretch.
     fn stream(&mut self, way: &Way) -> Result<Ended, ConnectedBoardError> {
-        let Self { board, control, desk, failed, .. } = self;
+        let Self { board, control, requests, failed, .. } = self;
         let mut looks = Looks::new();
-        board
-            .stream(way, |progress| looks.look((&mut *desk, &mut **control), way, progress, failed))
+        board.stream(way, |progress| {
+            looks.look((&mut *requests, &mut **control), way, progress, failed)
+        })
     }
 
     /// Waits behind a stretch as long as a hold is in force. Returns at once if none is.
     fn rests(&mut self) -> Result<Next, Failure> {
-        while self.desk.flush.is_none() && (self.desk.holds || interrupt::is_asked()) {
+        while self.requests.flush.is_none() && (self.requests.holds || interrupt::is_asked()) {
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 self.settles()?;
-                self.desk.rests_at(&self.board.status().positions);
+                self.requests.rests_at(&self.board.status().positions);
                 return Ok(Next::Stopped);
             }
             if self.board.status().answer.fault {
                 self.fault()?;
-                self.desk.flush.get_or_insert(Flush::Gone);
+                self.requests.flush.get_or_insert(Flush::Gone);
             }
             std::thread::sleep(REST);
         }
@@ -118,20 +119,20 @@ impl Shop<'_> {
 
     /// The batch is executed to its end.
     fn ends(&mut self) {
-        let Some(end) = self.desk.growing.take_end() else {
-            self.desk.rests_at(&self.board.status().positions);
+        let Some(end) = self.requests.growing.take_end() else {
+            self.requests.rests_at(&self.board.status().positions);
             return;
         };
-        self.desk.batch_ends(end.place);
+        self.requests.batch_ends(end.place);
         if let Some(error) = end.error {
             let why = error.to_string();
-            self.desk.alarms(Alarm::SoftLimit, &why.replace(['\n', '[', ']'], " "));
-            self.desk.rests_at(&self.board.status().positions);
+            self.requests.alarms(Alarm::SoftLimit, &why.replace(['\n', '[', ']'], " "));
+            self.requests.rests_at(&self.board.status().positions);
             return;
         }
         match end.at {
-            Some(LineBreak::Pause) => self.desk.holds = true,
-            Some(LineBreak::End) => self.desk.clients.tell(&carrystep_grbl::message("Pgm End")),
+            Some(LineBreak::Pause) => self.requests.holds = true,
+            Some(LineBreak::End) => self.requests.clients.tell(&carrystep_grbl::message("Pgm End")),
             None => {}
         }
     }
@@ -154,7 +155,7 @@ impl Looks {
     /// What is wanted of a stretch that runs.
     fn look(
         &mut self,
-        (desk, control): (&mut Desk, &mut Control),
+        (requests, control): (&mut Requests, &mut Control),
         way: &Way,
         progress: &Progress<'_>,
         failed: &mut Option<Failure>,
@@ -164,7 +165,7 @@ impl Looks {
             return Wish::GoOn;
         }
         self.next = now + LOOK;
-        if let Err(error) = desk.poll(progress.status, control) {
+        if let Err(error) = requests.poll(progress.status, control) {
             failed.get_or_insert(Failure::Run(format!("the pseudo-terminal is gone: {error}")));
             return Wish::Stop;
         }
@@ -173,14 +174,14 @@ impl Looks {
         }
         if now >= self.line {
             self.line = now + LINE;
-            let zero = desk.place.zero.iter().zip(progress.status.positions);
+            let zero = requests.place.zero.iter().zip(progress.status.positions);
             let places: Vec<i64> = zero.map(|(zero, at)| zero + i64::from(at)).collect();
             let block = way.borrow().block_at(&places);
-            desk.line = block.map(|block| block.line);
+            requests.line = block.map(|block| block.line);
             control.reached(block);
         }
         let wanted = control.program().map(|program| program.overrides());
-        let wanted = wanted.filter(|wanted| !desk.jogs && *wanted != way.borrow().overrides());
+        let wanted = wanted.filter(|wanted| !requests.jogs && *wanted != way.borrow().overrides());
         if let Some(wanted) = wanted.filter(|_| now >= self.overrides) {
             self.overrides = now + TRY_AGAIN;
             let mut way = way.borrow_mut();
@@ -193,7 +194,7 @@ impl Looks {
                 None => way.set_overrides(wanted),
             }
         }
-        let holds = desk.holds || desk.flush.is_some() || interrupt::is_asked();
+        let holds = requests.holds || requests.flush.is_some() || interrupt::is_asked();
         if !holds || way.borrow().is_held() || now < self.hold {
             return Wish::GoOn;
         }

@@ -1,7 +1,7 @@
 //! Where the machine is when senders begin to drive it, and behind homing.
 
-use super::shop::Shop;
-use super::shown;
+use super::server::Server;
+use super::terms;
 use crate::drive::Place;
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
@@ -41,25 +41,25 @@ pub fn lines(
         .map_err(|fault| Failure::input(fault.to_string()))
 }
 
-impl Shop<'_> {
+impl Server<'_> {
     /// Takes the place of the machine from its memory, behind homing.
     pub fn placed(&mut self) -> Result<(), Failure> {
         let read = self.board.read_status();
         let positions = read.map_err(|error| self.lost(&error))?.positions;
-        let letters = self.desk.lines.letters().clone();
+        let letters = self.requests.lines.letters().clone();
         let (place, lost) = find(self.machine, &letters, self.memory, &positions)?;
-        let offsets = match (self.desk.keeps, self.memory.work()) {
+        let offsets = match (self.requests.keeps, self.memory.work()) {
             (false, Ok(kept)) if !lost => kept.clone(),
-            _ => self.desk.lines.interpreter().offsets(),
+            _ => self.requests.lines.interpreter().offsets(),
         };
-        self.desk.keeps = !lost;
+        self.requests.keeps = !lost;
         let lines = lines(self.machine, &place, offsets, self.tolerance)?;
         let settings = Settings {
-            machine: shown::settings(self.machine, &letters, &place.soft),
-            ..self.desk.dialect.settings.clone()
+            machine: terms::settings(self.machine, &letters, &place.soft),
+            ..self.requests.dialect.settings.clone()
         };
-        self.desk.dialect = Dialect::new(settings, LINES);
-        self.desk.placed(lines, place, &positions);
+        self.requests.dialect = Dialect::new(settings, LINES);
+        self.requests.placed(lines, place, &positions);
         // At the end the file is written again.
         let _ = self.memory.drives(self.board);
         Ok(())
@@ -67,8 +67,8 @@ impl Shop<'_> {
 
     /// Keeps the work offsets if lines have changed them.
     pub fn keeps_offsets(&mut self) {
-        let offsets = self.desk.lines.interpreter().offsets();
-        if self.desk.keeps && self.memory.work().is_ok_and(|kept| *kept != offsets) {
+        let offsets = self.requests.lines.interpreter().offsets();
+        if self.requests.keeps && self.memory.work().is_ok_and(|kept| *kept != offsets) {
             self.memory.set_work(offsets);
             // At the end the file is written again.
             let _ = self.memory.drives(self.board);

@@ -1,7 +1,7 @@
 //! What status reports say of a machine.
 
-use super::desk::{Desk, Motion};
-use super::shown;
+use super::requests::{Motion, Requests};
+use super::terms;
 use carrystep_gcode::Turn;
 use carrystep_grbl::{Accessories, Seen};
 use carrystep_link::Status;
@@ -15,7 +15,7 @@ const SPEED: Duration = Duration::from_millis(60);
 /// Numbers of lines that are remembered for `Ln:`.
 const NUMBERS: usize = 4 * LINES;
 
-impl Desk {
+impl Requests {
     /// Notes what the axes do.
     pub fn see(&mut self, status: &Status) {
         self.rests = status.answer.idle || status.answer.halted;
@@ -41,7 +41,7 @@ impl Desk {
     pub fn seen(&self) -> Seen {
         let (lines, letters) = (self.lines.interpreter(), self.lines.letters());
         let modes = lines.modes();
-        let of_axes = |at: &Point| shown::of_axes(letters, |letter| at[letter]);
+        let of_axes = |at: &Point| terms::of_axes(letters, |letter| at[letter]);
         let line = self.line.filter(|_| self.motion == Motion::Moves && !self.jogs);
         let turns = modes.spindle != Turn::Off && !self.checks;
         Seen {

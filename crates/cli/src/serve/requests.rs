@@ -62,7 +62,7 @@ pub enum Motion {
 }
 
 /// The dialect on a machine.
-pub struct Desk {
+pub struct Requests {
     pub dialect: Dialect,
     pub clients: Clients,
     pub input: Input,
@@ -101,7 +101,7 @@ pub struct Desk {
     pub positions: Positions,
 }
 
-impl Desk {
+impl Requests {
     pub fn new(
         (dialect, clients): (Dialect, Clients),
         lines: Lines,

@@ -1,6 +1,6 @@
 //! A board that senders drive: what is done at rest, and when a batch of lines begins.
 
-use super::desk::{Desk, Flush, Motion, Todo};
+use super::requests::{Flush, Motion, Requests, Todo};
 use crate::connection::{self, ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
@@ -37,13 +37,13 @@ pub enum Next {
 }
 
 /// A board that senders drive.
-pub struct Shop<'a> {
+pub struct Server<'a> {
     pub board: &'a mut ConnectedBoard,
     pub control: &'a mut Control,
     pub memory: &'a mut BoardMemory,
     pub machine: &'a Machine,
     pub axes: &'a [String],
-    pub desk: Desk,
+    pub requests: Requests,
     /// The outputs where the next batch begins.
     pub outputs: RowOutputs,
     /// Why the command cannot go on.
@@ -54,7 +54,7 @@ pub struct Shop<'a> {
     pub tolerance: Option<f64>,
 }
 
-impl Shop<'_> {
+impl Server<'_> {
     /// Serves until a signal or `carrystep stop` ends it. All axes rest then.
     ///
     /// # Errors
@@ -64,13 +64,13 @@ impl Shop<'_> {
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 return Ok(());
             }
-            let next = if self.board.status().answer.fault && !self.desk.alarm {
+            let next = if self.board.status().answer.fault && !self.requests.alarm {
                 self.fault()?
-            } else if let Some(flush) = self.desk.flush {
+            } else if let Some(flush) = self.requests.flush {
                 self.flushed(flush)?
             } else if self.may_move() {
                 self.batch()?
-            } else if let Some(todo) = self.desk.todo.filter(|_| !self.desk.is_busy()) {
+            } else if let Some(todo) = self.requests.todo.filter(|_| !self.requests.is_busy()) {
                 self.does(todo)?;
                 Next::GoesOn
             } else {
@@ -91,12 +91,12 @@ impl Shop<'_> {
             self.inputs = Instant::now();
             let read = self.board.register(INPUTS);
             let inputs = read.map_err(|error| self.lost(&error))?;
-            self.desk.pins = self.pins(inputs);
+            self.requests.pins = self.pins(inputs);
             self.keeps_offsets();
         }
-        let polled = self.desk.poll(&status, self.control);
+        let polled = self.requests.poll(&status, self.control);
         polled.map_err(|error| Failure::Run(format!("the pseudo-terminal is gone: {error}")))?;
-        let holds = self.desk.holds;
+        let holds = self.requests.holds;
         if let Some(program) = self.control.program().filter(|one| holds && !one.is_waiting()) {
             program.rests(WAITS.to_owned());
         }
@@ -106,7 +106,7 @@ impl Shop<'_> {
     fn pins(&self, inputs: u32) -> Pins {
         let [low, high, ..] = inputs.to_le_bytes();
         let closed = |number: usize| (low | high) >> number & 1;
-        let letters = self.desk.lines.letters().of_axes().iter().enumerate();
+        let letters = self.requests.lines.letters().of_axes().iter().enumerate();
         let limits = letters.fold(0, |mask, (number, letter)| mask | closed(number) << letter);
         let estop = self.board.status().answer;
         Pins {
@@ -119,32 +119,32 @@ impl Shop<'_> {
 
     /// Whether a batch can begin; begins to plan one if lines wait.
     fn may_move(&mut self) -> bool {
-        let desk = &mut self.desk;
-        if desk.alarm || desk.holds || desk.sleeps {
+        let requests = &mut self.requests;
+        if requests.alarm || requests.holds || requests.sleeps {
             return false;
         }
-        if desk.growing.waits() && !desk.growing.is_planned() {
-            match desk.lines.planner(&desk.from) {
-                Ok(planner) => desk.growing.begin(planner, desk.from.clone()),
+        if requests.growing.waits() && !requests.growing.is_planned() {
+            match requests.lines.planner(&requests.from) {
+                Ok(planner) => requests.growing.begin(planner, requests.from.clone()),
                 Err(fault) => {
-                    desk.alarms(Alarm::SoftLimit, &fault.to_string());
-                    desk.flush = Some(Flush::Gone);
+                    requests.alarms(Alarm::SoftLimit, &fault.to_string());
+                    requests.flush = Some(Flush::Gone);
                 }
             }
         }
-        let ready = desk.growing.is_ready();
+        let ready = requests.growing.is_ready();
         if ready {
-            desk.motion = Motion::Moves;
+            requests.motion = Motion::Moves;
         }
         ready
     }
 
     /// All that was planned is dropped; the axes rest with P at its start value.
     pub fn flushed(&mut self, flush: Flush) -> Result<Next, Failure> {
-        self.desk.rests_at(&self.board.status().positions);
-        self.desk.flush = None;
+        self.requests.rests_at(&self.board.status().positions);
+        self.requests.flush = None;
         if flush == Flush::Reset {
-            self.desk.restarts();
+            self.requests.restarts();
             self.control.restart_program();
         }
         Ok(Next::GoesOn)
@@ -159,8 +159,8 @@ impl Shop<'_> {
             self.board.stop().map_err(|error| self.lost(&error))?;
         }
         self.board.clear().map_err(|error| self.lost(&error))?;
-        self.desk.rests_at(&self.board.status().positions);
-        self.desk.alarms(Alarm::Abort, "stopped by `carrystep stop`");
+        self.requests.rests_at(&self.board.status().positions);
+        self.requests.alarms(Alarm::Abort, "stopped by `carrystep stop`");
         Ok(Next::Stopped)
     }
 
@@ -176,16 +176,16 @@ impl Shop<'_> {
         if cause == Some(Cause::Limit) {
             for axis in (0..self.axes.len()).filter(|axis| answer.culprits >> axis & 1 == 1) {
                 self.memory
-                    .set_limit(axis, self.desk.ways.get(axis).copied().filter(|way| *way != 0));
+                    .set_limit(axis, self.requests.ways.get(axis).copied().filter(|way| *way != 0));
             }
         }
         let names = found::names(self.axes, answer.culprits);
         let from = if names.is_empty() { String::new() } else { format!(" from {names}") };
         let name = cause.map_or("?", Cause::name);
         let alarm = if cause == Some(Cause::Limit) { Alarm::HardLimit } else { Alarm::Abort };
-        self.desk.alarms(alarm, &format!("stopped by the machine: {name}{from}"));
-        self.desk.rests_at(&status.positions);
-        self.desk.flush = None;
+        self.requests.alarms(alarm, &format!("stopped by the machine: {name}{from}"));
+        self.requests.rests_at(&status.positions);
+        self.requests.flush = None;
         Ok(Next::GoesOn)
     }
 
@@ -197,19 +197,19 @@ impl Shop<'_> {
             Todo::Sleep => {
                 self.board.disable().map_err(|error| self.lost(&error))?;
                 self.memory.forget_places();
-                self.desk.sleeps = true;
+                self.requests.sleeps = true;
                 message("Sleeping") + &Dialect::ok()
             }
             Todo::Wake => {
                 let powered = self.board.enable();
                 powered.map_err(|error| self.lost(&error))?;
-                (self.desk.sleeps, self.desk.alarm) = (false, true);
+                (self.requests.sleeps, self.requests.alarm) = (false, true);
                 message("'$H'|'$X' to unlock")
             }
         };
         // Until here, no further line was taken.
-        self.desk.todo = None;
-        self.desk.clients.tell(&answer);
+        self.requests.todo = None;
+        self.requests.clients.tell(&answer);
         Ok(())
     }
 
@@ -224,15 +224,15 @@ impl Shop<'_> {
                 Err(error) => return Err(self.lost(&error)),
             }
         }
-        self.desk.rests_at(&self.board.status().positions);
-        self.desk.alarm = false;
+        self.requests.rests_at(&self.board.status().positions);
+        self.requests.alarm = false;
         Ok(message("Caution: Unlocked") + &Dialect::ok())
     }
 
     /// The failure for an error of the board.
     pub fn lost(&mut self, error: &ConnectedBoardError) -> Failure {
         let failure = connection::lost(error, self.axes, self.board.facts());
-        self.desk.alarms(Alarm::Abort, "the board is gone");
+        self.requests.alarms(Alarm::Abort, "the board is gone");
         failure
     }
 

@@ -1,7 +1,7 @@
 //! What the connections want: real-time characters act at once, lines are taken in their order.
 
 use super::clients::Heard;
-use super::desk::{Desk, Flush, Todo};
+use super::requests::{Flush, Requests, Todo};
 use crate::arguments::WhenGone;
 use crate::control::{Control, ProgramControl};
 use carrystep_grbl::{Dialect, ErrorCode, OverrideStep, Overrides, Realtime, WELCOME, message};
@@ -9,7 +9,7 @@ use carrystep_link::Status;
 use carrystep_runner::OverrideSetting;
 use std::io;
 
-impl Desk {
+impl Requests {
     /// Looks at the connections, and does what they want as far as nothing has to rest for it.
     ///
     /// # Errors

@@ -1,13 +1,13 @@
 //! The lines of the sender that drives, in their order. Each is answered when it is done, refused,
 //! or in the queue of the plan.
 
-use super::desk::{Desk, Flush, Todo};
-use super::{refusal, shown};
+use super::requests::{Flush, Requests, Todo};
+use super::{refusal, terms};
 use carrystep_gcode::{AXIS_LETTERS, Offsets};
 use carrystep_grbl::{Action, Alarm, Dialect, ErrorCode, Line, Outcome, message};
 use carrystep_program::{LineBreak, LineFault, Lines, PlannedLine};
 
-impl Desk {
+impl Requests {
     /// Takes lines as long as they can be done.
     pub fn take_lines(&mut self) {
         while self.may_take() {
@@ -39,8 +39,8 @@ impl Desk {
         }
         let state = self.state();
         let Self { dialect, lines, .. } = self;
-        let parameters = || shown::parameters(lines.interpreter(), lines.letters());
-        let modes = || shown::modes(lines.interpreter());
+        let parameters = || terms::parameters(lines.interpreter(), lines.letters());
+        let modes = || terms::modes(lines.interpreter());
         let action = match dialect.line(text, state, parameters, modes) {
             Outcome::Answered(answer) => return Some(answer),
             Outcome::Do(action) => action,
