@@ -51,6 +51,10 @@ pub trait SimulatedBoard {
     /// Number of bytes that were not transmitted completely.
     fn unsaid(&self) -> usize;
 
+    /// Whether bytes are being transmitted in either direction, or an answer is being assembled, as
+    /// far as this board can report it.
+    fn talks(&self) -> bool;
+
     /// The next byte received from the board.
     fn next_byte(&mut self) -> Option<u8>;
 
@@ -119,6 +123,10 @@ impl SimulatedBoard for ModelBoard {
 
     fn unsaid(&self) -> usize {
         self.unsaid()
+    }
+
+    fn talks(&self) -> bool {
+        self.talks()
     }
 
     fn next_byte(&mut self) -> Option<u8> {

@@ -68,6 +68,11 @@ impl Pace {
         Self::Fast { ahead, heard: None, alone: Walk::new(clock_hz, 0) }
     }
 
+    /// Whether the board runs as fast as possible.
+    pub const fn is_fast(&self) -> bool {
+        matches!(self, Self::Fast { .. })
+    }
+
     /// Records that a byte from the host arrived in this cycle.
     pub fn hear(&mut self, cycle: u64) {
         if let Self::Fast { heard, .. } = self {

@@ -46,7 +46,8 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
     }
 
     /// Runs the board for at most a ten-thousandth of a second. If the board is ahead of its pace,
-    /// sleeps for a short time.
+    /// sleeps for a short time; but a board that runs as fast as possible does not sleep while bytes
+    /// are on the line, because the host would wait for them, and send its requests again.
     ///
     /// # Errors
     /// [`RealTimeError`] if the simulation or the terminal has failed.
@@ -65,7 +66,7 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
         if !heard.is_empty() {
             self.terminal.give(&heard)?;
         }
-        if self.board.cycle() >= target {
+        if self.board.cycle() >= target && !(self.pace.is_fast() && self.board.talks()) {
             std::thread::sleep(NAP);
         }
         Ok(())

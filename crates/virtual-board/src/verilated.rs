@@ -206,6 +206,11 @@ impl SimulatedBoard for VerilatedBoard {
         self.wire.unsaid()
     }
 
+    /// Whether an answer is being assembled is not visible at the pins.
+    fn talks(&self) -> bool {
+        self.wire.unsaid() > 0 || self.wire.is_hearing()
+    }
+
     fn next_byte(&mut self) -> Option<u8> {
         self.wire.next_byte()
     }

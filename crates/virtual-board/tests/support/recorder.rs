@@ -132,6 +132,10 @@ impl SimulatedBoard for Recorder {
         self.board.unsaid()
     }
 
+    fn talks(&self) -> bool {
+        self.board.talks()
+    }
+
     fn next_byte(&mut self) -> Option<u8> {
         let byte = self.board.next_byte();
         self.recording.answers.extend(byte);
