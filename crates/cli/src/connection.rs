@@ -22,6 +22,12 @@ use std::time::{Duration, Instant};
 /// release it by themselves.
 const SOON: Duration = Duration::from_secs(2);
 
+/// Where Linux has its pseudo-terminals, behind which are programs, such as a virtual board.
+const PSEUDO_TERMINALS: &str = "/dev/pts/";
+
+/// Time without an answer until a request to a program is sent again, ms.
+const RESEND_TO_A_PROGRAM: u32 = 400;
+
 /// A board on a serial port.
 pub type ConnectedBoard = Host<SerialLine, SystemClock>;
 
@@ -171,14 +177,21 @@ fn connect(
     })?;
     let control = Control::new(claim, drives).map_err(unclaimed)?;
     // A wrong board is an input error: nothing was moved.
-    let board = ConnectedBoard::connect(
-        line,
-        SystemClock::default(),
-        id.map(|id| id.0),
-        Patience::default(),
-    )
-    .map_err(|error| fine(format!("{port}: {error}")))?;
+    let board =
+        ConnectedBoard::connect(line, SystemClock::default(), id.map(|id| id.0), patience(port))
+            .map_err(|error| fine(format!("{port}: {error}")))?;
     Ok((board, control))
+}
+
+/// For how long to wait for the board. A pseudo-terminal loses no byte; the program at its other end
+/// may be late, and requests that are sent again because of that would only fill the line.
+fn patience(port: &str) -> Patience {
+    let real = std::fs::canonicalize(port).unwrap_or_default();
+    let mut patience = Patience::default();
+    if real.starts_with(PSEUDO_TERMINALS) {
+        patience.timing.resend = RESEND_TO_A_PROGRAM;
+    }
+    patience
 }
 
 /// Opens a session with the board in order to drive it. While axes of another host move, or its

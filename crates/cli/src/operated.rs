@@ -9,17 +9,19 @@ use carrystep_virtual_board::{Edges, RealTimeBoard, RealTimeError, SimulatedBoar
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
 
-/// A fast board runs ahead of its host by at most the watchdog's time divided by this.
-const PART_OF_WATCHDOG: u64 = 4;
-/// Without a watchdog, it runs ahead by at most a second divided by this.
+/// A fast board runs ahead of its host by at most a second divided by this: further than its host
+/// asks it, and not so far that it takes the processor's time from others while it rests.
 const PART_OF_SECOND: u64 = 40;
+/// It runs ahead by at most the watchdog's time divided by this.
+const PART_OF_WATCHDOG: u64 = 4;
 
 /// How far a fast board may run ahead of its host, in clocks.
 pub fn ahead(build: &EngineBuild) -> u64 {
     let (guard, time) = (&build.guard, &build.timebase);
+    let most = time.clock_hz() / PART_OF_SECOND;
     match u64::from(guard.watchdog) * u64::from(guard.round) * u64::from(time.clocks_per_tick()) {
-        0 => time.clock_hz() / PART_OF_SECOND,
-        watchdog => watchdog / PART_OF_WATCHDOG,
+        0 => most,
+        watchdog => most.min(watchdog / PART_OF_WATCHDOG),
     }
 }
 

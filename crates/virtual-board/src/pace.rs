@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 /// Greatest time that a board makes up for after a delay. Its host was probably delayed too.
 const BEHIND: Duration = Duration::from_millis(20);
 
-/// Time without a byte after which the host is considered gone, so that a board that waits for its
-/// host continues.
-const GONE: Duration = Duration::from_secs(1);
+/// Time without a byte after which a host that keeps its end of the line open is considered gone, so
+/// that a board that waits for its host continues. Systems were seen to let no process write to a
+/// pseudo-terminal for 1.3 s.
+const GONE: Duration = Duration::from_secs(4);
 
 /// Decides up to which cycle a board may run.
 #[derive(Debug)]
@@ -77,6 +78,13 @@ impl Pace {
     pub fn hear(&mut self, cycle: u64) {
         if let Self::Fast { heard, .. } = self {
             *heard = Some((Instant::now(), cycle));
+        }
+    }
+
+    /// Records that no host has the line open: the board continues without one, in real time.
+    pub fn lose(&mut self) {
+        if let Self::Fast { heard, .. } = self {
+            *heard = None;
         }
     }
 

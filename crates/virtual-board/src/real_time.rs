@@ -59,6 +59,9 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
             }
             bytes.into_iter().for_each(|byte| self.board.say(byte));
         }
+        if self.pace.is_fast() && !self.terminal.is_open() {
+            self.pace.lose();
+        }
         let target = self.pace.target(self.board.cycle(), self.board.alone());
         self.board
             .run(target.min(self.board.cycle() + self.clock_hz / EXCHANGES_PER_SECOND), to)?;

@@ -7,6 +7,9 @@ use std::time::Duration;
 /// Greatest number of bytes read from the host at once, as many as a USB bridge would buffer.
 const BYTES: usize = 512;
 
+/// Time for which bytes to a host that reads none are kept waiting.
+const PATIENCE: Duration = Duration::from_millis(1);
+
 /// A pseudo-terminal whose other end any host may open, one after the other.
 #[derive(Debug)]
 pub struct Terminal {
@@ -23,13 +26,22 @@ impl Terminal {
         let (mut port, other) = TTYPort::pair()?;
         let name =
             other.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
-        port.set_timeout(Duration::from_millis(1))?;
+        port.set_timeout(PATIENCE)?;
         Ok(Self { port, name })
     }
 
     /// The device name that the host opens.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether a host has the other end open.
+    pub fn is_open(&mut self) -> bool {
+        // Neither fails: a field is set.
+        let _ = self.port.set_timeout(Duration::ZERO);
+        let looked = self.port.read(&mut []);
+        let _ = self.port.set_timeout(PATIENCE);
+        !matches!(looked, Err(error) if error.kind() == ErrorKind::BrokenPipe)
     }
 
     /// The bytes that the host has sent, if any. Does not wait.

@@ -90,10 +90,16 @@ fn other_commands_work_beside_it() {
     let ran = |what: &str| folder.run(&format!("{what} --port {port}"));
     passed(&ran("hold"));
     sender.state("Hold:0");
-    let told = ran("status --json");
-    passed(&told);
-    let told: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
-    assert_eq!(told["held_by"]["command"], "serve", "{told}");
+    // The axes rest a little before the command waits.
+    loop {
+        let told = ran("status --json");
+        passed(&told);
+        let told: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
+        assert_eq!(told["held_by"]["command"], "serve", "{told}");
+        if !told["waits"].is_null() {
+            break;
+        }
+    }
     passed(&ran("resume"));
     sender.state("Run");
     // A second command does not get the board.
