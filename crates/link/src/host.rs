@@ -38,8 +38,8 @@ use crate::ticks::{ClockComparison, ClockDifference, TickCount};
 /// Room for bytes that wait for the line: a typical frame of all axes, and the longest one.
 const OUT: usize = 640;
 
-/// Fewest looks at the line until a request is sent again.
-const LOOKS_UNTIL_RESEND: u32 = 8;
+/// The most that the time between two looks at the line counts, ms.
+const MOST_OF_A_LOOK: u32 = 5;
 
 /// State of the machine, from the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -248,13 +248,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 
     /// The time for what an answer may take, ms. A busy computer may not run this driver for
-    /// seconds, in which answers wait to be read: such a pause counts for a part of the time until a
-    /// request is sent again.
+    /// seconds, in which answers wait to be read: such a pause counts little.
     fn time(&mut self) -> u32 {
         let now = self.clock.milliseconds();
         let passed = now.wrapping_sub(core::mem::replace(&mut self.looked, now));
-        let most = (self.patience.timing.resend / LOOKS_UNTIL_RESEND).max(1);
-        self.time = self.time.wrapping_add(passed.min(most));
+        self.time = self.time.wrapping_add(passed.min(MOST_OF_A_LOOK));
         self.time
     }
 
