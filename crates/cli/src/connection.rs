@@ -25,8 +25,12 @@ const SOON: Duration = Duration::from_secs(2);
 /// Where Linux has its pseudo-terminals, behind which are programs, such as a virtual board.
 const PSEUDO_TERMINALS: &str = "/dev/pts/";
 
-/// Time without an answer until a request to a program is sent again, ms.
+/// Times for the answers of a program, ms: until a request is sent again, until a port is given up
+/// at which nothing has answered, and one that has answered before. A busy system was seen to keep
+/// the bytes of all its pseudo-terminals back for 1.3 s.
 const RESEND_TO_A_PROGRAM: u32 = 400;
+const SILENCE_OF_A_PROGRAM: u32 = 3000;
+const LOSS_OF_A_PROGRAM: u32 = 10_000;
 
 /// A board on a serial port.
 pub type ConnectedBoard = Host<SerialLine, SystemClock>;
@@ -190,6 +194,8 @@ fn patience(port: &str) -> Patience {
     let mut patience = Patience::default();
     if real.starts_with(PSEUDO_TERMINALS) {
         patience.timing.resend = RESEND_TO_A_PROGRAM;
+        patience.silence = SILENCE_OF_A_PROGRAM;
+        patience.lost = LOSS_OF_A_PROGRAM;
     }
     patience
 }
