@@ -152,6 +152,18 @@ const RUNS: &[Run] = &[
         asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],
         cargo: &["--test", "real_linuxcnc"],
     },
+    Run {
+        name: "soak",
+        what: "[senders](senders.md): 500 real-time characters at random times, judged by the pulses (the path, speed and acceleration); four hours of motion under a sender that misbehaves at random",
+        asks: &[("CARRYSTEP_CHARACTERS", "500"), ("CARRYSTEP_SOAK", "14400")],
+        cargo: &[
+            "--test",
+            "command_line",
+            "--",
+            "characters_at_random_times_break",
+            "sender_that_misbehaves",
+        ],
+    },
 ];
 
 /// Programs that come with LinuxCNC, beside our own.

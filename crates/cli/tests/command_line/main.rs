@@ -75,9 +75,13 @@ mod selftests;
 #[cfg(unix)]
 mod sender;
 #[cfg(unix)]
+mod serve_characters;
+#[cfg(unix)]
 mod serve_connections;
 #[cfg(unix)]
 mod serve_holds;
+#[cfg(target_os = "linux")]
+mod serve_soak;
 #[cfg(unix)]
 mod serve_states;
 #[cfg(unix)]

@@ -169,6 +169,11 @@ impl Sender {
         self.seen.pop_front()
     }
 
+    /// The lines that have come and were not looked at.
+    pub fn taken(&mut self) -> Vec<String> {
+        self.seen.drain(..).collect()
+    }
+
     /// Waits for such a line, and returns it. Lines before it are dropped.
     #[track_caller]
     pub fn until(&mut self, is_it: impl Fn(&str) -> bool) -> String {

@@ -70,13 +70,19 @@ fn lines_that_overfill_the_buffer_are_not_lost() {
     assert_eq!(sender.place(), steps(end));
 }
 
-/// The edges of a capture, with times from the first edge on.
+/// The edges of a capture, with times from the first edge on, ps. The step pin of x rises in
+/// `x.step1`.
 pub fn edges(vcd: &str) -> Vec<(u64, String)> {
     let (header, changes) = vcd.split_once("$enddefinitions $end").unwrap();
-    let mut names = BTreeMap::new();
-    for line in header.lines().filter(|line| line.trim().starts_with("$var")) {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        names.insert(words[3].to_owned(), words[4].to_owned());
+    let (mut names, mut scope) = (BTreeMap::new(), "");
+    for line in header.lines() {
+        match line.split_whitespace().collect::<Vec<_>>()[..] {
+            ["$scope", _, name, ..] => scope = name,
+            ["$var", _, _, code, name, ..] => {
+                names.insert(code.to_owned(), format!("{scope}.{name}"));
+            }
+            _ => {}
+        }
     }
     let (mut time, mut first) = (0, None);
     let mut edges = Vec::new();

@@ -32,6 +32,7 @@ const RUN: &[&str] = &[
     "crates/core/",
     "crates/files/",
     "crates/gcode/",
+    "crates/grbl/",
     "crates/job/",
     "crates/link/",
     "crates/model/",
@@ -187,6 +188,7 @@ pub const INPUTS: &[Inputs] = &[
             "sim/jobs/square_and_arc.ngc",
         ],
     ),
+    ("soak", RUN),
 ];
 
 /// The runs that a change since a commit can break. All, where git does not know the commit: a
@@ -234,7 +236,8 @@ mod tests {
                 "verilog-board",
                 "kills",
                 "hours",
-                "linuxcnc"
+                "linuxcnc",
+                "soak"
             ]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
