@@ -307,7 +307,8 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "holds",
             "kills",
             "hours",
-            "linuxcnc"
+            "linuxcnc",
+            "senders"
         ]
     );
     for row in rows {

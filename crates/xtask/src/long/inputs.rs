@@ -187,6 +187,23 @@ pub const INPUTS: &[Inputs] = &[
             "sim/jobs/square_and_arc.ngc",
         ],
     ),
+    (
+        "senders",
+        &[
+            "crates/cli/src/serve",
+            "crates/cli/tests/command_line/real_senders",
+            "crates/core/",
+            "crates/gcode/",
+            "crates/grbl/",
+            "crates/job/",
+            "crates/link/",
+            "crates/model/",
+            "crates/program/",
+            "crates/runner/",
+            "crates/virtual-board/",
+            "sim/jobs/",
+        ],
+    ),
 ];
 
 /// The runs that a change since a commit can break. All, where git does not know the commit: a
@@ -234,7 +251,8 @@ mod tests {
                 "verilog-board",
                 "kills",
                 "hours",
-                "linuxcnc"
+                "linuxcnc",
+                "senders"
             ]
         );
         assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
