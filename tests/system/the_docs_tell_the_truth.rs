@@ -308,6 +308,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "kills",
             "hours",
             "linuxcnc",
+            "senders",
             "soak"
         ]
     );

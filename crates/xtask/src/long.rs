@@ -153,6 +153,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "real_linuxcnc"],
     },
     Run {
+        name: "senders",
+        what: "real [senders](senders.md) drive virtual boards through `carrystep serve`: CNCjs from npm and the sender of bCNC from PyPI stream programs, pause, override, and are closed and killed in motion; ends and pulses against those of `carrystep run`",
+        asks: &[("CARRYSTEP_SENDERS", "all")],
+        cargo: &["--test", "command_line", "real_senders"],
+    },
+    Run {
         name: "soak",
         what: "[senders](senders.md): 500 real-time characters at random times, judged by the pulses (the path, speed and acceleration); four hours of motion under a sender that misbehaves at random",
         asks: &[("CARRYSTEP_CHARACTERS", "500"), ("CARRYSTEP_SOAK", "14400")],
@@ -191,13 +197,15 @@ pub fn run(names: &[String]) -> TaskResult {
         return Err(format!("no long run is called {stranger}; there are {}", known.join(", ")));
     }
     tools::install()?;
+    let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
+    if is_asked("senders") {
+        tools::install_for_senders()?;
+    }
     committed()?;
     let commit = shell::read("git", &["rev-parse", "--short=10", "HEAD"])?;
     let gateware = shell::read("git", &["rev-parse", "--short=10", "HEAD:hdl-out/core"])?;
     let mut failed = Vec::new();
-    for run in
-        RUNS.iter().filter(|run| names.is_empty() || names.iter().any(|name| name == run.name))
-    {
+    for run in RUNS.iter().filter(|run| is_asked(run.name)) {
         shell::say(&format!("== {}: {}", run.name, run.what));
         let begun = Instant::now();
         let (passed, figures) = run.make()?;

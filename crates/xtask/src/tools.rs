@@ -5,7 +5,7 @@ use crate::shell::{self, TaskResult};
 use std::path::Path;
 
 /// Each program, and the Debian package that contains it.
-const NEEDED: [(&str, &str); 24] = [
+const NEEDED: &[(&str, &str)] = &[
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -32,12 +32,40 @@ const NEEDED: [(&str, &str); 24] = [
     ("chromium", "chromium"),
 ];
 
+/// The same for the long run of senders alone, because these packages are large.
+const OF_SENDERS: &[(&str, &str)] = &[("node", "nodejs"), ("npm", "npm"), ("python3", "python3")];
+
+/// Modules of Python for that run, which have packages of their own in Debian.
+const MODULES_OF_SENDERS: [(&str, &str); 2] =
+    [("tkinter", "python3-tk"), ("ensurepip", "python3-venv")];
+
 /// The folder of daemons, which is not on every user's path.
 const DAEMONS: &str = "/usr/sbin";
 
 /// Installs the missing tools, or reports which ones must be installed by hand.
+///
+/// # Errors
+/// A tool is missing and cannot be installed.
 pub fn install() -> TaskResult {
-    let missing = missing();
+    install_of(|| missing(NEEDED))
+}
+
+/// Installs what the long run of senders needs beside that.
+///
+/// # Errors
+/// A tool is missing and cannot be installed.
+pub fn install_for_senders() -> TaskResult {
+    install_of(|| {
+        let lacks =
+            |module: &str| shell::read("python3", &["-c", &format!("import {module}")]).is_err();
+        let modules = MODULES_OF_SENDERS.iter().filter(|(module, _)| lacks(module));
+        missing(OF_SENDERS).into_iter().chain(modules.map(|&(_, package)| package)).collect()
+    })
+}
+
+/// Installs the packages that this names, which must name none then.
+fn install_of(find: impl Fn() -> Vec<&'static str>) -> TaskResult {
+    let missing = find();
     if missing.is_empty() {
         return Ok(());
     }
@@ -58,14 +86,14 @@ pub fn install() -> TaskResult {
     let packages: Vec<&str> =
         ["install", "-y", "--no-install-recommends"].into_iter().chain(missing).collect();
     apt(&["update"]).and_then(|()| apt(&packages)).map_err(|error| format!("{error}\n{advice}"))?;
-    match self::missing().as_slice() {
+    match find().as_slice() {
         [] => Ok(()),
         still => Err(format!("still missing after apt-get: {}\n{advice}", still.join(", "))),
     }
 }
 
-fn missing() -> Vec<&'static str> {
-    let mut packages: Vec<&str> = NEEDED
+fn missing(needed: &[(&'static str, &'static str)]) -> Vec<&'static str> {
+    let mut packages: Vec<&str> = needed
         .iter()
         .filter(|(program, _)| {
             !shell::is_there(program) && !Path::new(DAEMONS).join(program).exists()

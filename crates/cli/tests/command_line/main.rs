@@ -61,6 +61,8 @@ mod profile;
 mod program_outputs;
 mod programs;
 #[cfg(unix)]
+mod real_senders;
+#[cfg(unix)]
 mod recorded_runs;
 #[cfg(unix)]
 #[path = "../../../virtual-board/tests/support/recorder.rs"]

@@ -188,6 +188,23 @@ pub const INPUTS: &[Inputs] = &[
             "sim/jobs/square_and_arc.ngc",
         ],
     ),
+    (
+        "senders",
+        &[
+            "crates/cli/src/serve",
+            "crates/cli/tests/command_line/real_senders",
+            "crates/core/",
+            "crates/gcode/",
+            "crates/grbl/",
+            "crates/job/",
+            "crates/link/",
+            "crates/model/",
+            "crates/program/",
+            "crates/runner/",
+            "crates/virtual-board/",
+            "sim/jobs/",
+        ],
+    ),
     ("soak", RUN),
 ];
 
@@ -237,6 +254,7 @@ mod tests {
                 "kills",
                 "hours",
                 "linuxcnc",
+                "senders",
                 "soak"
             ]
         );
