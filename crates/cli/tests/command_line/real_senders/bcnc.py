@@ -21,7 +21,7 @@ import Utils  # noqa: E402
 from CNC import CNC, WAIT  # noqa: E402
 from Sender import Sender  # noqa: E402
 
-PATIENCE = 300
+PATIENCE = 900
 
 
 class Headless(Sender):

@@ -9,8 +9,8 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// Longest time in which something has to come; the computer may be busy.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// Longest time in which something has to come: a program takes minutes if the computer is busy.
+const PATIENCE: Duration = Duration::from_secs(900);
 
 /// What npm installs: CNCjs 1.11.5, and all that it needs in the versions of the lock file.
 const WANTED: [(&str, &str); 2] = [
