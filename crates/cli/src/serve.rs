@@ -9,6 +9,7 @@
 //! server     the board at rest: alarms, homing (home), when a batch begins
 //! motion     a batch: stretches from rest to rest, with the holds and overrides of `run`
 //! reports    what status reports say
+//! web        the page, and the WebSockets of pages
 //! terms      settings, offsets and modes in the terms of Grbl; refusal: its errors
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
@@ -28,6 +29,7 @@ mod requests;
 mod server;
 mod simulated;
 mod terms;
+mod web;
 
 pub use clients::Clients;
 pub use link::Link;
@@ -37,3 +39,4 @@ pub use requests::Requests;
 pub use server::Server;
 pub use simulated::simulate;
 pub use terms::settings;
+pub use web::Web;
