@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! pty, http  the pseudo-terminal; HTTP, which is refused
+//! client     one connection
 //! clients    the connections: the first one drives, the others watch
 //! real_time  real-time characters, and the connections
 //! new_lines  the lines: answered, refused, or given to the plan
@@ -14,6 +15,7 @@
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
 
+mod client;
 mod clients;
 mod home;
 mod http;

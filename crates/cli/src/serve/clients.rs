@@ -2,24 +2,21 @@
 //! machine; the others only watch. A page drives only if it says so and nobody else does. Nothing
 //! blocks, and what waits for a slow reader is bounded.
 
-use super::http::{Beginning, Judged};
+use super::client::{Client, Id, Stream};
+use super::http::Beginning;
 use super::pty::Pty;
-use super::web::{Said, Socket, Web, Word};
-use std::collections::VecDeque;
-use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{TcpListener, TcpStream};
+use super::web::{Said, Web, Word};
+use std::io;
+use std::net::TcpListener;
 
 /// Most connections by TCP, and most pages. Further ones are closed at once.
 const MOST: usize = 10;
-/// Bytes that are read of a connection at once.
+/// Bytes that are read of the pseudo-terminal at once.
 const READ: usize = 4096;
 /// Bytes that wait for a reader from which on it gets no reports, and no line of it is taken.
 const SLOW: usize = 4096;
 /// Bytes that wait for a watcher at most; then its connection is closed.
 const MOST_WAITING: usize = 1 << 16;
-
-/// The number of a connection.
-pub type Id = u64;
 
 /// What has happened to a connection.
 #[derive(Debug)]
@@ -40,19 +37,6 @@ pub enum Driving {
     Nobody,
     This,
     Other,
-}
-
-enum Stream {
-    Terminal,
-    Tcp(TcpStream, Beginning),
-    Page(Box<Socket>),
-}
-
-struct Client {
-    id: Id,
-    stream: Stream,
-    out: VecDeque<u8>,
-    is_gone: bool,
 }
 
 /// All connections.
@@ -92,7 +76,10 @@ impl Clients {
         for at in 0..self.clients.len() {
             let drives = self.driver == Some(self.clients[at].id);
             if !(drives && full) {
-                self.clients[at].read_stream(&mut heard);
+                let (id, bytes) = (self.clients[at].id, self.clients[at].read_stream());
+                if !bytes.is_empty() {
+                    heard.push(Heard::Bytes(id, bytes));
+                }
                 self.read_page(at, &mut heard);
             }
         }
@@ -120,7 +107,7 @@ impl Clients {
     fn add(&mut self, stream: Stream, heard: &mut Vec<Heard>) {
         let id = self.next;
         self.next += 1;
-        let client = Client { id, stream, out: VecDeque::new(), is_gone: false };
+        let client = Client::new(id, stream);
         let is_page = client.is_page();
         self.clients.push(client);
         if is_page {
@@ -175,36 +162,14 @@ impl Clients {
     fn flush(&mut self) -> io::Result<()> {
         let pty = &mut self.pty;
         for client in self.clients.iter_mut().filter(|client| !client.is_gone) {
-            while !client.out.is_empty() {
-                let (bytes, _) = client.out.as_slices();
-                let written = match &mut client.stream {
-                    Stream::Terminal => Ok(pty.write(bytes)?),
-                    Stream::Tcp(stream, _) => stream.write(bytes),
-                    Stream::Page(socket) => socket.write(bytes),
-                };
-                let written = match written {
-                    Ok(count) => count,
-                    Err(error) if is_late(&error) => 0,
-                    Err(_) => {
-                        client.is_gone = true;
-                        0
-                    }
-                };
-                if written == 0 {
-                    break;
-                }
-                client.out.drain(..written);
-            }
+            client.flush(pty)?;
         }
         Ok(())
     }
 
     /// Reads what a page says.
     fn read_page(&mut self, at: usize, heard: &mut Vec<Heard>) {
-        let client = &mut self.clients[at];
-        let (Stream::Page(socket), id) = (&mut client.stream, client.id) else { return };
-        let mut said = Vec::new();
-        client.is_gone |= socket.read(&mut said).is_err();
+        let (id, said) = (self.clients[at].id, self.clients[at].read_page());
         for said in said {
             match said {
                 Said::Answered(line) => self.say(id, &line),
@@ -237,11 +202,7 @@ impl Clients {
 
     /// Whether a connection is a page that has the token.
     pub fn may(&self, id: Id) -> bool {
-        let may = |client: &Client| match &client.stream {
-            Stream::Page(socket) => client.id == id && socket.may(),
-            Stream::Terminal | Stream::Tcp(..) => false,
-        };
-        self.clients.iter().any(may)
+        self.clients.iter().any(|client| client.id == id && client.may())
     }
 
     /// Sends a text to a connection. A watcher or a page that reads too slowly is closed.
@@ -279,41 +240,4 @@ impl Clients {
         let client = self.clients.iter_mut().find(|client| client.id == id);
         client.into_iter().for_each(|client| client.is_gone = !client.is_terminal());
     }
-}
-
-impl Client {
-    const fn is_terminal(&self) -> bool {
-        matches!(self.stream, Stream::Terminal)
-    }
-
-    const fn is_tcp(&self) -> bool {
-        matches!(self.stream, Stream::Tcp(..))
-    }
-
-    const fn is_page(&self) -> bool {
-        matches!(self.stream, Stream::Page(_))
-    }
-
-    /// Reads what has come by TCP.
-    fn read_stream(&mut self, heard: &mut Vec<Heard>) {
-        let Stream::Tcp(stream, beginning) = &mut self.stream else { return };
-        if self.is_gone {
-            return;
-        }
-        let mut bytes = [0; READ];
-        match stream.read(&mut bytes) {
-            Ok(0) => self.is_gone = true,
-            Ok(count) => match beginning.judge(&bytes[..count]) {
-                Judged::Http => self.is_gone = true,
-                Judged::Fine(bytes) if bytes.is_empty() => {}
-                Judged::Fine(bytes) => heard.push(Heard::Bytes(self.id, bytes)),
-            },
-            Err(error) if is_late(&error) => {}
-            Err(_) => self.is_gone = true,
-        }
-    }
-}
-
-fn is_late(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -180,6 +180,7 @@ fn page_without_the_token_watches_and_stops() {
     let mut sender = Sender::tcp(&served);
     sender.simple("G21 G91 F60\nG1 X20");
     assert_eq!(page.waits("Run")["driver"], "other");
+    while page.state()["machine"][0] == 0.0 {}
     page.say("stop");
     sender.until(|line| line == "ALARM:3");
     sender.until(|line| line == "[MSG:stopped on the web page]");

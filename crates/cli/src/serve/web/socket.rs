@@ -110,18 +110,18 @@ impl Socket {
     /// # Errors
     /// The connection has ended.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let ended = |_| io::Error::from(ErrorKind::BrokenPipe);
+        let ended = |_: &Error| io::Error::from(ErrorKind::BrokenPipe);
         match self.socket.flush() {
             Ok(()) => {}
             Err(error) if is_late(&error) => return Ok(0),
-            Err(error) => return Err(error).map_err(ended),
+            Err(error) => return Err(ended(&error)),
         }
         let count = bytes.len().min(BUFFER / 2);
         match self.socket.send(Message::Binary(bytes[..count].to_vec().into())) {
             Ok(()) => Ok(count),
             // It is kept, and sent by the next flush.
             Err(error) if is_late(&error) => Ok(count),
-            Err(error) => Err(error).map_err(ended),
+            Err(error) => Err(ended(&error)),
         }
     }
 }

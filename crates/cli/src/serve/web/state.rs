@@ -2,7 +2,8 @@
 
 use super::words::Word;
 use crate::control::Control;
-use crate::serve::clients::{Driving, Id};
+use crate::serve::client::Id;
+use crate::serve::clients::Driving;
 use crate::serve::requests::Requests;
 use carrystep_grbl::Seen;
 use serde::Serialize;
