@@ -10,7 +10,7 @@
 //! server     the board at rest: alarms, homing (home), when a batch begins
 //! motion     a batch: stretches from rest to rest, with the holds and overrides of `run`
 //! reports    what status reports say
-//! web        the page, and the WebSockets of pages
+//! web        the page, and the WebSockets of pages; pages: what they show and want
 //! terms      settings, offsets and modes in the terms of Grbl; refusal: its errors
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
@@ -22,6 +22,7 @@ mod http;
 mod link;
 mod motion;
 mod new_lines;
+mod pages;
 mod places;
 mod pty;
 mod real_time;

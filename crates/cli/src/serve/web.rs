@@ -5,7 +5,6 @@
 //! opening  a connection until it is answered: it reads one head, and writes one answer
 //! socket   a WebSocket: who has the token, what a page may say
 //! words    what a page can say
-//! state    the state of the machine, as a page shows it
 //! page     the page itself, with its style and its script
 //! ```
 //!
@@ -16,7 +15,6 @@
 mod opening;
 mod request;
 mod socket;
-mod state;
 mod words;
 
 use opening::{Opening, Progress};

@@ -1,10 +1,10 @@
 //! The state of the machine, as a page shows it, and what a page wants of it.
 
-use super::words::Word;
+use super::client::Id;
+use super::clients::Driving;
+use super::requests::Requests;
+use super::web::Word;
 use crate::control::Control;
-use crate::serve::client::Id;
-use crate::serve::clients::Driving;
-use crate::serve::requests::Requests;
 use carrystep_grbl::Seen;
 use serde::Serialize;
 
