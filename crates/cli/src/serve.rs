@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! pty, http  the pseudo-terminal; HTTP, which is refused
+//! client     one connection
 //! clients    the connections: the first one drives, the others watch
 //! real_time  real-time characters, and the connections
 //! new_lines  the lines: answered, refused, or given to the plan
@@ -9,16 +10,19 @@
 //! server     the board at rest: alarms, homing (home), when a batch begins
 //! motion     a batch: stretches from rest to rest, with the holds and overrides of `run`
 //! reports    what status reports say
+//! web        the page, and the WebSockets of pages; pages: what they show and want
 //! terms      settings, offsets and modes in the terms of Grbl; refusal: its errors
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
 
+mod client;
 mod clients;
 mod home;
 mod http;
 mod link;
 mod motion;
 mod new_lines;
+mod pages;
 mod places;
 mod pty;
 mod real_time;
@@ -28,6 +32,7 @@ mod requests;
 mod server;
 mod simulated;
 mod terms;
+mod web;
 
 pub use clients::Clients;
 pub use link::Link;
@@ -37,3 +42,4 @@ pub use requests::Requests;
 pub use server::Server;
 pub use simulated::simulate;
 pub use terms::settings;
+pub use web::Web;

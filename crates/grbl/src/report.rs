@@ -9,7 +9,7 @@ use crate::overrides::Overrides;
 use crate::parameters::{INCH, places};
 use crate::settings::Settings;
 use crate::state::State;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
 /// Reports from one offset to the next at rest, and while the machine is busy.
 const OFFSET: [u8; 2] = [10, 30];
@@ -156,12 +156,17 @@ impl Reporter {
 
 /// The active inputs, or nothing.
 fn pins(pins: Pins) -> String {
-    if pins == Pins::default() {
-        return String::new();
+    if pins == Pins::default() { String::new() } else { format!("|Pn:{pins}") }
+}
+
+impl fmt::Display for Pins {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let limits = "XYZABC".chars().enumerate();
+        let limits = limits.map(|(bit, letter)| (self.limits >> bit & 1 == 1, letter));
+        let others = [(self.probe, 'P'), (self.door, 'D'), (self.reset, 'R')];
+        limits
+            .chain(others)
+            .filter(|(active, _)| *active)
+            .try_for_each(|(_, letter)| f.write_char(letter))
     }
-    let limits = "XYZABC".chars().enumerate();
-    let limits = limits.filter(|(bit, _)| pins.limits >> bit & 1 == 1).map(|(_, letter)| letter);
-    let others = [(pins.probe, 'P'), (pins.door, 'D'), (pins.reset, 'R')];
-    let others = others.into_iter().filter(|(active, _)| *active).map(|(_, letter)| letter);
-    format!("|Pn:{}", limits.chain(others).collect::<String>())
 }

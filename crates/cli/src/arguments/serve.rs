@@ -15,6 +15,7 @@ pub enum WhenGone {
 /// The arguments of `carrystep serve`.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("board").required(true).args(["port", "virtual_board"])))]
+#[command(group(ArgGroup::new("network").multiple(true).args(["tcp", "web"])))]
 pub struct ServeArguments {
     /// The machine.
     #[arg(long, value_name = "MACHINE.toml")]
@@ -36,9 +37,13 @@ pub struct ServeArguments {
     /// reaches the port moves the machine.
     #[arg(long, value_name = "PORT")]
     pub tcp: Option<u16>,
-    /// The address of the TCP port. With another one than that of this computer itself, others
+    /// Show a web page on this TCP port; 0 takes a free one. The link that is printed holds a token:
+    /// without it, the page only watches and stops.
+    #[arg(long, value_name = "PORT")]
+    pub web: Option<u16>,
+    /// The address of the TCP ports. With another one than that of this computer itself, others
     /// reach the machine.
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", requires = "tcp")]
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", requires = "network")]
     pub listen: IpAddr,
     /// When the sender that drives is gone: `finish` executes the lines that have come, `stop`
     /// brings the machine to rest on its path and drops them. A jog is always cancelled.

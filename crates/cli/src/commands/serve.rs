@@ -5,14 +5,14 @@ use crate::connection::{self, Connection};
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use crate::output;
-use crate::serve::{Clients, Link, Pty, Requests, Server, find, lines, settings, simulate};
+use crate::serve::{Clients, Link, Pty, Requests, Server, Web, find, lines, settings, simulate};
 use carrystep_files::Machine;
 use carrystep_grbl::{Dialect, Settings};
 use carrystep_link::Ended;
 use carrystep_program::{Letters, Offsets, RowOutputs};
 use carrystep_runner::LINES;
 use std::io::{self, Write as _};
-use std::net::{SocketAddr, TcpListener};
+use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::time::Instant;
 
 /// Serves until Ctrl-C or `carrystep stop`.
@@ -22,7 +22,14 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     let refused = |fault: String| Failure::input(format!("{}: {fault}", path.display()));
     let letters = Letters::new(&machine).map_err(|fault| refused(fault.to_string()))?;
     carrystep_job::check_line(&machine).map_err(|error| refused(error.to_string()))?;
-    let listener = listen(arguments)?;
+    let listener = listen(arguments, arguments.tcp, TCP_WARNING)?;
+    let (web, page) = match listen(arguments, arguments.web, WEB_WARNING)? {
+        Some(listener) => {
+            let (web, page) = web(listener).map_err(|error| Failure::Run(error.to_string()))?;
+            (Some(web), Some(page))
+        }
+        None => (None, None),
+    };
     let pty = Pty::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
     let link = arguments.link.as_deref().map(|path| Link::new(path, pty.name())).transpose()?;
     let port = match &arguments.port {
@@ -44,7 +51,8 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     let dialect = Dialect::new(Settings::new(settings(&machine, &letters, &place.soft)), LINES);
     let name = pty.name().to_owned();
     let address = listener.as_ref().map(TcpListener::local_addr).transpose();
-    let clients = Clients::new(pty, listener).map_err(|error| Failure::Run(error.to_string()))?;
+    let clients = Clients::new(pty, listener, web);
+    let clients = clients.map_err(|error| Failure::Run(error.to_string()))?;
     let mut requests = Requests::new((dialect, clients), lines, place, arguments.when_gone);
     (requests.alarm, requests.keeps) = (lost, !lost);
     requests.begins();
@@ -67,7 +75,7 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     }
     // Otherwise, a command that is killed leaves a file that does not match.
     let _ = server.memory.drives(server.board);
-    tell(&name, arguments, address.ok().flatten(), &port)?;
+    tell(&name, arguments, address.ok().flatten(), &port, page)?;
     let served = server.serve();
     server.keeps_offsets();
     server.requests.farewell();
@@ -78,15 +86,21 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     output::print("ended; the axes rest, and the positions are valid\n")
 }
 
-fn listen(arguments: &ServeArguments) -> Result<Option<TcpListener>, Failure> {
-    let Some(port) = arguments.tcp else { return Ok(None) };
+/// What is dangerous in another address than that of this computer itself.
+const TCP_WARNING: &str = "raw TCP has no password: whoever reaches it can move the machine";
+const WEB_WARNING: &str = "the page is not encrypted: whoever reaches it can watch and stop, and \
+                           whoever reads along gets the token";
+
+fn listen(
+    arguments: &ServeArguments,
+    port: Option<u16>,
+    warning: &str,
+) -> Result<Option<TcpListener>, Failure> {
+    let Some(port) = port else { return Ok(None) };
     let address = SocketAddr::new(arguments.listen, port);
     if !arguments.listen.is_loopback() {
         // If this write fails, there is no channel left to report it.
-        let _ = writeln!(
-            io::stderr(),
-            "warning: raw TCP has no password: whoever reaches {address} can move the machine"
-        );
+        let _ = writeln!(io::stderr(), "warning: {address}: {warning}");
     }
     let listener = TcpListener::bind(address)
         .map_err(|error| Failure::input(format!("cannot listen on {address}: {error}")))?;
@@ -98,8 +112,24 @@ fn tell(
     arguments: &ServeArguments,
     address: Option<SocketAddr>,
     port: &str,
+    page: Option<String>,
 ) -> Result<(), Failure> {
     let link = arguments.link.as_ref().map(|link| format!(", also {}", link.display()));
     let tcp = address.map(|address| format!("tcp {address}\n")).unwrap_or_default();
-    output::print(&format!("pty {name}{}\n{tcp}board {port}\n", link.unwrap_or_default()))
+    let page = page.map(|page| format!("web {page}\n")).unwrap_or_default();
+    output::print(&format!("pty {name}{}\n{tcp}board {port}\n{page}", link.unwrap_or_default()))
+}
+
+/// The pages at a listener, and the link to them with the token.
+fn web(listener: TcpListener) -> io::Result<(Web, String)> {
+    let mut address = listener.local_addr()?;
+    if address.ip().is_unspecified() {
+        // It means all addresses, and is none.
+        address.set_ip(match address {
+            SocketAddr::V4(_) => Ipv4Addr::LOCALHOST.into(),
+            SocketAddr::V6(_) => Ipv6Addr::LOCALHOST.into(),
+        });
+    }
+    let (web, token) = Web::new(listener)?;
+    Ok((web, format!("http://{address}/#token={token}")))
 }

@@ -1,23 +1,22 @@
-//! The connections of senders: a pseudo-terminal and TCP. The first one drives the machine; the
-//! others only watch. Nothing blocks, and what waits for a slow reader is bounded.
+//! The connections of senders: a pseudo-terminal, TCP and web pages. The first one drives the
+//! machine; the others only watch. A page drives only if it says so and nobody else does. Nothing
+//! blocks, and what waits for a slow reader is bounded.
 
-use super::http::{Beginning, Judged};
+use super::client::{Client, Id, Stream};
+use super::http::Beginning;
 use super::pty::Pty;
-use std::collections::VecDeque;
-use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{TcpListener, TcpStream};
+use super::web::{Said, Web, Word};
+use std::io;
+use std::net::TcpListener;
 
-/// Most connections by TCP. Further ones are closed at once.
+/// Most connections by TCP, and most pages. Further ones are closed at once.
 const MOST: usize = 10;
-/// Bytes that are read of a connection at once.
+/// Bytes that are read of the pseudo-terminal at once.
 const READ: usize = 4096;
 /// Bytes that wait for a reader from which on it gets no reports, and no line of it is taken.
 const SLOW: usize = 4096;
 /// Bytes that wait for a watcher at most; then its connection is closed.
 const MOST_WAITING: usize = 1 << 16;
-
-/// The number of a connection.
-pub type Id = u64;
 
 /// What has happened to a connection.
 #[derive(Debug)]
@@ -28,21 +27,23 @@ pub enum Heard {
     Bytes(Id, Vec<u8>),
     /// One is gone; whether it drove.
     Gone(bool),
+    /// A page says this.
+    Word(Id, Word),
 }
 
-struct Client {
-    id: Id,
-    /// `None`: the pseudo-terminal.
-    stream: Option<TcpStream>,
-    beginning: Beginning,
-    out: VecDeque<u8>,
-    is_gone: bool,
+/// Who drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Driving {
+    Nobody,
+    This,
+    Other,
 }
 
 /// All connections.
 pub struct Clients {
     pty: Pty,
     listener: Option<TcpListener>,
+    web: Option<Web>,
     clients: Vec<Client>,
     next: Id,
     driver: Option<Id>,
@@ -53,9 +54,9 @@ impl Clients {
     ///
     /// # Errors
     /// The listener cannot be made non-blocking.
-    pub fn new(pty: Pty, listener: Option<TcpListener>) -> io::Result<Self> {
+    pub fn new(pty: Pty, listener: Option<TcpListener>, web: Option<Web>) -> io::Result<Self> {
         listener.as_ref().map_or(Ok(()), |listener| listener.set_nonblocking(true))?;
-        Ok(Self { pty, listener, clients: Vec::new(), next: 1, driver: None })
+        Ok(Self { pty, listener, web, clients: Vec::new(), next: 1, driver: None })
     }
 
     /// The connection that drives.
@@ -75,7 +76,11 @@ impl Clients {
         for at in 0..self.clients.len() {
             let drives = self.driver == Some(self.clients[at].id);
             if !(drives && full) {
-                self.clients[at].read_stream(&mut heard);
+                let (id, bytes) = (self.clients[at].id, self.clients[at].read_stream());
+                if !bytes.is_empty() {
+                    heard.push(Heard::Bytes(id, bytes));
+                }
+                self.read_page(at, &mut heard);
             }
         }
         self.flush()?;
@@ -91,7 +96,7 @@ impl Clients {
         }
         // The one that has been there longest takes over.
         if self.driver.is_none()
-            && let Some(client) = self.clients.first()
+            && let Some(client) = self.clients.iter().find(|client| !client.is_page())
         {
             self.driver = Some(client.id);
             heard.push(Heard::Came(client.id, true));
@@ -99,11 +104,15 @@ impl Clients {
         Ok(heard)
     }
 
-    fn add(&mut self, stream: Option<TcpStream>, heard: &mut Vec<Heard>) {
+    fn add(&mut self, stream: Stream, heard: &mut Vec<Heard>) {
         let id = self.next;
         self.next += 1;
-        let (beginning, out) = (Beginning::default(), VecDeque::new());
-        self.clients.push(Client { id, stream, beginning, out, is_gone: false });
+        let client = Client::new(id, stream);
+        let is_page = client.is_page();
+        self.clients.push(client);
+        if is_page {
+            return;
+        }
         if self.driver.is_some() {
             heard.push(Heard::Came(id, false));
         } else {
@@ -114,16 +123,21 @@ impl Clients {
 
     fn accept(&mut self, heard: &mut Vec<Heard>) {
         while let Some(Ok((stream, _))) = self.listener.as_ref().map(TcpListener::accept) {
-            let count = self.clients.iter().filter(|client| client.stream.is_some()).count();
+            let count = self.clients.iter().filter(|client| client.is_tcp()).count();
             let ready = stream.set_nonblocking(true).and_then(|()| stream.set_nodelay(true));
             if count < MOST && ready.is_ok() {
-                self.add(Some(stream), heard);
+                self.add(Stream::Tcp(stream, Beginning::default()), heard);
+            }
+        }
+        for socket in self.web.as_mut().map(Web::poll).unwrap_or_default() {
+            if self.clients.iter().filter(|client| client.is_page()).count() < MOST {
+                self.add(Stream::Page(Box::new(socket)), heard);
             }
         }
     }
 
     fn read_terminal(&mut self, full: bool, heard: &mut Vec<Heard>) -> io::Result<()> {
-        let at = self.clients.iter().position(|client| client.stream.is_none());
+        let at = self.clients.iter().position(Client::is_terminal);
         let drives = at.is_some_and(|at| self.driver == Some(self.clients[at].id));
         if full && drives {
             return Ok(());
@@ -131,9 +145,9 @@ impl Clients {
         let mut bytes = [0; READ];
         let read = self.pty.read(&mut bytes)?;
         if at.is_none() && self.pty.is_open() {
-            self.add(None, heard);
+            self.add(Stream::Terminal, heard);
         }
-        let client = self.clients.iter_mut().find(|client| client.stream.is_none());
+        let client = self.clients.iter_mut().find(|client| client.is_terminal());
         match (read, client) {
             (Some(count), Some(client)) if count > 0 => {
                 heard.push(Heard::Bytes(client.id, bytes[..count].to_vec()));
@@ -148,35 +162,56 @@ impl Clients {
     fn flush(&mut self) -> io::Result<()> {
         let pty = &mut self.pty;
         for client in self.clients.iter_mut().filter(|client| !client.is_gone) {
-            while !client.out.is_empty() {
-                let (bytes, _) = client.out.as_slices();
-                let written = match &mut client.stream {
-                    None => pty.write(bytes)?,
-                    Some(stream) => match stream.write(bytes) {
-                        Ok(count) => count,
-                        Err(error) if is_late(&error) => 0,
-                        Err(_) => {
-                            client.is_gone = true;
-                            0
-                        }
-                    },
-                };
-                if written == 0 {
-                    break;
-                }
-                client.out.drain(..written);
-            }
+            client.flush(pty)?;
         }
         Ok(())
     }
 
-    /// Sends a text to a connection. A watcher that reads too slowly is closed.
+    /// Reads what a page says.
+    fn read_page(&mut self, at: usize, heard: &mut Vec<Heard>) {
+        let (id, said) = (self.clients[at].id, self.clients[at].read_page());
+        for said in said {
+            match said {
+                Said::Answered(line) => self.say(id, &line),
+                Said::Bytes(bytes) => heard.push(Heard::Bytes(id, bytes)),
+                Said::Word(Word::Drive) => {
+                    if self.driver.is_none() {
+                        self.driver = Some(id);
+                        heard.push(Heard::Came(id, true));
+                    }
+                    let drives = self.driver == Some(id);
+                    self.say(id, if drives { "web drives\n" } else { "web other drives\n" });
+                }
+                Said::Word(Word::Release) if self.driver == Some(id) => {
+                    self.driver = None;
+                    heard.push(Heard::Gone(true));
+                }
+                Said::Word(word) => heard.push(Heard::Word(id, word)),
+            }
+        }
+    }
+
+    /// Who drives, as this connection sees it.
+    pub fn driving(&self, id: Id) -> Driving {
+        match self.driver {
+            None => Driving::Nobody,
+            Some(driver) if driver == id => Driving::This,
+            Some(_) => Driving::Other,
+        }
+    }
+
+    /// Whether a connection is a page that has the token.
+    pub fn may(&self, id: Id) -> bool {
+        self.clients.iter().any(|client| client.id == id && client.may())
+    }
+
+    /// Sends a text to a connection. A watcher or a page that reads too slowly is closed.
     pub fn say(&mut self, to: Id, text: &str) {
         let drives = self.driver == Some(to);
         if let Some(client) = self.clients.iter_mut().find(|client| client.id == to) {
             client.out.extend(text.as_bytes());
-            if !drives && client.out.len() > MOST_WAITING {
-                client.is_gone = client.stream.is_some();
+            if (!drives || client.is_page()) && client.out.len() > MOST_WAITING {
+                client.is_gone = !client.is_terminal();
                 client.out.clear();
             }
         }
@@ -200,31 +235,9 @@ impl Clients {
         self.clients.iter().all(|client| client.out.is_empty())
     }
 
-    /// Closes a connection by TCP.
+    /// Closes a connection that is not the pseudo-terminal.
     pub fn close(&mut self, id: Id) {
         let client = self.clients.iter_mut().find(|client| client.id == id);
-        client.into_iter().for_each(|client| client.is_gone = client.stream.is_some());
+        client.into_iter().for_each(|client| client.is_gone = !client.is_terminal());
     }
-}
-
-impl Client {
-    /// Reads what has come by TCP.
-    fn read_stream(&mut self, heard: &mut Vec<Heard>) {
-        let Some(stream) = self.stream.as_mut().filter(|_| !self.is_gone) else { return };
-        let mut bytes = [0; READ];
-        match stream.read(&mut bytes) {
-            Ok(0) => self.is_gone = true,
-            Ok(count) => match self.beginning.judge(&bytes[..count]) {
-                Judged::Http => self.is_gone = true,
-                Judged::Fine(bytes) if bytes.is_empty() => {}
-                Judged::Fine(bytes) => heard.push(Heard::Bytes(self.id, bytes)),
-            },
-            Err(error) if is_late(&error) => {}
-            Err(_) => self.is_gone = true,
-        }
-    }
-}
-
-fn is_late(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -37,13 +37,13 @@ impl Server<'_> {
                 failed.get_or_insert(Failure::Run(format!("the pseudo-terminal is gone: {error}")));
                 return Wish::Stop;
             }
-            if requests.flush == Some(Flush::Reset) {
+            if requests.flush == Some(Flush::Reset) || requests.stops {
                 Wish::Stop
             } else {
                 control.wish(progress.status)
             }
         });
-        self.requests.homes = false;
+        (self.requests.homes, self.requests.stops) = (false, false);
         // Until homing has succeeded, the axes to be homed have no machine coordinate.
         let mask = homing.mask();
         homing::forget(self.memory, machine, mask);

@@ -34,6 +34,7 @@ impl Server<'_> {
             self.outputs = way.borrow().row_outputs().at_rest();
             match ended {
                 Ok(Ended::Done | Ended::SeekEnded) => {}
+                Ok(Ended::Stopped) if self.is_stopped_by_page() => return self.stopped_by_page(),
                 Ok(Ended::Stopped) => return self.stopped(),
                 Err(HostError::Fault { .. }) => return self.fault(),
                 Err(error) => return Err(self.lost(&error)),
@@ -169,7 +170,7 @@ impl Looks {
             failed.get_or_insert(Failure::Run(format!("the pseudo-terminal is gone: {error}")));
             return Wish::Stop;
         }
-        if control.wish(progress.status) == Wish::Stop {
+        if control.wish(progress.status) == Wish::Stop || requests.stops {
             return Wish::Stop;
         }
         if now >= self.line {

@@ -42,6 +42,7 @@ impl Requests {
                     }
                 }
                 Heard::Bytes(id, bytes) => self.watcher(id, &bytes),
+                Heard::Word(id, word) => self.page(id, word, control),
             }
         }
         self.take_lines();
@@ -85,8 +86,8 @@ impl Requests {
         control.program().into_iter().for_each(ProgramControl::moves);
     }
 
-    /// A real-time character of the connection that drives.
-    fn realtime(&mut self, realtime: Realtime, control: &mut Control) {
+    /// A real-time character of the connection that drives, or of a page that has the token.
+    pub fn realtime(&mut self, realtime: Realtime, control: &mut Control) {
         let locked = self.alarm || self.sleeps || self.checks || self.homes;
         match realtime {
             Realtime::Report => self.report(),

@@ -84,6 +84,10 @@ pub struct Requests {
     /// Whether what is planned are jogs.
     pub jogs: bool,
     pub flush: Option<Flush>,
+    /// Whether a page wants all axes to ramp down.
+    pub stops: bool,
+    /// Why the last alarm began.
+    pub why: Option<String>,
     pub todo: Option<Todo>,
     pub motion: Motion,
     pub pins: Pins,
@@ -127,6 +131,8 @@ impl Requests {
             door: false,
             jogs: false,
             flush: None,
+            stops: false,
+            why: None,
             todo: None,
             motion: Motion::Rests,
             pins: Pins::default(),
@@ -214,6 +220,7 @@ impl Requests {
     /// G-code is locked out from now on, and nothing that was planned is done any more.
     pub fn alarms(&mut self, alarm: Alarm, why: &str) {
         (self.alarm, self.holds, self.door, self.homes) = (true, false, false, false);
+        self.why = Some(why.to_owned());
         self.input.clear();
         self.clients.tell(&Dialect::alarm(alarm));
         self.clients.tell(&message(why));

@@ -100,7 +100,13 @@ impl Server<'_> {
         if let Some(program) = self.control.program().filter(|one| holds && !one.is_waiting()) {
             program.rests(WAITS.to_owned());
         }
-        if self.control.wish(&status) == Wish::Stop { self.stopped() } else { Ok(Next::GoesOn) }
+        if self.control.wish(&status) == Wish::Stop {
+            self.stopped()
+        } else if self.requests.stops {
+            self.stopped_by_page()
+        } else {
+            Ok(Next::GoesOn)
+        }
     }
 
     fn pins(&self, inputs: u32) -> Pins {
@@ -162,6 +168,26 @@ impl Server<'_> {
         self.requests.rests_at(&self.board.status().positions);
         self.requests.alarms(Alarm::Abort, "stopped by `carrystep stop`");
         Ok(Next::Stopped)
+    }
+
+    /// Whether a page, and nobody else, has the axes ramped down.
+    pub fn is_stopped_by_page(&self) -> bool {
+        self.requests.stops && self.failed.is_none() && self.control.stopped_by().is_none()
+    }
+
+    /// A page has stopped the machine. The stop of the board remains in force, and with it the
+    /// outputs are safe, until somebody unlocks the machine; the command goes on.
+    pub fn stopped_by_page(&mut self) -> Result<Next, Failure> {
+        self.requests.stops = false;
+        if !self.board.status().answer.fault {
+            self.board.stop().map_err(|error| self.lost(&error))?;
+        }
+        if !self.requests.alarm {
+            self.requests.alarms(Alarm::Abort, "stopped on the web page");
+        }
+        // A batch that rests in a hold is dropped as soon as it looks.
+        self.requests.flush.get_or_insert(Flush::Gone);
+        Ok(Next::GoesOn)
     }
 
     /// The machine has stopped by itself.

@@ -103,6 +103,10 @@ mod touch_off;
 mod touch_off_failures;
 #[cfg(unix)]
 mod virtual_boards;
+#[cfg(unix)]
+mod web_page;
+#[cfg(unix)]
+mod web_sockets;
 mod windows;
 #[cfg(unix)]
 mod work_offsets;

@@ -21,6 +21,8 @@ pub struct Served {
     pub pty: String,
     pub tcp: SocketAddr,
     pub board: String,
+    /// The link to the page; empty without one.
+    pub web: String,
 }
 
 impl Served {
@@ -43,7 +45,19 @@ impl Served {
             rest.trim().split(", also ").next().unwrap().to_owned()
         };
         let (pty, tcp, board) = (field("pty "), field("tcp "), field("board "));
-        Self { child, said, pty, tcp: tcp.parse().unwrap(), board }
+        let web = if options.contains("--web") { field("web ") } else { String::new() };
+        Self { child, said, pty, tcp: tcp.parse().unwrap(), board, web }
+    }
+
+    /// Address and port of the page.
+    pub fn web_address(&self) -> String {
+        let (address, _) = self.web.split_once("/#").unwrap();
+        address.strip_prefix("http://").unwrap().to_owned()
+    }
+
+    /// The token of the page.
+    pub fn token(&self) -> &str {
+        self.web.split_once("#token=").unwrap().1
     }
 
     /// Waits for the end. Returns the status and the output.
