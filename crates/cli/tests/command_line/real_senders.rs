@@ -26,10 +26,10 @@ const PROGRAMS: [(&str, &str, [f64; 3]); 3] = [
 fn folder() -> Option<Folder> {
     std::env::var_os("CARRYSTEP_SENDERS")?;
     let folder = Folder::new();
-    // The watchdog is long, because this computer may be busy.
+    // The watchdog is long and the queues are deep, because this computer may be busy.
     let machine = include_str!("../../../../sim/jobs/machine.toml").replace(
         "[machine]\n",
-        "[machine]\nlink = { baud = 3_000_000 }\nguard = { watchdog_ms = 4000 }\n",
+        "[machine]\nqueue_depth = 31\nlink = { baud = 3_000_000 }\nguard = { watchdog_ms = 4000 }\n",
     );
     folder.write("machine.toml", machine.replace("80_000_000", "48_000_000"));
     Some(folder)
