@@ -5,6 +5,7 @@
 //! driver. It is fed with the rows as they are read, and compared with the pins each millisecond, so
 //! that memory does not grow with the length of the run.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 #[path = "../../virtual-board/tests/support/mod.rs"]
 mod support;
@@ -163,7 +164,7 @@ fn program_of_hours_does_not_drift() {
     assert!(reference.most_waiting < 2000, "{}", reference.most_waiting);
     let ran = *ticks.borrow() * time.tick_ns() / 1_000_000_000;
     assert!(ran >= seconds && reference.pulses > 1000 * seconds, "{ran} s");
-    println!(
+    eprintln!(
         "FIGURES {ran} s of the board's time, {} pulses, each in its tick; drift 0 steps",
         reference.pulses
     );
