@@ -1,5 +1,6 @@
 //! Real-time characters at random times, judged by the pulses: the tool stays on the path, and no
 //! axis exceeds its limits, whatever came when. Run with `CARRYSTEP_CHARACTERS=N` for more of them.
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 use crate::sender::{Sender, Served, is_answer};
 use crate::serve_streams::{edges, folder};
@@ -126,7 +127,7 @@ fn characters_at_random_times_break_no_limit() {
     let of_axes = [0, 1].map(|axis| check_limits(&places, axis));
     let fastest = of_axes.iter().fold(0.0, |most: f64, axis| most.max(axis.0));
     let hardest = of_axes.iter().fold(0.0, |most: f64, axis| most.max(axis.1));
-    println!(
+    eprintln!(
         "FIGURES {wanted} characters, {} pulses on the path; at most {fastest:.1} mm/s and \
          {hardest:.0} mm/s2 of {FEED} and {ACCELERATION}",
         places.len() - 1

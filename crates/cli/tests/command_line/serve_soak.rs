@@ -1,6 +1,7 @@
 //! A sender that misbehaves at random, for hours of the machine's time: after each of its deeds the
 //! next sender finds a machine that works, at an exact place, and the command's memory does not
 //! grow. Run with `CARRYSTEP_SOAK=S` for S seconds of motion.
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 use crate::sender::{Sender, Served, is_answer};
 use crate::serve_streams::folder;
@@ -93,7 +94,7 @@ fn sender_that_misbehaves_harms_nothing() {
     assert_eq!(served.interrupt().0, 0);
     let said = board.end();
     assert!(said.contains("\nx at 0\ny at 0\nz at 0\n"), "{said}");
-    println!(
+    eprintln!(
         "FIGURES {deeds} deeds in more than {seconds:.0} s of motion, each followed by a program \
          that ends exactly; {} MB of memory",
         late >> 20
