@@ -312,13 +312,25 @@ fn virtual_board_page_gives_the_times_of_its_pace() {
         "docs/virtual-board.md",
         &[
             format!("It makes up for at most {late} ms of a delay."),
-            format!("If the host is silent for {} second of real time", word(gone)),
-            format!("no longer ago than a {of_watchdog} of the watchdog's time"),
+            format!("or is silent for {} seconds of real time", word(gone)),
+            format!(
+                "no longer ago than {ms} ms, and no longer than a {of_watchdog} of the watchdog's"
+            ),
             format!("at most a {of_watchdog} of the watchdog's time has passed"),
-            format!("(without a watchdog, {ms} ms)"),
             format!("has more than {} segments waiting", word(kept)),
             format!("than the {} segments that wait there", word(kept)),
             format!("keeps fewer than {} segments waiting", word(kept + 1)),
+        ],
+    );
+    let patience = |name| constant("crates/cli/src/connection.rs", name);
+    let seconds = |name| patience(name) / 1000.0;
+    let (silence, loss) = (seconds("SILENCE_OF_A_PROGRAM"), seconds("LOSS_OF_A_PROGRAM"));
+    says(
+        "docs/virtual-board.md",
+        &[
+            format!("sends a request again after {} ms", patience("RESEND_TO_A_PROGRAM")),
+            format!("if nothing has answered for {silence} s"),
+            format!("takes the line for dead after {loss} s"),
         ],
     );
 }
