@@ -26,8 +26,8 @@ const SOON: Duration = Duration::from_secs(2);
 const PSEUDO_TERMINALS: &str = "/dev/pts/";
 
 /// Times for the answers of a program, ms: until a request is sent again, until a port is given up
-/// at which nothing has answered, and one that has answered before. A busy system was seen to keep
-/// the bytes of all its pseudo-terminals back for 1.3 s.
+/// at which nothing has answered, and until one is given up that has answered before. A busy system
+/// was seen to deliver no byte of any pseudo-terminal for 1.3 s.
 const RESEND_TO_A_PROGRAM: u32 = 400;
 const SILENCE_OF_A_PROGRAM: u32 = 3000;
 const LOSS_OF_A_PROGRAM: u32 = 10_000;

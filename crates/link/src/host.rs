@@ -247,8 +247,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         }
     }
 
-    /// The time for what an answer may take, ms. A busy computer may not run this driver for
-    /// seconds, in which answers wait to be read: such a pause counts little.
+    /// For how long this driver has run and could have read an answer, ms. If a busy computer does not
+    /// run it for a while, answers may wait to be read, so the time between two looks at the line
+    /// counts for at most [`MOST_OF_A_LOOK`].
     fn time(&mut self) -> u32 {
         let now = self.clock.milliseconds();
         let passed = now.wrapping_sub(core::mem::replace(&mut self.looked, now));

@@ -3,14 +3,14 @@
 #![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 use crate::sender::{Sender, Served, is_answer};
+use crate::serve_holds::SQUARE;
 use crate::serve_streams::{edges, folder};
 use crate::virtual_boards::Board;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 use std::time::Duration;
 
-/// A square of 4 mm whose corners are not rounded.
-const SQUARE: &str = "G21 G90 G61 F1200\nG1 X4\nG1 Y4\nG1 X0\nG1 Y0\n";
+/// A side of the square, steps.
 const SIDE: i64 = 4 * STEPS;
 
 /// Of the machine of these tests: steps per mm, and mm/s2.
@@ -95,7 +95,7 @@ fn characters_at_random_times_break_no_limit() {
     let mut random = SplitMix64::seed_from_u64(21);
     let mut below = |count: u32| random.next_u32() % count;
     for _ in 0..wanted {
-        sender.send(SQUARE);
+        sender.send(format!("{SQUARE}\n"));
         std::thread::sleep(Duration::from_micros(u64::from(below(150_000))));
         match [b'!', 0x18, 0x85, 0x84][below(4) as usize] {
             0x18 => {

@@ -9,7 +9,7 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 use std::time::Duration;
 
 /// A square of 4 mm whose corners are not rounded.
-const SQUARE: &str = "G21 G90 G61 F1200\nG1 X4\nG1 Y4\nG1 X0\nG1 Y0";
+pub const SQUARE: &str = "G21 G90 G61 F1200\nG1 X4\nG1 Y4\nG1 X0\nG1 Y0";
 
 /// Whether a place is on the square, within a step.
 fn is_on_square(at: &[f64]) -> bool {
