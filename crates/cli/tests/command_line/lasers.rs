@@ -6,6 +6,7 @@ use crate::schemas;
 use crate::sender::{Sender, Served};
 use crate::stops::moving;
 use crate::virtual_boards::{Board, passed};
+use std::time::Duration;
 
 const JOB: &str = "G21 G90\nM8\nM4 S600\nG1 X1 F2400\nG1 Y1 S900\nG0 X0\nM3 S250\nG1 Y0\nM5 M9\n";
 
@@ -144,6 +145,9 @@ fn laser_is_off_where_a_hold_rests() {
     moving(&folder, &mut child, &board.port);
     passed(&hold(&folder, &board));
     waits(&folder, &board, &mut child);
+    // While the tool rests, the board's time goes on by at most 25 ms for each read of the host,
+    // which on a busy computer come late. Each second has many of them.
+    std::thread::sleep(Duration::from_secs(1));
     passed(&resume(&folder, &board));
     done(child);
     board.end();
@@ -163,7 +167,7 @@ fn laser_is_off_where_a_hold_rests() {
     assert!(edges.len() > 1000 && edges.last().is_some_and(|(_, level)| !level));
     // Between two steps that are so far apart, the tool rests. The light goes off before it rests,
     // and may come a little before the first step behind.
-    let (rest, slow) = (150_000_000_000, 30_000_000_000);
+    let (rest, slow) = (75_000_000_000, 30_000_000_000);
     let rests: Vec<_> = steps.windows(2).filter(|two| two[1] - two[0] > rest).collect();
     assert!(!rests.is_empty());
     for two in rests {
