@@ -27,10 +27,11 @@ const PSEUDO_TERMINALS: &str = "/dev/pts/";
 
 /// Times for the answers of a program, ms: until a request is sent again, until a port is given up
 /// at which nothing has answered, and until one is given up that has answered before. A busy system
-/// was seen to deliver no byte of any pseudo-terminal for 1.3 s.
-const RESEND_TO_A_PROGRAM: u32 = 400;
-const SILENCE_OF_A_PROGRAM: u32 = 3000;
-const LOSS_OF_A_PROGRAM: u32 = 10_000;
+/// was seen to deliver no byte of any pseudo-terminal for 4.4 s, and copies of requests that it then
+/// delivers together cost a fast board the time of its queues.
+const RESEND_TO_A_PROGRAM: u32 = 3000;
+const SILENCE_OF_A_PROGRAM: u32 = 10_000;
+const LOSS_OF_A_PROGRAM: u32 = 30_000;
 
 /// A board on a serial port.
 pub type ConnectedBoard = Host<SerialLine, SystemClock>;

@@ -7,8 +7,8 @@ const BEHIND: Duration = Duration::from_millis(20);
 
 /// Time without a byte after which a host that keeps its end of the line open is considered gone, so
 /// that a board that waits for its host continues. A busy system was seen to deliver no
-/// byte of any pseudo-terminal for 1.3 s.
-const GONE: Duration = Duration::from_secs(4);
+/// byte of any pseudo-terminal for 4.4 s.
+const GONE: Duration = Duration::from_secs(15);
 
 /// Decides up to which cycle a board may run.
 #[derive(Debug)]

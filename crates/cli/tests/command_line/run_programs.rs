@@ -97,8 +97,8 @@ pub fn resume(folder: &Folder, board: &Board) -> Ran {
 /// The document of a run that has passed.
 pub fn done(child: Child) -> Value {
     let output = child.wait_with_output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{said}");
+    let [told, said] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    assert_eq!(output.status.code(), Some(0), "{told}{said}");
     schemas::check(&String::from_utf8(output.stdout).unwrap())
 }
 
