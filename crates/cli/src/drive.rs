@@ -19,8 +19,9 @@ pub use outcome::{AxisDriven, Culprit, Driven, How, tell_fault};
 pub use place::{Place, point_at};
 pub use probing::{ProbeMove, Probed, probe};
 pub use program::PlannedProgram;
-pub use settle::settle;
+pub use settle::{exact_position, settle};
 use std::time::Instant;
+pub use touch::{all_axes, is_closed};
 use wait::Keys;
 use ways::Ways;
 

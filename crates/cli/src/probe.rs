@@ -3,7 +3,6 @@
 
 use crate::failure::Failure;
 use crate::jog::JogWish;
-use crate::switches::has_probe;
 use crate::work::{self, OffsetWish, Target};
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Machine, decimal};
@@ -36,7 +35,7 @@ impl ProbeWish {
     /// # Errors
     /// The machine has no probe or no such axis.
     pub fn axis(&self, machine: &Machine) -> Result<usize, Failure> {
-        if !has_probe(machine) {
+        if !machine.has_probe() {
             return Err(Failure::input(
                 "the machine has no probe: give its level with probe = \"high\" or \"low\" in \
                  [machine.inputs], and build its gateware again",

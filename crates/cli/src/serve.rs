@@ -24,6 +24,7 @@ mod motion;
 mod new_lines;
 mod pages;
 mod places;
+mod probe;
 mod pty;
 mod real_time;
 mod refusal;

@@ -70,7 +70,7 @@ impl SwitchPanel {
         max: &[String],
         plates: &[String],
     ) -> Result<Self, Failure> {
-        if !(plates.is_empty() || has_probe(machine)) {
+        if !(plates.is_empty() || machine.has_probe()) {
             return Err(Failure::input(
                 "--probe is a plate for the probe, and the machine has none: probe in [machine.inputs]",
             ));
@@ -163,11 +163,6 @@ impl SwitchPanel {
         *bits = *bits & !(1 << axis) | u8::from(level) << axis;
         true
     }
-}
-
-/// Whether a machine has an input for a probe.
-pub fn has_probe(machine: &Machine) -> bool {
-    machine.guard.inputs[0].exist & 1 == 1
 }
 
 /// The levels of the inputs in this wiring. If several switches share a wire, each of them closes

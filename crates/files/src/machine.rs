@@ -105,6 +105,11 @@ pub struct Axis {
 }
 
 impl Machine {
+    /// Whether it has a probe.
+    pub const fn has_probe(&self) -> bool {
+        self.guard.inputs[0].exist & 1 == 1
+    }
+
     /// The engine of this machine, with the machine's number of axes.
     pub fn engine(&self) -> EngineBuild {
         let pins = self.axes.iter().map(|axis| axis.pins).collect();

@@ -10,6 +10,7 @@ use crate::evaluate::Values as _;
 use crate::interpreter::Interpreter;
 use crate::kept::Offsets;
 use crate::modes::Modes;
+use crate::motion::record_probe;
 use crate::options::Options;
 use crate::state::{Motion, State};
 use std::io::Cursor;
@@ -108,6 +109,14 @@ impl LineInterpreter {
     /// Reports the real machine place. The coordinates must be finite.
     pub fn set_place(&mut self, at: Point) {
         self.state.set_place(at);
+    }
+
+    /// Reports the machine place at which the last [`Canon::Probe`] ended, whether the probe has
+    /// tripped, and where the machine rests now. The coordinates must be finite.
+    pub fn probed(&mut self, at: Point, tripped: bool, rests: Point) {
+        self.set_place(at);
+        record_probe(&mut self.state, tripped);
+        self.set_place(rests);
     }
 
     /// The offsets that the machine keeps.

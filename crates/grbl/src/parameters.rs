@@ -14,6 +14,13 @@ pub struct Probed {
     pub tripped: bool,
 }
 
+impl Probed {
+    /// The report behind a probe move, as `$#` shows it too.
+    pub fn text(&self, inches: bool) -> String {
+        format!("[PRB:{}:{}]\r\n", places(&self.at, inches), u8::from(self.tripped))
+    }
+}
+
 /// Offsets and stored places, each with a value for each axis, in mm or degrees.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Parameters {
@@ -55,11 +62,9 @@ impl Parameters {
             // Writing to a string cannot fail.
             let _ = write!(text, "[{name}:{}]\r\n", places(values, inches));
         }
-        let Probed { at, tripped } = &self.probed;
         let length = places(&[self.tool_length], inches);
-        let (at, tripped) = (places(at, inches), u8::from(*tripped));
-        let _ = write!(text, "[TLO:{length}]\r\n[PRB:{at}:{tripped}]\r\n");
-        text
+        let _ = write!(text, "[TLO:{length}]\r\n");
+        text + &self.probed.text(inches)
     }
 }
 

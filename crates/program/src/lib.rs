@@ -56,7 +56,7 @@ pub use laser::LaserPower;
 pub use legs::Legs;
 pub use letter::unit;
 pub use letters::Letters;
-pub use lines::{LineBreak, LineFault, Lines, PlannedLine};
+pub use lines::{LineBreak, LineFault, Lines, PlannedLine, ProbeLine};
 pub use marks::Marks;
 pub use pause::{Stop, stop_at};
 pub use row_outputs::RowOutputs;

@@ -2,7 +2,7 @@
 //! is given.
 
 use crate::error::Fault;
-use crate::event::Event;
+use crate::event::{Event, Reading};
 use crate::items::Items;
 use crate::letters::Letters;
 use crate::switch::Switch;
@@ -22,6 +22,17 @@ pub enum LineBreak {
     Pause,
     /// M2 and M30.
     End,
+    /// G38.2 to G38.5: the probe may end the motion of this line early.
+    Probe(ProbeLine),
+}
+
+/// What a line with G38.2 to G38.5 wants of the probe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ProbeLine {
+    /// True: it closes (G38.2, G38.3). False: it opens (G38.4, G38.5).
+    pub contact: bool,
+    /// Whether it is an error if that does not happen (G38.2, G38.4).
+    pub required: bool,
 }
 
 /// A part of what a line does.
@@ -45,6 +56,11 @@ pub enum LineFault {
     /// It reads what only a program in a file can read.
     #[error("{0} is only done in programs of `carrystep run`")]
     Reads(Switch),
+    /// It probes, on a machine without a probe.
+    #[error(
+        "the machine has no probe: give its level with probe = \"high\" or \"low\" in machine.inputs"
+    )]
+    NoProbe,
 }
 
 impl LineFault {
@@ -137,8 +153,15 @@ impl Lines {
 
     fn part(&mut self, event: &Event, parts: &mut Vec<PlannedLine>) -> Result<(), LineFault> {
         match *event {
-            Event::Switch { switch: switch @ (Switch::Probe | Switch::Input), .. } => {
-                return Err(LineFault::Reads(switch));
+            Event::Switch { switch: Switch::Input, .. } => {
+                return Err(LineFault::Reads(Switch::Input));
+            }
+            Event::Switch { switch: Switch::Probe, .. } => {
+                return if self.machine.has_probe() { Ok(()) } else { Err(LineFault::NoProbe) };
+            }
+            Event::Reading { reading: Reading::Probe { contact, required }, .. } => {
+                parts.push(PlannedLine::Break(LineBreak::Probe(ProbeLine { contact, required })));
+                return Ok(());
             }
             Event::Switch { switch: Switch::Pause | Switch::ToolChange, .. } => {
                 parts.push(PlannedLine::Break(LineBreak::Pause));
@@ -198,6 +221,13 @@ impl Lines {
         self.interpreter.restart(at, offsets);
         self.translator = Translator::new(&self.machine, &self.letters, at, self.tolerance_mm);
         self.place(at);
+    }
+
+    /// The probe of the last line has tripped at this machine place or not, and the machine rests
+    /// there or a little further. What was executed is done.
+    pub fn probed(&mut self, at: Point, tripped: bool, rests: Point) {
+        self.interpreter.probed(at, tripped, rests);
+        self.place(rests);
     }
 
     /// The interpreter, for its modes, parameters and offsets.

@@ -13,7 +13,6 @@ use super::touch::{all_axes, is_closed};
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::{Control, ProgramControl};
 use crate::failure::Failure;
-use crate::switches::has_probe;
 use carrystep_files::Machine;
 use carrystep_link::registers::INPUTS;
 use carrystep_link::{AxisState, HostError, SeekSource, Wish};
@@ -36,7 +35,7 @@ const fn bit(input: u32) -> u32 {
 pub(super) fn refuse_missing(file: &ProgramFile, survey: &Survey) -> Result<(), Failure> {
     let (path, machine) = (file.path().display(), file.machine());
     let probe = survey.counts.switches.iter().find(|one| one.switch == Switch::Probe);
-    if let Some(one) = probe.filter(|_| !has_probe(machine)) {
+    if let Some(one) = probe.filter(|_| !machine.has_probe()) {
         return Err(Failure::input(format!(
             "{path}: line {}: G38 needs a probe, and the machine has none: give its level with \
              probe = \"high\" or \"low\" in [machine.inputs]",

@@ -33,7 +33,7 @@ fn off(state: &AxisState) -> i128 {
 }
 
 /// The position of an axis in steps, with the part of a step that P shows.
-pub(super) fn exact_position(state: &AxisState) -> f64 {
+pub fn exact_position(state: &AxisState) -> f64 {
     f64::from(state.commanded()) + off(state) as f64 / 2f64.powi(64)
 }
 

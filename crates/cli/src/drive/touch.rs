@@ -32,12 +32,12 @@ pub(super) enum Touched {
 }
 
 /// Whether the probe is closed.
-pub(super) fn is_closed(board: &mut ConnectedBoard) -> Result<bool, ConnectedBoardError> {
+pub fn is_closed(board: &mut ConnectedBoard) -> Result<bool, ConnectedBoardError> {
     Ok(board.register(INPUTS)? >> PROBE & 1 == 1)
 }
 
 /// All axes of the board, one bit each.
-pub(super) fn all_axes(board: &ConnectedBoard) -> u8 {
+pub fn all_axes(board: &ConnectedBoard) -> u8 {
     ((1_u16 << board.facts().axes.min(MOST_AXES.into())) - 1) as u8
 }
 

@@ -1,6 +1,7 @@
 //! A batch of lines on the board: stretches from rest to rest, with holds and overrides as in
 //! `run`.
 
+use super::probe::Probing;
 use super::requests::{Flush, Requests};
 use super::server::{Next, REST, Server};
 use crate::connection::ConnectedBoardError;
@@ -29,13 +30,23 @@ impl Server<'_> {
     pub fn batch(&mut self) -> Result<Next, Failure> {
         let way = self.way()?;
         while way.borrow_mut().begin().is_some() {
+            let probing = self.requests.probing;
+            if let Some(probe) = probing
+                && !self.arms(probe)?
+            {
+                return Ok(Next::GoesOn);
+            }
             let ended = self.stream(&way);
+            let ended = self.disarms(probing, ended);
             // Each batch begins and ends at rest.
             self.outputs = way.borrow().row_outputs().at_rest();
             match ended {
-                Ok(Ended::Done | Ended::SeekEnded) => {}
-                Ok(Ended::Stopped) if self.is_stopped_by_page() => return self.stopped_by_page(),
-                Ok(Ended::Stopped) => return self.stopped(),
+                Ok(Probing::Tripped(states)) => return self.tripped(&states),
+                Ok(Probing::Ended(Ended::Done | Ended::SeekEnded)) => {}
+                Ok(Probing::Ended(Ended::Stopped)) if self.is_stopped_by_page() => {
+                    return self.stopped_by_page();
+                }
+                Ok(Probing::Ended(Ended::Stopped)) => return self.stopped(),
                 Err(HostError::Fault { .. }) => return self.fault(),
                 Err(error) => return Err(self.lost(&error)),
             }
@@ -77,7 +88,7 @@ impl Server<'_> {
             true => way.with_cuts(kept_ticks(machine.timebase.tick_ns())),
             false => way,
         };
-        if let Some(program) = self.control.program().filter(|_| !self.requests.jogs) {
+        if let Some(program) = self.control.program().filter(|_| self.requests.scales()) {
             way.set_overrides(program.overrides());
         }
         Ok(RefCell::new(way))
@@ -134,6 +145,7 @@ impl Server<'_> {
         match end.at {
             Some(LineBreak::Pause) => self.requests.holds = true,
             Some(LineBreak::End) => self.requests.clients.tell(&carrystep_grbl::message("Pgm End")),
+            Some(LineBreak::Probe(probe)) => self.missed(probe),
             None => {}
         }
     }
@@ -182,7 +194,8 @@ impl Looks {
             control.reached(block);
         }
         let wanted = control.program().map(|program| program.overrides());
-        let wanted = wanted.filter(|wanted| !requests.jogs && *wanted != way.borrow().overrides());
+        let wanted =
+            wanted.filter(|wanted| requests.scales() && *wanted != way.borrow().overrides());
         if let Some(wanted) = wanted.filter(|_| now >= self.overrides) {
             self.overrides = now + TRY_AGAIN;
             let mut way = way.borrow_mut();

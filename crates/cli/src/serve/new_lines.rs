@@ -28,7 +28,8 @@ impl Requests {
 
     fn may_take(&self) -> bool {
         let is_slow = self.clients.driver().is_some_and(|id| self.clients.is_slow(id));
-        self.todo.is_none() && self.flush.is_none() && !is_slow && self.growing.free() > 0
+        let waits = self.todo.is_some() || self.probing.is_some() || self.flush.is_some();
+        !waits && !is_slow && self.growing.free() > 0
     }
 
     /// Does a line, and returns its answer; `None` if it is answered later.
@@ -38,8 +39,8 @@ impl Requests {
             return Some(Dialect::ok());
         }
         let state = self.state();
-        let Self { dialect, lines, .. } = self;
-        let parameters = || terms::parameters(lines.interpreter(), lines.letters());
+        let Self { dialect, lines, probed, .. } = self;
+        let parameters = || terms::parameters(lines.interpreter(), lines.letters(), probed);
         let modes = || terms::modes(lines.interpreter());
         let action = match dialect.line(text, state, parameters, modes) {
             Outcome::Answered(answer) => return Some(answer),
@@ -86,9 +87,14 @@ impl Requests {
                     // The end of a program brings back these modes; it cannot be refused.
                     let _ = self.lines.execute("G1G17G54G90G94");
                 }
-                if !self.checks {
-                    self.growing.add(parts);
+                if self.checks {
+                    return Some(Dialect::ok());
                 }
+                if let Some(&PlannedLine::Break(LineBreak::Probe(probe))) = parts.last() {
+                    self.probe_line = parts;
+                    return self.later(Todo::Probe(probe));
+                }
+                self.growing.add(parts);
                 Some(Dialect::ok())
             }
             Err(fault) if fault.is_travel() && !self.checks => {

@@ -5,15 +5,16 @@
 //! clients -> real-time characters -> hold, resume, flush, overrides      at once
 //!         -> lines -> dialect -> answered here
 //!                             -> Lines -> Growing                        `ok` when it is there
-//!                             -> todo: home, unlock, sleep               at rest
+//!                             -> todo: home, probe, unlock, sleep        at rest
 //! ```
 
 use super::clients::Clients;
+use super::terms;
 use crate::arguments::WhenGone;
 use crate::drive::{Place, point_at};
 use carrystep_gcode::Offsets;
-use carrystep_grbl::{Alarm, Dialect, Input, Overrides, Pins, State, WELCOME, message};
-use carrystep_program::{Lines, Point};
+use carrystep_grbl::{Alarm, Dialect, Input, Overrides, Pins, Probed, State, WELCOME, message};
+use carrystep_program::{Lines, PlannedLine, Point, ProbeLine};
 use carrystep_runner::Growing;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -31,6 +32,8 @@ pub enum Todo {
     Home(Option<char>),
     /// `$X`.
     Unlock,
+    /// G38.2 to G38.5, whose motion waits in the queue of the plan from then on.
+    Probe(ProbeLine),
     /// `$SLP`.
     Sleep,
     /// A reset while the drivers have no power.
@@ -89,6 +92,12 @@ pub struct Requests {
     /// Why the last alarm began.
     pub why: Option<String>,
     pub todo: Option<Todo>,
+    /// What the line with a probe move gives the planner, until the move begins.
+    pub probe_line: Vec<PlannedLine>,
+    /// The probe move that is planned or executed. No line is taken before its end.
+    pub probing: Option<ProbeLine>,
+    /// The last probe move.
+    pub probed: Probed,
     pub motion: Motion,
     pub pins: Pins,
     /// Where the next batch begins: the coordinates of the axes.
@@ -113,6 +122,7 @@ impl Requests {
         when_gone: WhenGone,
     ) -> Self {
         let from = lines.coordinates(&place.start);
+        let probed = Probed { at: terms::of_axes(lines.letters(), |_| 0.0), tripped: false };
         Self {
             dialect,
             clients,
@@ -134,6 +144,9 @@ impl Requests {
             stops: false,
             why: None,
             todo: None,
+            probe_line: Vec::new(),
+            probing: None,
+            probed,
             motion: Motion::Rests,
             pins: Pins::default(),
             from,
@@ -149,6 +162,11 @@ impl Requests {
     /// Whether anything moves, or is planned, or waits to be planned.
     pub fn is_busy(&self) -> bool {
         self.motion == Motion::Moves || self.growing.is_planned() || self.growing.waits()
+    }
+
+    /// Whether overrides scale what moves. A jog has a feed of its own, and so has a probe move.
+    pub const fn scales(&self) -> bool {
+        !self.jogs && self.probing.is_none()
     }
 
     /// The state, as reports name it.
@@ -179,7 +197,7 @@ impl Requests {
         self.growing.clear();
         self.lines.place(at);
         self.from = self.lines.coordinates(&at);
-        (self.motion, self.jogs) = (Motion::Rests, false);
+        (self.motion, self.jogs, self.probing) = (Motion::Rests, false, None);
     }
 
     /// A batch is executed to its end, at these coordinates of the axes.

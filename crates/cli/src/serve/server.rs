@@ -219,6 +219,10 @@ impl Server<'_> {
     fn does(&mut self, todo: Todo) -> Result<(), Failure> {
         let answer = match todo {
             Todo::Home(axis) => self.home(axis)?,
+            Todo::Probe(probe) => {
+                self.requests.begins_probe(probe);
+                String::new()
+            }
             Todo::Unlock => self.unlock()?,
             Todo::Sleep => {
                 self.board.disable().map_err(|error| self.lost(&error))?;

@@ -10,14 +10,12 @@ use carrystep_grbl::{
 };
 use carrystep_program::{DEFAULT_TOLERANCE, Letters};
 
-/// The first parameters of G54, G28, G30, G92, and the last probe move.
+/// The first parameters of G54, G28, G30 and G92.
 const SYSTEMS: u16 = 5221;
 const SYSTEM_STEP: u16 = 20;
 const STORED: [u16; 2] = [5161, 5181];
 const G92_ON: u16 = 5210;
 const G92: u16 = 5211;
-const PROBED: u16 = 5061;
-const PROBE_TRIPPED: u16 = 5070;
 
 /// The index of z.
 const Z: usize = 2;
@@ -76,23 +74,17 @@ pub fn of_axes(letters: &Letters, value: impl Fn(usize) -> f64) -> Vec<f64> {
     (0..=last).map(known).collect()
 }
 
-/// What `$#` shows.
-pub fn parameters(lines: &LineInterpreter, letters: &Letters) -> Parameters {
+/// What `$#` shows, with the last probe move.
+pub fn parameters(lines: &LineInterpreter, letters: &Letters, probed: &Probed) -> Parameters {
     let kept = lines.offsets();
     let from = |first: u16| of_axes(letters, |letter| kept.get(first + letter as u16));
     let on = kept.get(G92_ON) != 0.0;
-    let probed = of_axes(letters, |letter| {
-        // The parameters are in units of the program and in its coordinates.
-        let unit = if lines.modes().inches && letter <= Z { 25.4 } else { 1.0 };
-        lines.parameter(PROBED + letter as u16) * unit + lines.modes().offset[letter]
-    });
-    let tripped = lines.parameter(PROBE_TRIPPED) == 1.0;
     Parameters {
         systems: std::array::from_fn(|number| from(SYSTEMS + SYSTEM_STEP * number as u16)),
         stored: STORED.map(from),
         g92: if on { from(G92) } else { of_axes(letters, |_| 0.0) },
         tool_length: kept.tool[Z],
-        probed: Probed { at: if tripped { probed } else { of_axes(letters, |_| 0.0) }, tripped },
+        probed: probed.clone(),
     }
 }
 

@@ -83,6 +83,7 @@ mod serve_connections;
 #[cfg(unix)]
 mod serve_holds;
 #[cfg(target_os = "linux")]
+mod serve_probes;
 mod serve_soak;
 #[cfg(unix)]
 mod serve_states;
