@@ -169,6 +169,36 @@ fn cncjs_in_a_hold_has_the_pulses_of_run() {
     eprintln!("FIGURES {} edges of {name} through CNCjs in a hold, those of run", ran.len());
 }
 
+/// The last edge of a capture, s from the first one.
+fn seconds(folder: &Folder, vcd: &str) -> f64 {
+    let edges = edges(&std::fs::read_to_string(folder.path(vcd)).unwrap());
+    edges.last().unwrap().0 as f64 / 1e12
+}
+
+/// A program that CNCjs sends while the machine moves keeps to its path, and takes hardly longer
+/// than by `run`. The board is one in real time, because lines that come late cost time.
+#[test]
+fn cncjs_takes_hardly_longer_than_run() {
+    let Some(folder) = folder() else { return };
+    let (name, program, end) = PROGRAMS[0];
+    ran(&folder, program, "--vcd run.vcd");
+    let board = Board::new(&folder, "--vcd serve.vcd");
+    let served = Served::with(&folder, &format!("--port {} --link grbl", board.port));
+    let mut cncjs = Cncjs::new(&folder, &folder.path("grbl").display().to_string());
+    let mut watcher = Sender::tcp(&served);
+    cncjs.load(name, program);
+    cncjs.command("gcode:start", &[]);
+    cncjs.finishes(name);
+    assert_eq!(watcher.place(), end);
+    cncjs.end();
+    assert_eq!(served.interrupt().0, 0);
+    board.end();
+    passed(&folder.run("check serve.vcd job.ngc --machine machine.toml --path-only"));
+    let [ran, streamed] = ["run.vcd", "serve.vcd"].map(|vcd| seconds(&folder, vcd));
+    assert!(streamed <= ran * 1.02, "{streamed} s by CNCjs, {ran} s by run");
+    eprintln!("FIGURES {name} through CNCjs in real time: {:.4} x the time of run", streamed / ran);
+}
+
 /// CNCjs is killed in motion: what was answered is executed, and the next CNCjs drives.
 #[test]
 fn cncjs_is_killed_in_motion() {
