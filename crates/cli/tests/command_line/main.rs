@@ -31,6 +31,8 @@ mod engine;
 #[cfg(target_os = "linux")]
 mod from_block;
 #[cfg(unix)]
+mod homed_after_stops;
+#[cfg(unix)]
 mod homing;
 #[cfg(unix)]
 mod inputs;
