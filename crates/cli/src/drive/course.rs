@@ -98,7 +98,7 @@ impl Course<'_, '_> {
 
     /// The machine rests at a place before the stretch.
     fn arrive(&mut self, at: Wait) -> Result<Next, ConnectedBoardError> {
-        self.line.rests();
+        self.line.rests(self.itinerary);
         let stop = match self.itinerary.waits(at) {
             Ok(stop) => stop,
             Err(failure) => {
@@ -209,7 +209,7 @@ impl Course<'_, '_> {
             return Ok(());
         }
         self.probe = None;
-        self.line.rests();
+        self.line.rests(self.itinerary);
         let probed = match hit {
             Some(states) => {
                 let places = (file, &*self.zero);
