@@ -22,6 +22,8 @@ mod ci_action;
 mod clocks;
 mod command;
 mod curves;
+#[cfg(target_os = "linux")]
+mod cut_captures;
 #[path = "../../../link/tests/support/device.rs"]
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
