@@ -75,6 +75,8 @@ mod recorder;
 #[cfg(target_os = "linux")]
 mod reports;
 #[cfg(unix)]
+mod run_ends;
+#[cfg(unix)]
 mod run_programs;
 mod schemas;
 mod selftests;
