@@ -256,6 +256,20 @@ fn freezes_take_the_machine_zero() {
 }
 
 #[test]
+fn e_stop_that_is_found_at_the_clear_takes_the_machine_zero() {
+    let mut homed = Homed::new(4000, "ramp");
+    let host = homed.program();
+    // The board keeps its first cause.
+    assert_eq!(homed.dies(host, &[]), "underrun");
+    homed.board.press("estop 1");
+    std::thread::sleep(Duration::from_millis(100));
+    let ran = homed.runs("stop --clear");
+    assert_eq!(ran.status, 1);
+    assert!(ran.stderr.contains("the e-stop is still pressed"), "{}", ran.stderr);
+    homed.forgets("estop 0");
+}
+
+#[test]
 fn limit_that_freezes_takes_the_machine_zero() {
     let mut homed = Homed::new(4000, "freeze");
     let host = homed.program();
