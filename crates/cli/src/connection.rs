@@ -47,6 +47,8 @@ pub struct Connection {
     pub axes: Vec<String>,
     /// Steps per unit of each axis; empty if no machine file is known.
     pub steps_per_unit: Vec<f64>,
+    /// Whether a limit freezes the axes of this gateware; `None` if no machine file is known.
+    pub limit_freezes: Option<bool>,
     /// The port's name.
     pub port: String,
     /// The claim on the port, through which other commands find and reach this one.
@@ -114,6 +116,7 @@ pub fn to_peer(
         board,
         axes,
         steps_per_unit: Vec::new(),
+        limit_freezes: None,
         port: peer.port.name.clone(),
         control,
     }))
@@ -132,12 +135,14 @@ fn machines(
     // The float is only displayed; no decision depends on it.
     let steps = |axis: &Axis| decimal::to_f64(&axis.steps_per_unit);
     let steps_per_unit = machine.axes.iter().map(steps).collect();
-    Ok(known(Connection { board, axes, steps_per_unit, port: port.name.clone(), control }))
+    let limit_freezes = Some(machine.guard.limit_freezes);
+    let port = port.name.clone();
+    Ok(known(Connection { board, axes, steps_per_unit, limit_freezes, port, control }))
 }
 
 /// Passes the constants of the board to the control.
 fn known(mut connection: Connection) -> Connection {
-    let Connection { board, axes, steps_per_unit, port, control } = &mut connection;
+    let Connection { board, axes, steps_per_unit, port, control, .. } = &mut connection;
     let facts = *board.facts();
     let known = Known {
         port: port.clone(),

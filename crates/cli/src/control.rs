@@ -85,8 +85,18 @@ pub const NOTHING_RUNS: &str = "nothing runs";
 /// The answer to [`SocketRequest::Override`] if it is about a spindle whose speed no output sets.
 pub const NO_SPINDLE: &str = "no spindle";
 
-/// The answer to [`SocketRequest::Pause`] if another one is not done.
+/// The answer to [`SocketRequest::Pause`] and [`SocketRequest::Resume`] if what was wanted in the
+/// pause before is not done.
 pub const BUSY: &str = "busy";
+
+/// The answer to a request for a program that waits: whether it was noted, if the program waits.
+const fn waited(noted: Option<bool>) -> &'static str {
+    match noted {
+        Some(true) => TAKEN,
+        Some(false) => BUSY,
+        None => NOTHING_WAITS,
+    }
+}
 
 impl SocketRequest {
     /// The word that is sent for the request, without the end of the line.
@@ -164,20 +174,13 @@ impl Control {
                     if noted { TAKEN } else { NOTHING_MOVES }.to_owned()
                 }
                 SocketRequest::Resume => {
-                    let noted = program.as_mut().is_some_and(ProgramControl::resume);
-                    if noted { TAKEN } else { NOTHING_WAITS }.to_owned()
+                    waited(program.as_mut().and_then(ProgramControl::resume)).to_owned()
                 }
                 SocketRequest::Override => program
                     .as_mut()
                     .map_or_else(|| NOTHING_RUNS.to_owned(), |program| program.overrides_as(text)),
                 SocketRequest::Pause => {
-                    let noted = program.as_mut().map(|program| program.pauses(text));
-                    match noted {
-                        Some(Some(true)) => TAKEN,
-                        Some(Some(false)) => BUSY,
-                        _ => NOTHING_WAITS,
-                    }
-                    .to_owned()
+                    waited(program.as_mut().and_then(|program| program.pauses(text))).to_owned()
                 }
                 SocketRequest::Result => {
                     program.as_ref().and_then(|program| program.result.clone()).unwrap_or_default()

@@ -121,7 +121,7 @@ pub fn drive(
         // The stop was requested, so it is cleared here and the next run does not report it.
         board.clear().map_err(told)?;
     }
-    if ended == How::Fault && memory::freezes(end.answer.cause, &plan.machine.guard) {
+    if ended == How::Fault && memory::freezes(end.answer.cause, plan.machine.guard.limit_freezes) {
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {

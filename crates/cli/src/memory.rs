@@ -18,6 +18,10 @@
 //! While a command drives the board, the file says so, and any positions are right: if the command
 //! is killed, its session is still that of the board.
 //!
+//! The cause of a stop that is in force decides what stands: behind a ramp everything does, behind a
+//! freeze no axis is homed, and the work offsets remain. Of a limit, the file says which of both it
+//! is, because commands without a machine file clear stops, too.
+//!
 //! A file that cannot be read is never replaced: commands that move something refuse it. Work
 //! offsets that do not belong to the present session are dropped, and the file says so until the
 //! user has set or cleared them.
@@ -26,7 +30,7 @@ use crate::connection::{self, ConnectedBoard, Connection};
 use crate::failure::Failure;
 use crate::limits::ClosedLimits;
 use crate::work::WorkRecord;
-use carrystep_core::engine::{Cause, Guard};
+use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_gcode::Offsets;
 use carrystep_link::Status;
@@ -114,7 +118,7 @@ impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
     /// discarded. No session may be open; an error of the line counts as a change.
     pub fn recall(connection: &mut Connection) -> Self {
-        let Connection { board, axes, steps_per_unit, port, .. } = connection;
+        let Connection { board, axes, steps_per_unit, limit_freezes, port, .. } = connection;
         let build = format!("{:016x}", board.facts().build);
         let (port, path) = file_of(port, &build);
         let Status { answer, positions } = *board.status();
@@ -123,6 +127,7 @@ impl BoardMemory {
             None => Ok(None),
         };
         let mut record = Record::blank(port, build, answer.ready, axes.len());
+        record.limit_freezes = *limit_freezes;
         let (stored, refused) = match read {
             Ok(stored) => (stored, None),
             Err(failure) => (None, Some(failure.message())),
@@ -130,17 +135,13 @@ impl BoardMemory {
         let mut work = Offsets::default();
         if let Some((stored, offsets)) = stored {
             let stands = |(axis, position): (&AxisRecord, i32)| axis.position == position;
-            // A stop by a limit may have been a freeze: only the machine file tells.
-            let froze = answer.fault && freezes_somewhere(answer.cause);
             let is_same = (stored.ready, stored.axes.len()) == (record.ready, record.axes.len())
-                && match stored.driving {
-                    true => !froze,
-                    false => stored.axes.iter().zip(positions).all(stands),
-                }
+                && (stored.driving || stored.axes.iter().zip(positions).all(stands))
                 // A read of the owner would restart the watchdog of axes that move.
                 && (answer.idle || answer.halted)
                 && stored.session.is_some_and(|number| keeps(board, number));
             record.work_lost = stored.work_lost || !is_same && !offsets.is_zero();
+            record.limit_freezes = record.limit_freezes.or(stored.limit_freezes);
             if is_same {
                 work = offsets;
                 record.session = stored.session;
@@ -158,7 +159,12 @@ impl BoardMemory {
                 *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
             }
         }
-        Self { path, record, work, refused }
+        let limit_freezes = record.limit_freezes.unwrap_or(true);
+        let mut memory = Self { path, record, work, refused };
+        if answer.fault && freezes(answer.cause, limit_freezes) {
+            memory.forget_places();
+        }
+        memory
     }
 
     /// Refuses a file that cannot be used.
@@ -274,19 +280,10 @@ fn keeps(board: &mut ConnectedBoard, session: NonZeroU16) -> bool {
     (0..3).find_map(|_| board.keeps(session).ok()).unwrap_or(false)
 }
 
-/// True if a cause stops the axes at once on this machine, so that their motors may lose steps.
-pub fn freezes(cause: u8, guard: &Guard) -> bool {
-    Cause::from_number(cause).is_none_or(|cause| cause.freezes(guard.limit_freezes))
-}
-
-/// True if a cause stops the axes at once on some machine.
-fn freezes_somewhere(cause: u8) -> bool {
-    Cause::from_number(cause).is_none_or(|cause| cause.freezes(true))
-}
-
-/// True if a cause stops the axes at once on every machine, whatever its setting for limits.
-pub const fn always_freezes(cause: Cause) -> bool {
-    cause.freezes(false)
+/// True if a cause stops the axes at once, so that their motors may lose steps. `limit_freezes` is
+/// that of the machine's guard.
+pub fn freezes(cause: u8, limit_freezes: bool) -> bool {
+    Cause::from_number(cause).is_none_or(|cause| cause.freezes(limit_freezes))
 }
 
 /// The folder of the files.

@@ -45,6 +45,11 @@ pub struct PauseResult {
     /// The axes moved, and the probe has not ended their move.
     #[serde(default)]
     pub missed: bool,
+    /// The work offsets cannot be written, and are as before. The document of such an end is that of
+    /// a failure, so its schema does not have this.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(skip)]
+    pub unkept: bool,
     /// Machine place at which the probe has ended a move, by letters as in `place`: that of the
     /// tick in which the gateware accepted its level.
     #[serde(default)]
@@ -123,7 +128,9 @@ pub fn ask(port: &str, wish: &PauseWish, json: bool) -> Result<bool, Failure> {
         Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))
     })?;
     match &result.error {
-        Some(error) if result.stopped || result.missed => return Err(Failure::Run(error.clone())),
+        Some(error) if result.stopped || result.missed || result.unkept => {
+            return Err(Failure::Run(error.clone()));
+        }
         Some(error) => return Err(Failure::input(error.clone())),
         None if json => output::print_json(&result)?,
         None => output::print(&result.to_string())?,

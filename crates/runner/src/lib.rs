@@ -18,6 +18,7 @@ mod reading;
 mod settling;
 mod spindle;
 mod stretches;
+mod time_left;
 
 pub use blocks::BlockAt;
 pub use growing::{BatchEnd, Growing, GrowingRows, LINES};
@@ -25,3 +26,4 @@ pub use horizon::Horizon;
 pub use override_setting::OverrideSetting;
 pub use settling::settling;
 pub use stretches::{Stretches, Wait, kept_ticks};
+pub use time_left::{MotionPace, TimeLeft};

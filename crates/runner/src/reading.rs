@@ -66,6 +66,10 @@ pub(crate) struct Reading {
     pub at: Vec<i128>,
     /// Rows of the stretch that are still to be read, if a hold has shortened it.
     pub left: Option<usize>,
+    /// Planned ticks of the rows that were read, those of holds included.
+    pub gone: f64,
+    /// Ticks by which holds have made the motion longer than planned.
+    pub added: f64,
     /// The line in which a hold brings the motion to rest at the end of the stretch.
     pub held: Option<u64>,
     /// Segments of each axis that were read and not taken.
@@ -91,6 +95,8 @@ impl Reading {
             count: 0,
             at: start_steps.iter().map(|&steps| i128::from(steps) << 64).collect(),
             left: None,
+            gone: 0.0,
+            added: 0.0,
             held: None,
             segments: vec![VecDeque::new(); start_steps.len()],
             outputs: VecDeque::new(),
@@ -145,6 +151,7 @@ impl Reading {
         let change = self.row_outputs.change(&row);
         self.outputs.push_back(self.spindle.turns(change, percent));
         self.rate = rate;
+        self.gone += f64::from(row.ticks) * rate;
         let places = self.at.iter_mut().zip(&mut self.segments);
         for ((at, queue), segment) in places.zip(&row.segments) {
             *at += travel(segment);
@@ -181,6 +188,7 @@ impl Reading {
         while self.count > keep {
             if let Some(read) = self.read.pop_back() {
                 let ReadRow { row: (row, at), rate, from, outputs, spindle } = read;
+                self.gone -= f64::from(row.ticks) * rate;
                 self.ahead.push_front(NextRow { row, rate, from });
                 (self.at, self.row_outputs, self.spindle) = (at, outputs, spindle);
             }

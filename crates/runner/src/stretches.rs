@@ -170,6 +170,10 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         if let Some(Held { from, stop, resume, next, line }) = window.held(&self.hold) {
             let planned = |rows: std::ops::Range<usize>| ahead.get(rows).unwrap_or_default();
             let own = |rows: Vec<Row>| rows.into_iter().map(NextRow::own).collect::<Vec<_>>();
+            let lasts = |rows: &[Row]| rows.iter().map(|row| f64::from(row.ticks)).sum::<f64>();
+            let replaced = planned(from - known..next - known).iter();
+            let replaced = replaced.map(|next| f64::from(next.row.ticks) * next.rate).sum::<f64>();
+            self.now.added += lasts(&stop) + lasts(&resume) - replaced;
             let before = [planned(0..from - known), &own(stop)].concat();
             (self.now.left, self.now.held) = (Some(before.len()), Some(line));
             ahead = [&before, &own(resume)[..], planned(next - known..ahead.len())].concat();
@@ -209,6 +213,17 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     /// Planned ticks per tick in the row that was read last.
     pub const fn rate(&self) -> f64 {
         self.now.rate
+    }
+
+    /// Planned ticks of the rows that were read, those of holds included: where the board rests, of
+    /// the motion that is over.
+    pub const fn gone(&self) -> f64 {
+        self.now.gone
+    }
+
+    /// Ticks by which holds have made the motion longer than planned so far.
+    pub const fn added(&self) -> f64 {
+        self.now.added
     }
 
     /// Changes the overrides from the next row of the plan on. In a hold, this is the first one

@@ -136,7 +136,7 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "kills",
-        what: "50 programs whose command is killed with SIGKILL in motion: the axes ramp down, the positions are true, and [`--from-block`](running-jobs.md#going-on-at-a-block) ends the job where it should",
+        what: "50 programs whose command is killed with SIGKILL in motion: the axes ramp down, by the watchdog or by a dry queue, where the pulses lead; [`--from-block`](running-jobs.md#going-on-at-a-block) ends the job, and the pulses before and behind the ramp are the whole part",
         asks: &[("CARRYSTEP_KILLS", "50")],
         cargo: &["--test", "command_line", "host_that_is_killed"],
     },

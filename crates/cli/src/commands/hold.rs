@@ -3,7 +3,7 @@
 
 use crate::arguments::ProgramPortArguments;
 use crate::connection;
-use crate::control::{self, ANSWER, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRequest};
+use crate::control::{self, ANSWER, BUSY, NOTHING_MOVES, NOTHING_WAITS, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::output;
 
@@ -25,11 +25,23 @@ fn ask(port: &str, request: SocketRequest, done: &str) -> Result<(), Failure> {
         return Err(Failure::input(message));
     }
     let nothing = || {
-        Failure::input(format!("no program {state} at {port}: `carrystep status` shows its state"))
+        let then = if request == SocketRequest::Hold {
+            ""
+        } else {
+            "; a program that was stopped or has ended goes on with `carrystep run --from-block`"
+        };
+        Failure::input(format!(
+            "no program {state} at {port}: `carrystep status` shows its state{then}"
+        ))
     };
     let Some(mut caller) = control::call(port) else { return Err(nothing()) };
     match caller.ask(request, ANSWER) {
         Reply::Line(line) if [NOTHING_MOVES, NOTHING_WAITS].contains(&&*line) => Err(nothing()),
+        Reply::Line(line) if line == BUSY => {
+            let message = "a jog, probe or offset of the pause is not done yet: the program goes on \
+                           waiting; resume it behind that";
+            Err(Failure::input(message))
+        }
         Reply::Line(_) => output::print(&format!("{} {done}\n", caller.holder)),
         Reply::Ended => Err(nothing()),
         Reply::Silent => {

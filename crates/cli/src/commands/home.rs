@@ -140,7 +140,7 @@ fn drive(
             How::Stopped
         }
         Err(HostError::Fault { cause, .. }) => {
-            if memory::freezes(cause, &machine.guard) {
+            if memory::freezes(cause, machine.guard.limit_freezes) {
                 memory.forget_places();
             }
             How::Fault

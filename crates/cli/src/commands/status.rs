@@ -4,8 +4,8 @@ use crate::arguments::StatusArguments;
 use crate::connection::{self, Connection};
 use crate::control::{self, ANSWER, Reply, SocketRequest};
 use crate::failure::Failure;
-use crate::found::{self, FoundBoard, Known};
-use crate::memory::{self, BoardMemory};
+use crate::found::{FoundBoard, Known};
+use crate::memory::BoardMemory;
 use crate::output;
 use carrystep_link::frame;
 use carrystep_link::registers::{DISCARDED, TICKS};
@@ -60,7 +60,7 @@ pub fn read_status(mut connection: Connection) -> Result<FoundBoard, Failure> {
     let memory = BoardMemory::recall(&mut connection);
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
-    let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
+    let Connection { control: _control, mut board, axes, steps_per_unit, port, .. } = connection;
     let failed = |error| connection::broken(&error, &axes);
     let status = board.read_status().map_err(failed)?;
     let ticks = board.register(TICKS).map_err(failed)?;
@@ -68,14 +68,11 @@ pub fn read_status(mut connection: Connection) -> Result<FoundBoard, Failure> {
     for axis in (0..).take(axes.len()) {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
     }
-    // After a freeze, motors may have lost steps. The next clear discards the machine coordinates,
-    // so they are not shown before it either.
-    let frozen = found::cause(&status.answer).is_some_and(memory::always_freezes);
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
     let mut found = FoundBoard::new(&status, &known, Some(&discarded));
     found.ticks = Some(ticks);
     for (number, axis) in found.axes.iter_mut().enumerate() {
-        axis.machine = memory.coordinate(number, axis.position).filter(|_| !frozen);
+        axis.machine = memory.coordinate(number, axis.position);
     }
     Ok(found)
 }

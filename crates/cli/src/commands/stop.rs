@@ -3,15 +3,18 @@
 
 use crate::arguments::Stop;
 use crate::commands::status::{read_status, tell};
-use crate::connection::{self, Connection};
+use crate::connection::{self, ConnectedBoard, ConnectedBoardError, Connection};
 use crate::control::{self, ANSWER, Caller, Holder, Reply, SocketRequest};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::memory::BoardMemory;
+use carrystep_link::registers::INPUTS;
 use carrystep_link::{HostError, random_session};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+/// The bit of the interlock in the register INPUTS.
+const INTERLOCK: u32 = 24;
 /// How long it may take to ramp down and to end: longer than the driver's own time-out.
 const ENDED: Duration = Duration::from_secs(15);
 /// How long a port may stay busy without a command that listens: `status` may hold it, or a command
@@ -32,13 +35,22 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     if arguments.clear || arguments.off {
         board.open(random_session()).map_err(failed)?;
     }
-    if arguments.clear {
-        board.clear().map_err(|error| match error {
-            HostError::StillPressed => {
-                Failure::Run(format!("{error}; then `carrystep stop --clear` again"))
-            }
-            _ => failed(error),
-        })?;
+    if arguments.clear
+        && let Err(error) = board.clear()
+    {
+        let is_pressed = is_pressed(board, &error).map_err(failed)?;
+        if is_pressed {
+            // It may have come while the axes ramped down for the cause that the board keeps.
+            memory.forget_places();
+        }
+        // The session is another one. If the file cannot be written, the old one no longer
+        // matches the board and is ignored.
+        let _ = memory.keep(board);
+        let pressed = HostError::<std::io::Error>::StillPressed;
+        return Err(match is_pressed {
+            true => Failure::Run(format!("{pressed}; then `carrystep stop --clear` again")),
+            false => failed(error),
+        });
     }
     if arguments.off {
         board.disable().map_err(failed)?;
@@ -53,6 +65,21 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
         return Err(Failure::Run(why.to_owned()));
     }
     tell(&found, arguments.json)
+}
+
+/// Whether the e-stop is what a clear has failed for: the gateware takes one as soon as the axes rest
+/// and neither the e-stop nor the interlock is active.
+fn is_pressed(
+    board: &mut ConnectedBoard,
+    error: &ConnectedBoardError,
+) -> Result<bool, ConnectedBoardError> {
+    Ok(match error {
+        HostError::StillPressed => true,
+        HostError::TooLong { .. } if board.status().answer.halted => {
+            board.register(INPUTS)? >> INTERLOCK & 1 == 0
+        }
+        _ => false,
+    })
 }
 
 /// Makes the driving command stop and end, and connects to the port. Also returns the command that

@@ -111,10 +111,10 @@ impl ProgramControl {
         self.waits.is_none()
     }
 
-    /// Notes what another command wants done while the program waits. `None` if the program moves or
-    /// waits for an input; false if what was wanted before is not done yet.
+    /// Notes what another command wants done while the program waits. `None` if the program moves, is
+    /// about to, or waits for an input; false if what was wanted before is not done yet.
     pub(super) fn pauses(&mut self, text: &str) -> Option<bool> {
-        self.waits.as_ref().filter(|_| !self.reads)?;
+        self.waits.as_ref().filter(|_| !self.reads && !self.resumed)?;
         let is_free = self.wish.is_none();
         if is_free {
             (self.wish, self.result) = (Some(text.to_owned()), None);
@@ -142,11 +142,13 @@ impl ProgramControl {
         (self.waits, self.resumed) = (Some(waits), false);
     }
 
-    /// Notes that the program may go on; false if it moves, or waits for an input.
-    pub(super) fn resume(&mut self) -> bool {
-        let waits = self.waits.is_some() && !self.reads;
-        self.resumed |= waits;
-        waits
+    /// Notes that the program may go on. `None` if it moves, or waits for an input; false if what
+    /// somebody wants in the pause is not done yet, so that the machine may move.
+    pub(super) fn resume(&mut self) -> Option<bool> {
+        self.waits.as_ref().filter(|_| !self.reads)?;
+        let is_free = self.wish.is_none();
+        self.resumed |= is_free;
+        Some(is_free)
     }
 
     /// Whether the moving program is to come to rest.

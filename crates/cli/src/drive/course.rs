@@ -18,10 +18,11 @@ use super::ways::Ways;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
-use crate::memory::BoardMemory;
+use crate::memory::{self, BoardMemory};
 use carrystep_link::{Ended, Progress, Status, Wish};
 use carrystep_program::{Found, Input, Offsets, Point, ProgramFile, Reading};
 use carrystep_runner::{BlockAt, Wait};
+use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
 /// Time between two searches for a hold that the limits forbid now, and between two changes of
@@ -98,7 +99,7 @@ impl Course<'_, '_> {
 
     /// The machine rests at a place before the stretch.
     fn arrive(&mut self, at: Wait) -> Result<Next, ConnectedBoardError> {
-        self.line.rests();
+        self.line.rests(self.itinerary);
         let stop = match self.itinerary.waits(at) {
             Ok(stop) => stop,
             Err(failure) => {
@@ -140,8 +141,11 @@ impl Course<'_, '_> {
         self.plan.program.iter_mut().for_each(|program| program.waits += 1);
         if let Some(offsets) = offsets.clone().filter(|_| self.itinerary.keeps()) {
             self.memory.set_work(offsets);
-            // At the end the file is written again.
-            let _ = self.memory.drives(self.board);
+            if let Err(error) = self.memory.drives(self.board) {
+                // If this write fails, too, there is no channel left to report it.
+                let why = memory::not_kept(&error).message();
+                self.line.above(|| drop(writeln!(io::stderr(), "warning: {why}")));
+            }
         }
         let places = (self.axes, &*self.zero);
         let mut pause = Pause::new(self.itinerary, (self.memory, self.ways), places, offsets);
@@ -209,7 +213,7 @@ impl Course<'_, '_> {
             return Ok(());
         }
         self.probe = None;
-        self.line.rests();
+        self.line.rests(self.itinerary);
         let probed = match hit {
             Some(states) => {
                 let places = (file, &*self.zero);

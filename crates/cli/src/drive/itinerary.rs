@@ -67,6 +67,17 @@ pub trait Itinerary {
         1.0
     }
 
+    /// Where the board rests: how long the motion has lasted since it was planned, s, if this is
+    /// known.
+    fn gone(&self) -> Option<f64> {
+        None
+    }
+
+    /// By how much holds have made the motion longer since it was planned, s.
+    fn added(&self) -> f64 {
+        0.0
+    }
+
     /// In which block of a program the tool is if the axes have moved by these steps since the
     /// beginning.
     fn block(&self, _moved: &[i32]) -> Option<BlockAt> {

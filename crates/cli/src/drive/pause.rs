@@ -12,7 +12,7 @@ use crate::control::Control;
 use crate::failure::Failure;
 use crate::jog::{self, JogWish};
 use crate::limits::ClosedLimits;
-use crate::memory::BoardMemory;
+use crate::memory::{self, BoardMemory};
 use crate::pause::{PauseResult, PauseWish};
 use crate::probe::ProbeWish;
 use crate::work;
@@ -40,6 +40,8 @@ pub(super) struct Pause<'a> {
 enum Refused {
     Input(String),
     Missed(String),
+    /// The work offsets cannot be written.
+    NotKept(String),
     /// What was stopped.
     Stopped(&'static str),
     Board(ConnectedBoardError),
@@ -79,22 +81,26 @@ impl<'a> Pause<'a> {
         }
     }
 
-    /// Does what was asked if something was, and gives the control the result.
+    /// Does what was asked if something was, and gives the control the result. Returns whether
+    /// something was.
     pub fn look(
         &mut self,
         board: &mut ConnectedBoard,
         control: &mut Control,
         waits: &str,
-    ) -> Result<(), ConnectedBoardError> {
+    ) -> Result<bool, ConnectedBoardError> {
         let program = control.program();
         let Some(text) = program.and_then(|program| program.wish().map(str::to_owned)) else {
-            return Ok(());
+            return Ok(false);
         };
         let mut result = PauseResult { waits: waits.to_owned(), ..PauseResult::default() };
         self.touched = None;
         match self.execute(board, control, &text) {
             Ok(()) => result.passed = true,
             Err(Refused::Input(message)) => result.error = Some(message),
+            Err(Refused::NotKept(message)) => {
+                (result.error, result.unkept) = (Some(message), true);
+            }
             Err(Refused::Missed(message)) => {
                 (result.error, result.missed) = (Some(message), true);
             }
@@ -115,7 +121,7 @@ impl<'a> Pause<'a> {
         result.offsets = self.offsets.as_ref().map(work::named).unwrap_or_default();
         let result = serde_json::to_string(&result).unwrap_or_default();
         control.program().into_iter().for_each(|program| program.did(result.clone()));
-        Ok(())
+        Ok(true)
     }
 
     /// The rest of the program, planned from the real place if anything was changed.
@@ -159,8 +165,10 @@ impl<'a> Pause<'a> {
             }
             PauseWish::Jog(wish, then) => {
                 let planned = self.planned(board, file, &wish)?;
+                if then.is_some() {
+                    self.keep(board)?;
+                }
                 self.settle(board, control)?;
-                self.changed = true;
                 let way = planned.itinerary();
                 way.begin();
                 self.stream(board, control, way.source(), "jog")?;
@@ -204,8 +212,10 @@ impl<'a> Pause<'a> {
         if is_closed(board)? != wanted.away {
             return Err(Refused::Input(wanted.already()));
         }
+        if wanted.target.is_some() {
+            self.keep(board)?;
+        }
         self.settle(board, control)?;
-        self.changed = true;
         let began = board.status().positions[number];
         let moves = (&planned, !wanted.away);
         let ways = &mut *self.ways;
@@ -228,15 +238,27 @@ impl<'a> Pause<'a> {
         self.stream(board, control, way.source(), "way back from the touched place")
     }
 
+    /// Sets the offsets, unless they cannot be kept: then those of before are in force.
     fn set(&mut self, board: &mut ConnectedBoard, offsets: Offsets) -> Result<(), Refused> {
-        self.changed = true;
         if self.itinerary.keeps() {
             self.memory.set_work(offsets.clone());
-            // At the end the file is written again.
-            let _ = self.memory.drives(board);
+            if let Err(refused) = self.keep(board) {
+                self.offsets.iter().for_each(|before| self.memory.set_work(before.clone()));
+                return Err(refused);
+            }
         }
+        self.changed = true;
         self.offsets = Some(offsets);
         Ok(())
+    }
+
+    /// Writes the work offsets if they are kept: before anything moves, and where they change.
+    fn keep(&mut self, board: &mut ConnectedBoard) -> Result<(), Refused> {
+        if !self.itinerary.keeps() {
+            return Ok(());
+        }
+        let kept = self.memory.drives(board);
+        kept.map_err(|error| Refused::NotKept(memory::not_kept(&error).message()))
     }
 
     /// Brings P of all axes to its start value, where a jog and the rest of a program begin. No axis
@@ -245,6 +267,8 @@ impl<'a> Pause<'a> {
         if !self.settled
             && let Some(file) = self.itinerary.program()
         {
+            // The plan goes on from the P of before.
+            self.changed = true;
             let parts = self.itinerary.settling(settling_ticks(file.machine()));
             self.stream(board, control, Box::new(Parts::new(parts)), "jog")?;
             self.settled = true;

@@ -125,7 +125,7 @@ pub fn probe(
     let culprits =
         (0..axes.len()).filter(|axis| cause.is_some() && answer.culprits >> axis & 1 == 1);
     let culprits: Vec<usize> = culprits.collect();
-    if ended == How::Fault && memory::freezes(answer.cause, &machine.guard) {
+    if ended == How::Fault && memory::freezes(answer.cause, machine.guard.limit_freezes) {
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {

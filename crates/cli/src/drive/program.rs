@@ -334,6 +334,15 @@ impl Itinerary for ProgramStretches<'_> {
         self.stretches.borrow().rate()
     }
 
+    fn gone(&self) -> Option<f64> {
+        let tick = self.first.machine().timebase.tick_seconds();
+        Some(self.stretches.borrow().gone() * tick)
+    }
+
+    fn added(&self) -> f64 {
+        self.stretches.borrow().added() * self.first.machine().timebase.tick_seconds()
+    }
+
     fn block(&self, moved: &[i32]) -> Option<BlockAt> {
         let positions = self.start_steps.iter().zip(moved);
         let positions: Vec<i64> =

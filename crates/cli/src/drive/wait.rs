@@ -92,7 +92,10 @@ pub(super) fn wait(
     let place = at.to_string();
     control.program().into_iter().for_each(|program| program.rests(place.clone()));
     loop {
-        pause.look(board, control, &place)?;
+        if pause.look(board, control, &place)? {
+            // What was entered while the machine moved was not meant for its rest.
+            keys.forget();
+        }
         let status = board.read_status()?;
         let answer = status.answer;
         if answer.fault {

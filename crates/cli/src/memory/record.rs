@@ -20,6 +20,10 @@ pub(super) struct Record {
     pub(super) ready: bool,
     /// A command drives the board, or was killed while it did.
     pub(super) driving: bool,
+    /// Whether a limit freezes the axes of this build, if a command has known it. Files of earlier
+    /// versions do not say it.
+    #[serde(default)]
+    pub(super) limit_freezes: Option<bool>,
     pub(super) axes: Vec<AxisRecord>,
     pub(super) work: WorkRecord,
     /// Work offsets were dropped, and the user has not set others since.
@@ -36,6 +40,7 @@ impl Record {
             session: None,
             ready,
             driving: false,
+            limit_freezes: None,
             axes: vec![AxisRecord::default(); axes],
             work: WorkRecord::default(),
             work_lost: false,

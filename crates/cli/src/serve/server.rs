@@ -195,7 +195,7 @@ impl Server<'_> {
         let read = self.board.read_status();
         let status = read.map_err(|error| self.lost(&error))?;
         let answer = status.answer;
-        if memory::freezes(answer.cause, &self.machine.guard) {
+        if memory::freezes(answer.cause, self.machine.guard.limit_freezes) {
             self.memory.forget_places();
         }
         let cause = found::cause(&answer);

@@ -22,6 +22,8 @@ mod ci_action;
 mod clocks;
 mod command;
 mod curves;
+#[cfg(target_os = "linux")]
+mod cut_captures;
 #[path = "../../../link/tests/support/device.rs"]
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
@@ -30,6 +32,8 @@ mod empty_programs;
 mod engine;
 #[cfg(target_os = "linux")]
 mod from_block;
+#[cfg(unix)]
+mod homed_after_stops;
 #[cfg(unix)]
 mod homing;
 #[cfg(unix)]
@@ -70,6 +74,8 @@ mod recorded_runs;
 mod recorder;
 #[cfg(target_os = "linux")]
 mod reports;
+#[cfg(unix)]
+mod run_ends;
 #[cfg(unix)]
 mod run_programs;
 mod schemas;

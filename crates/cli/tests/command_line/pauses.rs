@@ -7,7 +7,9 @@ use crate::run_programs::{
 };
 use crate::schemas;
 use crate::stops::{drives, moving};
+use crate::terminal::Screen;
 use crate::virtual_boards::{Board, document, passed};
+use std::process::Command;
 
 fn jog(folder: &Folder, board: &Board, options: &str) -> Ran {
     folder.run(&format!("jog --machine machine.toml --port {} {options}", board.port))
@@ -166,7 +168,7 @@ fn nothing_is_changed_in_a_hold_or_in_motion() {
 }
 
 /// The rising edges of the step pins of a capture in their order: time and pin.
-fn pulses(folder: &Folder, name: &str) -> Vec<(u64, String)> {
+pub fn pulses(folder: &Folder, name: &str) -> Vec<(u64, String)> {
     let vcd = std::fs::read_to_string(folder.path(name)).unwrap();
     let (mut pins, mut now, mut pulses) = (Vec::new(), 0, Vec::new());
     for line in vcd.lines() {
@@ -250,6 +252,95 @@ fn stop_in_a_jog_ends_the_jog_and_the_program() {
     folder.write("job.ngc", "G21 G91 F1500\nG1 Z1\nM2\n");
     passed(&run(&folder, &board, ""));
     assert_eq!(at(&folder, &board)[2], rest[2] + 400);
+}
+
+#[test]
+fn resume_is_refused_while_a_jog_of_the_pause_moves() {
+    let folder = folder("G21 G90 F1500\nG1 X4\nM0\nG1 X5 Y3\nM2\n");
+    let board = Board::new(&folder, "--fast");
+    let mut child = begins(&folder, &board);
+    let first = waits(&folder, &board, &mut child);
+    // Some seconds.
+    let jogs = drives(&folder, "jog z 20 --feed 60 --machine machine.toml", &board.port);
+    while at(&folder, &board)[2] == 0 {}
+    refused(&resume(&folder, &board), "a jog, probe or offset of the pause is not done yet");
+    done(jogs);
+    // It was not remembered.
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    assert_eq!(waits(&folder, &board, &mut child), first);
+    assert_eq!(at(&folder, &board), [320, 0, 8000]);
+    passed(&resume(&folder, &board));
+    done(child);
+    assert_eq!(at(&folder, &board), [400, 240, 8000]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn enter_while_a_jog_of_the_pause_moves_is_forgotten() {
+    let folder = folder("G21 G90 F1500\nG1 X4\nM0\nG1 X5\nM2\n");
+    let board = Board::new(&folder, "--fast");
+    // In the foreground of its terminal, as behind a shell.
+    let mut command = Command::new("setsid");
+    command.args([
+        "-c",
+        env!("CARGO_BIN_EXE_carrystep"),
+        "run",
+        "job.ngc",
+        "--machine",
+        "machine.toml",
+        "--port",
+        &board.port,
+    ]);
+    command.env("CARRYSTEP_STATE", folder.state()).current_dir(folder.path(""));
+    let mut screen = Screen::start(&mut command);
+    screen.waits_for("the machine rests; Enter, or ");
+    let jogs = drives(&folder, "jog z 20 --feed 60 --machine machine.toml", &board.port);
+    while at(&folder, &board)[2] == 0 {}
+    screen.types("\n");
+    done(jogs);
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    assert!(status(&folder, &board)["waits"].is_string());
+    screen.types("\n");
+    screen.waits_for("DONE");
+    assert_eq!(at(&folder, &board), [400, 0, 8000]);
+}
+
+#[test]
+fn offsets_of_a_pause_that_cannot_be_kept_are_not_set() {
+    let folder = crate::probes::folder(PAUSES);
+    let board = Board::new(&folder, "--fast --probe z=-400");
+    let mut child = begins(&folder, &board);
+    let first = waits(&folder, &board, &mut child);
+    passed(&offset(&folder, &board, "--set G55 x=1"));
+    let before = offset(&folder, &board, "").stdout;
+    // Nobody can write into the folder any more.
+    let away = folder.path("state");
+    std::fs::rename(folder.state(), &away).unwrap();
+    std::fs::write(folder.state(), "").unwrap();
+    let rests = at(&folder, &board);
+    for line in ["jog z 1 --set G54", "jog --set G54 z=0", "offset --set G54 z=0", "offset --clear"]
+        .iter()
+        .chain(&["probe z -20 --feed 600 --set G54"])
+    {
+        let ran = folder.run(&format!("{line} --machine machine.toml --port {}", board.port));
+        assert_eq!(ran.status, 1, "{line}: {}", ran.stderr);
+        let said = ran.stderr.replace("\n  ", " ");
+        assert!(said.contains("the work offsets cannot be kept"), "{line}: {said}");
+        assert!(said.contains("CARRYSTEP_STATE"), "{line}: {said}");
+        assert_eq!(at(&folder, &board), rests, "{line}: it has moved");
+        assert_eq!(offset(&folder, &board, "").stdout, before, "{line}");
+    }
+    // The program waits further, and goes on with the offsets of before.
+    std::fs::remove_file(folder.state()).unwrap();
+    std::fs::rename(&away, folder.state()).unwrap();
+    assert_eq!(waits(&folder, &board, &mut child), first);
+    passed(&jog(&folder, &board, "z 1 --set G54 z=3"));
+    passed(&resume(&folder, &board));
+    while waits(&folder, &board, &mut child) == first {}
+    passed(&resume(&folder, &board));
+    done(child);
+    // Machine z 1 is 3 in G54, and the program ends at -1.
+    assert_eq!(at(&folder, &board), [320, 240, -1200]);
 }
 
 #[test]
