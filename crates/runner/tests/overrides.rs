@@ -231,6 +231,49 @@ fn holds_at_random_times_keep_the_limits_the_path_and_the_end() {
     }
 }
 
+/// At half the feed, the motion slows down at its end with less than its acceleration, so that a hold
+/// is possible there, and its resumption leads to the end of the program.
+#[test]
+fn resumption_that_leads_to_the_end_ends_the_move() {
+    let job = program("square_and_arc", None);
+    let axes = job.machine.axes.len() as u8;
+    let new = || {
+        let hold = Hold::new(&job.machine).unwrap();
+        let pace = Pace::new(&job.machine, &job.start_steps).unwrap();
+        let mut new = Stretches::new(job.rows.iter().cloned(), &job.start_steps, hold, pace, 31);
+        new.set_overrides(OverrideSetting { feed: 50, ..OverrideSetting::NONE });
+        new.begin();
+        new
+    };
+    // Reads up to so many rows of the stretch; returns how many, and whether the last one is marked.
+    let read = |from: &mut Stretches<_>, most: usize| {
+        let mut ends = Vec::new();
+        while ends.len() < most {
+            let row: Option<Vec<_>> = (0..axes).map(|axis| from.segment(axis)).collect();
+            let Some(row) = row else { break };
+            ends.push(row.iter().all(|segment| segment.last));
+        }
+        (ends.len(), ends.last() == Some(&true))
+    };
+    let (whole, ends) = read(&mut new(), usize::MAX);
+    assert!(ends);
+    let mut held = 0;
+    for back in 1..60 {
+        let mut stretches = new();
+        assert_eq!(read(&mut stretches, whole - back), (whole - back, false));
+        stretches.hold();
+        held += u64::from(stretches.is_held());
+        loop {
+            let (rows, ends) = read(&mut stretches, usize::MAX);
+            assert!(ends, "a hold {back} rows before the end: {rows} rows of a stretch");
+            if stretches.begin().is_none() {
+                break;
+            }
+        }
+    }
+    assert!(held > 20, "{held} holds");
+}
+
 const PROGRAMS: [&str; 5] = ["square_and_arc", "trochoid", "chords_and_star", "relief", "outputs"];
 
 /// A program of `sim/jobs`, with this feed instead of its own if one is given.

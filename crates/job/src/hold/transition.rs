@@ -59,6 +59,12 @@ pub(super) fn rows(
         (before, now) = (tick, next);
     }
     land(&mut rows, &at, &curve.at(curve.place(end)))?;
+    // A resumption may lead to the end of the plan, where the moves of the motors end.
+    let end_of_plan = curve.rows().last().filter(|_| end == curve.ticks());
+    if let (Some(row), Some(planned)) = (rows.last_mut(), end_of_plan) {
+        let motors = row.segments.iter_mut().zip(&planned.segments);
+        motors.for_each(|(segment, planned)| segment.last = planned.last);
+    }
     Some(rows)
 }
 
