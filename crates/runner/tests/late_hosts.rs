@@ -64,7 +64,7 @@ fn host_late_by_up_to_half_the_horizon_changes_no_edge() {
         for queues in QUEUES.into_iter().step_by(some) {
             let job = job(*program, queues);
             let name = format!("{} with queues of {queues:?}", job.name);
-            let half = Horizon::of_queue(queues.0).ms() / 2;
+            let half = Horizon::of_board(queues.0, queues.1).ms() / 2;
             // In the time between two delays, the line fills the queues again.
             let (run, delays) = run(&job, |_| {
                 let delay = if random.below(2) == 0 { half } else { 1 + random.below(half) };
@@ -88,7 +88,7 @@ fn host_late_by_more_than_the_horizon_lets_the_queues_run_dry() {
         let queue = format!("queue_depth = {depth}\ncuts = {cuts}\nguard.watchdog_ms = 400\n");
         let job = Job::new(PROGRAMS[0], &queue);
         // The segment that runs lasts 4 ms, and some more may be on the line.
-        let delay = Horizon::of_queue(queues.0).ms() + 32;
+        let delay = Horizon::of_board(queues.0, queues.1).ms() + 32;
         let (run, delays) = run(&job, |now| (now >= 1000).then_some((delay, u64::MAX / 2)));
         let Err(HostError::Fault { cause, .. }) = run.ended else { panic!("{:?}", run.ended) };
         assert_eq!((cause, delays), (Cause::Underrun as u8, 1), "{queues:?}");

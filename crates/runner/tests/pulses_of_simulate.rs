@@ -18,7 +18,7 @@ use jobs::{Job, PROGRAMS};
 use support::asked;
 
 /// How much of each program an ordinary test compares, seconds of the program.
-const SECONDS: u64 = 15;
+const SECONDS: u64 = 8;
 
 #[test]
 fn pulses_of_run_are_those_of_simulate() {

@@ -20,7 +20,7 @@ use carrystep_job::{Hold, Pace};
 use carrystep_link::{Ended, HostError, Patience, Progress, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_program::{ProgramFile, Row, Rows, Settings, sync_points};
-use carrystep_runner::{Stretches, kept_ticks};
+use carrystep_runner::Stretches;
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_virtual_board::{ModelBoard, PinLevels, SimulatedBoard as _};
@@ -90,7 +90,16 @@ impl Job {
     }
 
     /// Drives a board through the program. `look` is called after each exchange with the line.
-    pub fn run(&self, mut look: impl FnMut(&End<Recorder>, &Way, &Progress<'_>) -> Wish) -> Run {
+    pub fn run(&self, look: impl FnMut(&End<Recorder>, &Way, &Progress<'_>) -> Wish) -> Run {
+        self.run_with(|_| (), look)
+    }
+
+    /// The same, with what is set before anything is sent.
+    pub fn run_with(
+        &self,
+        set: impl FnOnce(&Way),
+        mut look: impl FnMut(&End<Recorder>, &Way, &Progress<'_>) -> Wish,
+    ) -> Run {
         let Self { machine, file, .. } = self;
         let time = &machine.timebase;
         let rows: Box<dyn Iterator<Item = Row>> =
@@ -99,8 +108,9 @@ impl Job {
         let pace = Pace::new(machine, &start).unwrap();
         let way = Stretches::new(rows, &start, hold, pace, machine.queue);
         let way = way.with_outputs(file.row_outputs());
-        let way = if machine.cuts { way.with_cuts(kept_ticks(time.tick_ns())) } else { way };
+        let way = way.for_holds(machine.cuts, time.tick_ns());
         let way = RefCell::new(way);
+        set(&way);
         let (engine, uart) = (machine.engine(), Uart::new(time.clock_hz(), machine.baud).unwrap());
         let board = Recorder::new(ModelBoard::new(&engine, uart));
         let end = End::of(board, uart, Faults::default(), 1).clocked(time.clock_hz(), 1);
