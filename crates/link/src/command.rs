@@ -133,6 +133,12 @@ pub trait SegmentSource {
     fn may_cut(&self) -> bool {
         false
     }
+    /// Whether an axis is to get its next segment now, if its queue has a free place. It was sent
+    /// `sent` segments that were not cut off, of which at least `begun` have begun to run. A source
+    /// that wants little motion to wait in the queues gives nothing while enough of it waits.
+    fn may_send(&self, _begun: u32, _sent: u32) -> bool {
+        true
+    }
     /// The gateware has refused the last cut, so all segments of before are still in its queues.
     /// From now on the source gives what it would have given without the cut.
     fn cut_refused(&mut self) {}
@@ -153,6 +159,10 @@ impl<S: SegmentSource + ?Sized> SegmentSource for &mut S {
 
     fn may_cut(&self) -> bool {
         (**self).may_cut()
+    }
+
+    fn may_send(&self, begun: u32, sent: u32) -> bool {
+        (**self).may_send(begun, sent)
     }
 
     fn cut_refused(&mut self) {
@@ -177,6 +187,10 @@ impl<S: SegmentSource + ?Sized> SegmentSource for &RefCell<S> {
 
     fn may_cut(&self) -> bool {
         self.borrow().may_cut()
+    }
+
+    fn may_send(&self, begun: u32, sent: u32) -> bool {
+        self.borrow().may_send(begun, sent)
     }
 
     fn cut_refused(&mut self) {

@@ -32,6 +32,8 @@ struct Axis {
 pub struct Feeder<S> {
     source: S,
     wide: bool,
+    /// Number of segments that the queue of an axis holds; 0 if it is not known.
+    depth: u8,
     axes: [Axis; MOST_AXES as usize],
     /// What changes with the next segment of axis 0.
     outputs: OutputChange,
@@ -46,7 +48,16 @@ impl<S: SegmentSource> Feeder<S> {
     pub fn new(source: S) -> Self {
         let axes = [Axis::default(); MOST_AXES as usize];
         let outputs = OutputChange::NONE;
-        Self { source, wide: false, axes, outputs, start: None, last_start: false, uncut: None }
+        Self {
+            source,
+            wide: false,
+            depth: 0,
+            axes,
+            outputs,
+            start: None,
+            last_start: false,
+            uncut: None,
+        }
     }
 
     /// A wide feeder.
@@ -54,9 +65,30 @@ impl<S: SegmentSource> Feeder<S> {
         Self { wide: true, ..Self::new(source) }
     }
 
-    /// Reads the next segment of each axis, and the next start, from the source.
-    fn look_ahead(&mut self, axes: u8) {
-        for (number, axis) in (0..axes).zip(&mut self.axes) {
+    /// The same for queues of so many segments, so that it can ask the source whether it
+    /// [may send](SegmentSource::may_send) the next one. Without it, each free place is filled.
+    #[must_use]
+    pub fn with_queues(self, depth: u8) -> Self {
+        Self { depth, ..self }
+    }
+
+    /// Whether the source gives this axis nothing now, because enough of its motion waits. `room` is
+    /// the number of free places of its queue.
+    pub fn holds_back(&self, axis: u8, room: u8) -> bool {
+        let Some(axis) = self.axes.get(usize::from(axis)).filter(|_| self.depth > 0) else {
+            return false;
+        };
+        let begun = axis.sent.saturating_sub(self.depth.saturating_sub(room).into());
+        axis.ahead.is_none() && !axis.dry && !self.source.may_send(begun, axis.sent)
+    }
+
+    /// Reads the next segment of each axis that may be sent, and the next start, from the source.
+    fn look_ahead(&mut self, axes: u8, room: &[u8]) {
+        for (number, &room) in (0..axes).zip(room) {
+            let waits = self.holds_back(number, room);
+            let Some(axis) = self.axes.get_mut(usize::from(number)).filter(|_| !waits) else {
+                continue;
+            };
             if axis.ahead.is_none() && !axis.dry {
                 axis.ahead = self.source.segment(number);
                 axis.dry = axis.ahead.is_none();
@@ -82,7 +114,7 @@ impl<S: SegmentSource> Feeder<S> {
         room: &[u8],
         may_start: bool,
     ) -> Result<Option<Body>, ProgramError> {
-        self.look_ahead(axes);
+        self.look_ahead(axes, room);
         let able = |(axis, room): &(&Axis, &u8)| axis.ahead.is_some() && **room > 0;
         let waiting = (0..axes).zip(self.axes.iter().zip(room)).filter(|(_, pair)| able(pair));
         let hungriest = waiting.min_by_key(|(_, (axis, _))| axis.ticks);

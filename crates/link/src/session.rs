@@ -286,7 +286,8 @@ impl<const N: usize> Session<N> {
             let full = self.room.get(index) == Some(&0);
             let armed = axis == 0 && self.armed && feeder.wants_start();
             // An error only means that enough reads are in progress.
-            if (silent && full && feeder.wants(axis)) || armed {
+            let held_back = self.room.get(index).is_some_and(|&room| feeder.holds_back(axis, room));
+            if (silent && (held_back || (full && feeder.wants(axis)))) || armed {
                 let _ = self.singles.read(of_axis(POSITION, axis));
             }
         }

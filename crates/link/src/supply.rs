@@ -68,6 +68,8 @@ pub struct Supply {
     tick_ns: u64,
     /// Number of segments that the queue of an axis holds.
     queue: usize,
+    /// No segment is sent while those that wait last so long, ns.
+    enough: u64,
     baud: u32,
     axes: Vec<Axis>,
     /// What changes with the next segment of axis 0.
@@ -81,7 +83,9 @@ pub struct Supply {
 struct Axis {
     /// The tick at which the next segment begins.
     tick: u64,
-    /// When the last segments begin, ns: as many as the queue has places.
+    /// Number of segments so far.
+    count: usize,
+    /// When the last segments begin, ns: from the one whose begin lets the last one be sent.
     begins: VecDeque<u64>,
     jobs: VecDeque<Job>,
 }
@@ -91,7 +95,15 @@ impl Supply {
     /// segments, on a line of `baud` bits per second.
     pub fn new(axes: u8, tick_ns: u64, queue: usize, baud: u32) -> Self {
         let axes = (0..axes).map(|_| Axis::default()).collect();
-        Self { tick_ns, queue, baud, axes, outputs: OutputChange::NONE, now: 0 }
+        let (outputs, enough) = (OutputChange::NONE, u64::MAX);
+        Self { tick_ns, queue, enough, baud, axes, outputs, now: 0 }
+    }
+
+    /// The same for a source that [does not fill](crate::SegmentSource::may_send) the queues: it
+    /// sends no segment while those that wait last for `ns` ns.
+    #[must_use]
+    pub fn with_enough(self, ns: u64) -> Self {
+        Self { enough: ns, ..self }
     }
 
     /// Adds the next command of the program.
@@ -113,9 +125,19 @@ impl Supply {
         let due = axis.tick.saturating_mul(self.tick_ns);
         axis.tick = axis.tick.saturating_add(segment.ticks.into());
         axis.begins.push_back(due);
+        axis.count += 1;
+        // Those behind the segment that runs wait: fewer than the queue has places, and less than
+        // is enough.
+        let begins = &mut axis.begins;
+        while begins.len() > self.queue + 1
+            || begins.get(1).is_some_and(|next| due - next >= self.enough)
+        {
+            begins.pop_front();
+        }
         // The first segments are in the queue before the start.
-        if axis.begins.len() > self.queue
-            && let Some(place) = axis.begins.pop_front()
+        let is_first = begins.len() == axis.count;
+        if let Some(&place) = begins.front()
+            && !(is_first && begins.len() <= self.queue && due - place < self.enough)
         {
             axis.jobs.push_back(Job { place, due, segment, outputs });
         }
@@ -214,6 +236,25 @@ mod tests {
         }
         assert_eq!(check(&apart, 6, 2000, 7, 1_600_000), Ok(()));
         assert!(check(&apart, 6, 2000, 7, 921_600).is_err());
+    }
+
+    /// A burst of short segments behind long ones: what waits has to last until it is over.
+    #[test]
+    fn less_that_waits_carries_a_program_over_less() {
+        let mut burst = even(100, 5000);
+        for command in &mut burst[180..420] {
+            if let Command::Segment { segment, .. } = command {
+                segment.ticks = 1000;
+            }
+        }
+        let with = |ms: u64| {
+            let mut supply = Supply::new(6, 2000, 31, 500_000).with_enough(ms * 1_000_000);
+            burst.iter().try_for_each(|command| supply.add(command))?;
+            supply.finish()
+        };
+        assert_eq!(with(1000), check(&burst, 6, 2000, 31, 500_000));
+        assert_eq!((with(1000), with(100)), (Ok(()), Ok(())));
+        assert!(with(20).is_err());
     }
 
     #[test]

@@ -179,6 +179,13 @@ impl Reading {
         None
     }
 
+    /// How long the rows last from the first `begun` rows on, up to the first `sent` ones, ticks.
+    pub fn lasts(&self, begun: u32, sent: u32) -> u64 {
+        let first = self.count - self.read.len() as u32;
+        let rows = (first..).zip(&self.read).filter(|(number, _)| (begun..sent).contains(number));
+        rows.map(|(_, read)| u64::from(read.row.0.ticks)).sum()
+    }
+
     /// Goes back to the end of the first `keep` rows; false if that row is not kept.
     pub fn rewind(&mut self, keep: u32) -> bool {
         let first = self.count - self.read.len() as u32;

@@ -15,6 +15,7 @@
 
 use crate::blocks::{BlockAt, nearest};
 use crate::held::{Held, Window};
+use crate::horizon::Horizon;
 use crate::override_setting::OverrideSetting;
 use crate::reading::{NextRow, Reading};
 use crate::settling::settling;
@@ -61,6 +62,8 @@ pub struct Stretches<I: Iterator<Item = Row>> {
     /// How long the rows last that a cut keeps behind those that have begun, ticks; `None` if the
     /// board cannot cut its queues.
     kept: Option<u64>,
+    /// No row is sent while those that wait last for so long, ticks; `None` if the queues are filled.
+    enough: Option<u64>,
     /// Number of cuts of the stretch that the board has refused.
     refused: u32,
     /// Number of cuts of the stretch that the board had granted when the last one was asked for.
@@ -86,6 +89,7 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
             hold,
             queue,
             kept: None,
+            enough: None,
             refused: 0,
             granted: 0,
             track: Track::new(start_steps),
@@ -114,6 +118,16 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     #[must_use]
     pub fn with_cuts(self, kept: u64) -> Self {
         Self { kept: Some(kept), ..self }
+    }
+
+    /// The same for a board with ticks of `tick_ns` ns. If it cannot cut its queues (`cuts`), a hold
+    /// comes behind what waits there, and no more waits than [`Horizon::of_board`] says, and a row.
+    #[must_use]
+    pub fn for_holds(self, cuts: bool, tick_ns: u64) -> Self {
+        if cuts {
+            return self.with_cuts(kept_ticks(tick_ns));
+        }
+        Self { enough: Some(Horizon::enough_ticks(tick_ns)), ..self }
     }
 
     /// In which block of the program the tool is if the axes are at these steps from machine zero.
@@ -362,6 +376,10 @@ impl<I: Iterator<Item = Row>> SegmentSource for Stretches<I> {
 
     fn may_cut(&self) -> bool {
         self.kept.is_some()
+    }
+
+    fn may_send(&self, begun: u32, sent: u32) -> bool {
+        self.enough.is_none_or(|enough| self.now.lasts(begun, sent) < enough)
     }
 
     fn cut_refused(&mut self) {

@@ -231,6 +231,71 @@ fn holds_at_random_times_keep_the_limits_the_path_and_the_end() {
     }
 }
 
+/// Where the line is so slow that rows last 16 ms, it can carry none that are shorter: only those
+/// where the motors rest, which need not lie where a planned row ends, may be.
+#[test]
+fn holds_need_no_more_of_the_line_than_the_plan() {
+    let machine = std::fs::read_to_string(jobs().join("machine.toml")).unwrap();
+    let slow = machine.replacen("[machine]\n", "[machine]\nlink.baud = 115_200\n", 1);
+    let job = job(&jobs().join("chords_and_star.ngc"), &slow);
+    let mut lengths: Vec<u32> = job.rows.iter().map(|row| row.ticks).collect();
+    lengths.sort_unstable();
+    let usual = lengths[lengths.len() / 2];
+    assert!(usual > 15_000, "{usual} ticks of 1 us");
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(115_200);
+    let (rows, holds) = driven(&job, || random.next_u64(), 30, false);
+    keeps(&job, &rows);
+    let found = measure(&job, &rows);
+    let short = |row: &&Row| row.ticks > 1 && row.ticks < usual - 16;
+    let extra = rows.iter().filter(short).count() - job.rows.iter().filter(short).count();
+    println!("{holds} holds, {extra} shorter rows, {found:?}");
+    assert!(holds >= 10 && extra as u64 <= 4 * holds, "{holds} holds, {extra} shorter rows");
+    assert!(found.off < OFF, "{found:?}");
+}
+
+/// At half the feed, the motion slows down at its end with less than its acceleration, so that a hold
+/// is possible there, and its resumption leads to the end of the program.
+#[test]
+fn resumption_that_leads_to_the_end_ends_the_move() {
+    let job = program("square_and_arc", None);
+    let axes = job.machine.axes.len() as u8;
+    let new = || {
+        let hold = Hold::new(&job.machine).unwrap();
+        let pace = Pace::new(&job.machine, &job.start_steps).unwrap();
+        let mut new = Stretches::new(job.rows.iter().cloned(), &job.start_steps, hold, pace, 31);
+        new.set_overrides(OverrideSetting { feed: 50, ..OverrideSetting::NONE });
+        new.begin();
+        new
+    };
+    // Reads up to so many rows of the stretch; returns how many, and whether the last one is marked.
+    let read = |from: &mut Stretches<_>, most: usize| {
+        let mut ends = Vec::new();
+        while ends.len() < most {
+            let row: Option<Vec<_>> = (0..axes).map(|axis| from.segment(axis)).collect();
+            let Some(row) = row else { break };
+            ends.push(row.iter().all(|segment| segment.last));
+        }
+        (ends.len(), ends.last() == Some(&true))
+    };
+    let (whole, ends) = read(&mut new(), usize::MAX);
+    assert!(ends);
+    let mut held = 0;
+    for back in 1..60 {
+        let mut stretches = new();
+        assert_eq!(read(&mut stretches, whole - back), (whole - back, false));
+        stretches.hold();
+        held += u64::from(stretches.is_held());
+        loop {
+            let (rows, ends) = read(&mut stretches, usize::MAX);
+            assert!(ends, "a hold {back} rows before the end: {rows} rows of a stretch");
+            if stretches.begin().is_none() {
+                break;
+            }
+        }
+    }
+    assert!(held > 20, "{held} holds");
+}
+
 const PROGRAMS: [&str; 5] = ["square_and_arc", "trochoid", "chords_and_star", "relief", "outputs"];
 
 /// A program of `sim/jobs`, with this feed instead of its own if one is given.

@@ -141,6 +141,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "command_line", "host_that_is_killed"],
     },
     Run {
+        name: "programs",
+        what: "all shipped programs to their end on a board of models, through the link: each edge of STEP and DIR, and each change of an output, in the clock in which the fast model of `simulate` has it",
+        asks: &[("CARRYSTEP_PROGRAM_SECONDS", "1000")],
+        cargo: &["--test", "pulses_of_simulate"],
+    },
+    Run {
         name: "hours",
         what: "eight hours of a program on a board of models, through the link: each pulse in the tick that the plan's own sums give it, drift zero steps",
         asks: &[("CARRYSTEP_HOURS", "28800")],

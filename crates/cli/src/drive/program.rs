@@ -19,7 +19,7 @@ use carrystep_program::{
     Switch, SwitchCount,
 };
 use carrystep_report::Detail;
-use carrystep_runner::{BlockAt, Horizon, OverrideSetting, Stretches, Wait, kept_ticks};
+use carrystep_runner::{BlockAt, Horizon, OverrideSetting, Stretches, Wait};
 use std::cell::{Cell, RefCell};
 
 /// The row in which the outputs of a program that is ended go off, seconds.
@@ -69,7 +69,7 @@ impl<'a> PlannedProgram<'a> {
         reading::refuse_missing(file, &survey)?;
         let named = |(axis, soft): (&Axis, &bool)| soft.then(|| axis.name.clone());
         let soft_limits = machine.axes.iter().zip(&place.soft).filter_map(named).collect();
-        let horizon = Horizon::of_queue(machine.queue as u64);
+        let horizon = Horizon::of_board(machine.queue as u64, machine.cuts);
         let seconds = survey.ticks as f64 * machine.timebase.tick_seconds();
         Ok(Self { file, survey, seconds, first, horizon, soft_limits, keeps })
     }
@@ -162,8 +162,12 @@ impl<'a> RowsLook<'a> {
     fn new(file: &'a ProgramFile) -> Self {
         let machine = file.machine();
         let axes = machine.axes.len();
-        let supply =
-            Supply::new(axes as u8, machine.timebase.tick_ns(), machine.queue, machine.baud);
+        let tick_ns = machine.timebase.tick_ns();
+        let supply = Supply::new(axes as u8, tick_ns, machine.queue, machine.baud);
+        let supply = match machine.cuts {
+            true => supply,
+            false => supply.with_enough(Horizon::enough_ticks(tick_ns) * tick_ns),
+        };
         Self { file, supply, gone: vec![0; axes], first: vec![0; axes], rows: 0 }
     }
 
@@ -220,10 +224,7 @@ fn way<'a>(file: &ProgramFile, kept: &'a Kept) -> Result<Way<'a>, Failure> {
     let pace = Pace::new(machine, &start).map_err(|error| Failure::input(error.to_string()))?;
     let stretches = Stretches::new(rows, &start, hold, pace, machine.queue);
     let stretches = stretches.with_outputs(file.row_outputs());
-    if !machine.cuts {
-        return Ok(stretches);
-    }
-    Ok(stretches.with_cuts(kept_ticks(machine.timebase.tick_ns())))
+    Ok(stretches.for_holds(machine.cuts, machine.timebase.tick_ns()))
 }
 
 /// The stretches of a program.

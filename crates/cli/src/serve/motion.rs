@@ -13,7 +13,7 @@ use carrystep_grbl::Alarm;
 use carrystep_job::{Hold, Pace};
 use carrystep_link::{Ended, HostError, Progress, Wish};
 use carrystep_program::LineBreak;
-use carrystep_runner::{GrowingRows, Stretches, kept_ticks};
+use carrystep_runner::{GrowingRows, Stretches};
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
@@ -84,10 +84,7 @@ impl Server<'_> {
         let pace = Pace::new(machine, &start).map_err(refused)?;
         let way = Stretches::new(self.requests.growing.rows(), &start, hold, pace, machine.queue);
         let way = way.with_outputs(self.outputs.clone());
-        let mut way = match machine.cuts {
-            true => way.with_cuts(kept_ticks(machine.timebase.tick_ns())),
-            false => way,
-        };
+        let mut way = way.for_holds(machine.cuts, machine.timebase.tick_ns());
         if let Some(program) = self.control.program().filter(|_| self.requests.scales()) {
             way.set_overrides(program.overrides());
         }

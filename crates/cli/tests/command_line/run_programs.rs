@@ -3,7 +3,7 @@
 
 use crate::command::{Folder, Ran};
 use crate::schemas;
-use crate::stops::{drives, moving};
+use crate::stops::{drives, moving, said};
 use crate::virtual_boards::{Board, document, passed};
 use serde_json::Value;
 use std::process::{Child, Command};
@@ -82,7 +82,7 @@ pub fn status(folder: &Folder, board: &Board) -> Value {
 /// Waits until the program waits, and returns what for.
 pub fn waits(folder: &Folder, board: &Board, child: &mut Child) -> String {
     loop {
-        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended: {}", said(child));
         if let Some(waits) = status(folder, board)["waits"].as_str() {
             return waits.to_owned();
         }

@@ -4,6 +4,7 @@
 use crate::command::{Folder, Ran};
 use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
 use serde_json::Value;
+use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -27,7 +28,7 @@ fn status(folder: &Folder, port: &str) -> Value {
 /// Waits until that command holds the port and an axis moves; returns the output of `status` then.
 pub fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
     loop {
-        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended: {}", said(child));
         let ran = folder.run(&format!("status --port {port} --machine machine.toml --json"));
         // Before the command listens, the port is only reported as busy.
         let told: Value = serde_json::from_str(&ran.stdout).unwrap_or_default();
@@ -36,6 +37,19 @@ pub fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// What a command has said that has ended too early.
+pub fn said(child: &mut Child) -> String {
+    let mut said = String::new();
+    let outputs: [Option<Box<dyn Read>>; 2] = [
+        child.stdout.take().map(|output| Box::new(output) as _),
+        child.stderr.take().map(|output| Box::new(output) as _),
+    ];
+    for mut output in outputs.into_iter().flatten() {
+        output.read_to_string(&mut said).unwrap();
+    }
+    said
 }
 
 pub fn stop(folder: &Folder, port: &str, options: &str) -> Ran {

@@ -9,8 +9,8 @@ use super::law::Law;
 use crate::row::Row;
 use carrystep_plan::exact::travel;
 
-/// The rows of a transition between two planned ticks, of at most `longest` ticks; `None` if there
-/// are none of such lengths. Their limits are not checked.
+/// The rows of a transition between two planned ticks, of at most twice `longest` ticks; `None` if
+/// there are none of such lengths. Their limits are not checked.
 pub(super) fn rows(
     curve: &Curve<'_>,
     (begin, end): (u64, u64),
@@ -59,6 +59,12 @@ pub(super) fn rows(
         (before, now) = (tick, next);
     }
     land(&mut rows, &at, &curve.at(curve.place(end)))?;
+    // A resumption may lead to the end of the plan, where the moves of the motors end.
+    let end_of_plan = curve.rows().last().filter(|_| end == curve.ticks());
+    if let (Some(row), Some(planned)) = (rows.last_mut(), end_of_plan) {
+        let motors = row.segments.iter_mut().zip(&planned.segments);
+        motors.for_each(|(segment, planned)| segment.last = planned.last);
+    }
     Some(rows)
 }
 
@@ -80,8 +86,8 @@ fn ends(curve: &Curve<'_>, (begin, end): (u64, u64), law: Law, longest: u32) -> 
     let (mut ends, mut before) = (Vec::new(), 0);
     for (corner, planned) in corners {
         let length = corner.checked_sub(before).filter(|&length| length > 0)?;
-        // As short as the line may have to carry them.
-        let pieces = (length / u64::from(planned)).max(length.div_ceil(longest.into()));
+        // None is shorter than the planned one: the line may carry no more rows a second than those.
+        let pieces = (length / u64::from(planned)).max(length.div_ceil(2 * u64::from(longest)));
         let is_all = ends.is_empty() && corner == law.ticks();
         let pieces = if is_all { pieces.max(2) } else { pieces };
         ends.extend((1..=pieces).map(|piece| before + length * piece / pieces));

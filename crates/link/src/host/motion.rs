@@ -8,7 +8,7 @@ use crate::command::{ProgramError, Segment};
 use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
-use crate::registers::{MOST_AXES, POSITION, SNAPSHOT, STATUS, TICKS};
+use crate::registers::{MOST_AXES, POSITION, SNAPSHOT, STATUS, STATUS_SLOT, TICKS};
 use crate::session::Session;
 
 /// TICKS is read once in so many reads of the state, for the comparison of the clocks.
@@ -140,7 +140,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Err(ProgramError::NoPower.into());
         }
         let mut cutting = if source.may_cut() { Some(self.cutting()?) } else { None };
-        let mut feeder = Feeder::wide(source);
+        let depth = self.facts.queue_depth.min(STATUS_SLOT) as u8;
+        let mut feeder = Feeder::wide(source).with_queues(depth);
         let mut last_status = self.clock.milliseconds();
         let mut looks = 0_u32;
         let (mut capture, mut snapshot) = (Capture::None, None);

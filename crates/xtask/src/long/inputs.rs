@@ -165,6 +165,23 @@ pub const INPUTS: &[Inputs] = &[
     ),
     ("kills", RUN),
     (
+        "programs",
+        &[
+            "crates/core/",
+            "crates/files/",
+            "crates/gcode/",
+            "crates/job/",
+            "crates/link/",
+            "crates/model/",
+            "crates/plan/",
+            "crates/program/",
+            "crates/runner/",
+            "crates/simulators/",
+            "crates/virtual-board/",
+            "sim/",
+        ],
+    ),
+    (
         "hours",
         &[
             "crates/core/",
