@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// How long a command waits for a port that is held by a command that only reads or stops; those
 /// release it by themselves.
-const SOON: Duration = Duration::from_secs(2);
+const SOON: Duration = Duration::from_secs(10);
 
 /// Where Linux has its pseudo-terminals, behind which are programs, such as a virtual board.
 const PSEUDO_TERMINALS: &str = "/dev/pts/";
