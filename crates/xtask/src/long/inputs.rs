@@ -269,6 +269,7 @@ mod tests {
                 "dead-host",
                 "verilog-board",
                 "kills",
+                "programs",
                 "hours",
                 "linuxcnc",
                 "senders",
