@@ -10,14 +10,15 @@
 //! counted from where each stretch would begin if it followed the one before at once.
 #![allow(dead_code, reason = "each test uses a part")]
 
+use crate::support::bus::Bus;
 use crate::support::recorder::{Recorder, edges_between};
 use crate::support::wire::Faults;
 use crate::support::{Died, End, SESSION};
 use carrystep_core::Command;
-use carrystep_core::link::Uart;
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Hold, Pace};
-use carrystep_link::{Ended, HostError, Patience, Progress, Wish};
+use carrystep_link::{Clock, Ended, Host, HostError, Line, Patience, Progress, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_program::{ProgramFile, Row, Rows, Settings, sync_points};
 use carrystep_runner::Stretches;
@@ -100,16 +101,8 @@ impl Job {
         set: impl FnOnce(&Way),
         mut look: impl FnMut(&End<Recorder>, &Way, &Progress<'_>) -> Wish,
     ) -> Run {
-        let Self { machine, file, .. } = self;
-        let time = &machine.timebase;
-        let rows: Box<dyn Iterator<Item = Row>> =
-            Box::new(Rows::new(file).unwrap().map(Result::unwrap));
-        let (start, hold) = (file.start_steps(), Hold::new(machine).unwrap());
-        let pace = Pace::new(machine, &start).unwrap();
-        let way = Stretches::new(rows, &start, hold, pace, machine.queue);
-        let way = way.with_outputs(file.row_outputs());
-        let way = way.for_holds(machine.cuts, time.tick_ns());
-        let way = RefCell::new(way);
+        let machine = &self.machine;
+        let (time, way) = (&machine.timebase, self.way());
         set(&way);
         let (engine, uart) = (machine.engine(), Uart::new(time.clock_hz(), machine.baud).unwrap());
         let board = Recorder::new(ModelBoard::new(&engine, uart));
@@ -117,21 +110,40 @@ impl Job {
         let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
         host.open(SESSION).unwrap();
         host.enable().unwrap();
-        let (mut ended, mut cuts) = (Ok(Ended::Done), 0);
-        while ended == Ok(Ended::Done) && { way.borrow_mut().begin() }.is_some() {
-            let mut granted = 0;
-            ended = host.stream(&way, |progress: &Progress<'_>| {
-                granted = progress.queues.map_or(0, |queues| queues.cuts);
-                look(&end, &way, progress)
-            });
-            cuts += granted;
-        }
+        let (ended, cuts) = drive(&mut host, &way, |progress| look(&end, &way, progress));
         let positions = host.status().positions[..machine.axes.len()].to_vec();
         drop(host);
         let board = Rc::into_inner(end.0).unwrap().into_inner().board;
-        let loads = board.loads().to_vec();
-        let recording = board.finish();
-        Run { edges: recording.edges, levels: recording.levels, loads, positions, ended, cuts }
+        Run::of(board, positions, ended, cuts)
+    }
+
+    /// Drives a board on an SPI bus of this rate, Hz, through the program. `look` is called after
+    /// each exchange.
+    pub fn run_on_bus(&self, sck_hz: u64, mut look: impl FnMut(&Bus<Recorder>) -> Wish) -> Run {
+        let machine = &self.machine;
+        let (engine, way) = (machine.engine(), self.way());
+        let board = Recorder::new(ModelBoard::on_spi(&engine, sck_hz));
+        let bus = Bus::of(board, sck_hz, Faults::default(), 1);
+        let bus = bus.clocked(machine.timebase.clock_hz());
+        let mut host = bus.connect_to(LineKind::Spi.build_id(&engine));
+        host.enable().unwrap();
+        let (ended, cuts) = drive(&mut host, &way, |_| look(&bus));
+        let positions = host.status().positions[..machine.axes.len()].to_vec();
+        drop(host);
+        let board = Rc::into_inner(bus.0).unwrap().into_inner().board;
+        Run::of(board, positions, Ok(ended.unwrap()), cuts)
+    }
+
+    /// The rows of the program, as `run` sends them.
+    fn way(&self) -> Way {
+        let Self { machine, file, .. } = self;
+        let rows: Box<dyn Iterator<Item = Row>> =
+            Box::new(Rows::new(file).unwrap().map(Result::unwrap));
+        let (start, hold) = (file.start_steps(), Hold::new(machine).unwrap());
+        let pace = Pace::new(machine, &start).unwrap();
+        let way = Stretches::new(rows, &start, hold, pace, machine.queue);
+        let way = way.with_outputs(file.row_outputs());
+        RefCell::new(way.for_holds(machine.cuts, machine.timebase.tick_ns()))
     }
 
     /// What a run has done, with clocks as those of [`Self::simulated`], up to this tick of the plan.
@@ -194,6 +206,25 @@ impl Job {
     }
 }
 
+/// Drives a board through all stretches, as long as they are done. Returns how the last one ended,
+/// and the number of cuts.
+fn drive<L: Line, C: Clock, const N: usize>(
+    host: &mut Host<L, C, N>,
+    way: &Way,
+    mut look: impl FnMut(&Progress<'_>) -> Wish,
+) -> (Result<Ended, HostError<L::Error>>, u32) {
+    let (mut ended, mut cuts) = (Ok(Ended::Done), 0);
+    while matches!(ended, Ok(Ended::Done)) && { way.borrow_mut().begin() }.is_some() {
+        let mut granted = 0;
+        ended = host.stream(way, |progress: &Progress<'_>| {
+            granted = progress.queues.map_or(0, |queues| queues.cuts);
+            look(progress)
+        });
+        cuts += granted;
+    }
+    (ended, cuts)
+}
+
 /// What a run came to.
 pub struct Run {
     pub edges: Vec<Edge>,
@@ -203,6 +234,19 @@ pub struct Run {
     pub positions: Vec<i32>,
     pub ended: Result<Ended, HostError<Died>>,
     pub cuts: u32,
+}
+
+impl Run {
+    fn of(
+        board: Recorder,
+        positions: Vec<i32>,
+        ended: Result<Ended, HostError<Died>>,
+        cuts: u32,
+    ) -> Self {
+        let loads = board.loads().to_vec();
+        let recording = board.finish();
+        Self { edges: recording.edges, levels: recording.levels, loads, positions, ended, cuts }
+    }
 }
 
 /// Every edge of STEP and DIR, and every change of the outputs.

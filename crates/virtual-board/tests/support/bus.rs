@@ -2,7 +2,7 @@
 //! microsecond more than its bits.
 
 use super::wire::{Faults, Wire};
-use super::{CLOCK_HZ, Kind, MS, SESSION, Seen, build};
+use super::{CLOCK_HZ, Kind, SESSION, Seen, build};
 use carrystep_core::link::{BuildId, LineKind};
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Clock, Host, Patience, Timing};
@@ -20,6 +20,8 @@ pub struct Wired<B> {
     pub board: B,
     edges: Seen,
     sck_hz: u64,
+    /// The board's clock, Hz.
+    clock_hz: u64,
     there: Wire,
     back: Wire,
     /// As in [`super::World`].
@@ -65,11 +67,18 @@ impl<B: Kind> Bus<B> {
             board,
             edges: Seen::default(),
             sck_hz,
+            clock_hz: CLOCK_HZ,
             there: Wire::new(faults, seed),
             back: Wire::new(faults, !seed),
             least_waiting: usize::MAX,
             handed_over: false,
         })))
+    }
+
+    /// The same for a board with another clock, Hz.
+    pub fn clocked(self, clock_hz: u64) -> Self {
+        self.0.borrow_mut().clock_hz = clock_hz;
+        self
     }
 
     /// Connects a host that refuses any other build, and opens a session.
@@ -90,7 +99,8 @@ impl<B: Kind> Bus<B> {
 
 impl<B: Kind> Clock for Bus<B> {
     fn milliseconds(&mut self) -> u32 {
-        (self.0.borrow().board.cycle() / MS) as u32
+        let wired = self.0.borrow();
+        (wired.board.cycle() / (wired.clock_hz / 1000)) as u32
     }
 }
 
@@ -101,7 +111,7 @@ impl<B> ErrorType for Bus<B> {
 impl<B: Kind> SpiDevice for Bus<B> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         let wired = &mut *self.0.borrow_mut();
-        let Wired { board, edges, sck_hz, there, back, .. } = wired;
+        let Wired { board, edges, sck_hz, clock_hz, there, back, .. } = wired;
         for operation in operations {
             let Operation::TransferInPlace(bytes) = operation else {
                 panic!("{operation:?} is not what the driver does")
@@ -110,13 +120,13 @@ impl<B: Kind> SpiDevice for Bus<B> {
             there.receive(0).into_iter().for_each(|byte| board.say(byte));
             // The bits of the bytes, and half a period before and behind them.
             let halves = 16 * bytes.len() as u64 + 2;
-            board.reach(board.cycle() + (halves * CLOCK_HZ).div_ceil(2 * *sck_hz), edges);
+            board.reach(board.cycle() + (halves * *clock_hz).div_ceil(2 * *sck_hz), edges);
             assert_eq!(board.unsaid(), 0, "the bus is slower than its clock");
             let heard: Vec<u8> = std::iter::from_fn(|| board.next_byte()).collect();
             back.send(0, &heard);
             bytes.copy_from_slice(&back.receive(0));
         }
-        board.reach(board.cycle() + CLOCK_HZ / 1_000_000, edges);
+        board.reach(board.cycle() + *clock_hz / 1_000_000, edges);
         let waiting = board.least_waiting().filter(|_| !wired.handed_over);
         wired.least_waiting = waiting.unwrap_or(usize::MAX).min(wired.least_waiting);
         Ok(())
