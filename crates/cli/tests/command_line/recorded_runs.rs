@@ -140,6 +140,7 @@ impl Recorded {
 
     /// Replays it on the Verilog, and compares each clock; `cuts` is reported. Returns the levels of
     /// the outputs, one after the other.
+    #[allow(clippy::print_stderr, reason = "figures")]
     fn replayed(self, cuts: &Value) -> Vec<u8> {
         let (engine, uart) = (self.machine.engine(), uart(&self.machine));
         let recording = self.board.end().0.finish();
