@@ -1,8 +1,8 @@
 //! Runs of programs on six axes, recorded byte by byte, and replayed on the exported Verilog.
 //!
 //! The command talks to a board of models, while other commands hold the program, resume it, change
-//! its speed, jog in a pause, and ramp the axes down. What reached the board reaches the Verilog in the same clocks: all pins, and
-//! the line to the host, are the same in every clock.
+//! its speed, jog in a pause, and ramp the axes down. What reached the board reaches the Verilog in
+//! the same clocks: all pins, and the line to the host, are the same in every clock.
 
 use crate::board_here::BoardHere;
 use crate::command::Folder;
