@@ -10,9 +10,9 @@
 
 #[path = "../../virtual-board/tests/support/mod.rs"]
 mod support;
+mod three_axes;
 
 use carrystep_core::link::Uart;
-use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Hold, Pace};
 use carrystep_link::{Ended, Patience, Progress, Wish};
 use carrystep_model::fast::{Change, Edge};
@@ -23,15 +23,10 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use support::wire::Faults;
 use support::{CLOCK_HZ, End, MS, SESSION};
+use three_axes::machine;
 
-const MACHINE: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_depth = 31\n\
-    cuts = true\n[machine.link]\nbaud = 3_000_000\n\
-    [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 80\nspeed_limit = 100\naccel_limit = 1000\n\
-    driver = \"tmc2209\"\n\
-    [[machine.axis]]\nname = \"y\"\nsteps_per_unit = 80\nspeed_limit = 100\naccel_limit = 1000\n\
-    driver = \"tmc2209\"\n\
-    [[machine.axis]]\nname = \"z\"\nsteps_per_unit = 400\nspeed_limit = 50\naccel_limit = 500\n\
-    driver = \"tmc2209\"\n";
+const TABLES: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_depth = 31\n\
+    cuts = true\n[machine.link]\nbaud = 3_000_000";
 
 /// The greatest time from the request to the first pulse that differs, ms: 40, and the round trip
 /// of this line.
@@ -64,8 +59,7 @@ struct Request {
 }
 
 fn run(path: &Path, request: Option<Request>) -> Run {
-    let text = SourceText { path: "machine.toml".into(), text: MACHINE.into() };
-    let machine = Machine::from_source(&text).unwrap();
+    let (machine, text) = machine(TABLES);
     let (engine, uart) = (machine.engine(), Uart::new(CLOCK_HZ, 3_000_000).unwrap());
     let file = ProgramFile::open(path, machine.clone(), &text.path, Settings::default()).unwrap();
     let rows = Rows::new(&file).unwrap().map(Result::unwrap);

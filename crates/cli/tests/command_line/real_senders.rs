@@ -43,6 +43,15 @@ fn ran(folder: &Folder, program: &str, options: &str) -> String {
     board.end()
 }
 
+/// A virtual board that is served to a CNCjs, and a connection that watches.
+fn served_to_cncjs(folder: &Folder, options: &str) -> (Board, Served, Cncjs, Sender) {
+    let board = Board::new(folder, options);
+    let served = Served::with(folder, &format!("--port {} --link grbl", board.port));
+    let cncjs = Cncjs::new(folder, &folder.path("grbl").display().to_string());
+    let watcher = Sender::tcp(&served);
+    (board, served, cncjs, watcher)
+}
+
 /// The positions that a board says when it ends.
 fn positions(said: &str) -> Vec<&str> {
     said.lines().filter(|line| line.contains(" at ")).collect()
@@ -59,13 +68,10 @@ fn is_at(status: &Value, wanted: &[f64]) -> bool {
 #[test]
 fn cncjs_streams_programs() {
     let Some(folder) = folder() else { return };
-    let board = Board::new(&folder, "--fast");
-    let served = Served::with(&folder, &format!("--port {} --link grbl", board.port));
-    let mut cncjs = Cncjs::new(&folder, &folder.path("grbl").display().to_string());
+    let (board, served, mut cncjs, mut watcher) = served_to_cncjs(&folder, "--fast");
     // CNCjs has understood them: the words behind a value are its own.
     let accel = "$120=1000.000 (X-axis acceleration, mm/sec^2)";
     assert!(cncjs.said.iter().any(|line| line == accel), "{:?}", cncjs.said);
-    let mut watcher = Sender::tcp(&served);
     let mut lines = 0;
     for (name, program, end) in PROGRAMS {
         cncjs.load(name, program);
@@ -145,10 +151,8 @@ fn cncjs_in_a_hold_has_the_pulses_of_run() {
     let Some(folder) = folder() else { return };
     let (name, program, end) = PROGRAMS[0];
     ran(&folder, program, "--vcd run.vcd");
-    let board = Board::new(&folder, "--fast --vcd serve.vcd");
-    let served = Served::with(&folder, &format!("--port {} --link grbl", board.port));
-    let mut cncjs = Cncjs::new(&folder, &folder.path("grbl").display().to_string());
-    let mut watcher = Sender::tcp(&served);
+    let (board, served, mut cncjs, mut watcher) =
+        served_to_cncjs(&folder, "--fast --vcd serve.vcd");
     cncjs.command("feedhold", &[]);
     watcher.state("Hold:0");
     cncjs.load(name, program);
@@ -182,10 +186,7 @@ fn cncjs_takes_hardly_longer_than_run() {
     let Some(folder) = folder() else { return };
     let (name, program, end) = PROGRAMS[0];
     ran(&folder, program, "--vcd run.vcd");
-    let board = Board::new(&folder, "--vcd serve.vcd");
-    let served = Served::with(&folder, &format!("--port {} --link grbl", board.port));
-    let mut cncjs = Cncjs::new(&folder, &folder.path("grbl").display().to_string());
-    let mut watcher = Sender::tcp(&served);
+    let (board, served, mut cncjs, mut watcher) = served_to_cncjs(&folder, "--vcd serve.vcd");
     cncjs.load(name, program);
     cncjs.command("gcode:start", &[]);
     cncjs.finishes(name);
