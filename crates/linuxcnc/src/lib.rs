@@ -5,7 +5,9 @@
 //!   carrystep_pins      its pins; nothing else knows HAL
 //!   carrystep_servo     what the real-time function does in a servo period; never waits
 //!     carrystep_blocks    position commands to cubic segments
-//!   carrystep_port      the thread that owns the serial port (POSIX)
+//!   carrystep_port      the thread that owns the line (POSIX)
+//!     carrystep_uart      a serial port
+//!     carrystep_spi       an SPI by spidev
 //!     carrystep_pump      connects, sends blocks, takes snapshots; knows no port and no clock
 //!       carrystep_facts     which board it is
 //!       carrystep_look      what is read of it again and again
@@ -20,14 +22,14 @@
 mod configuration;
 
 pub use configuration::{
-    Configuration, HomeSwitch, Homing, Joint, LETTERS, MachineRefused, OutputNets, SwitchRefused,
-    Wishes,
+    BoardLine, Configuration, HomeSwitch, Homing, Joint, LETTERS, MachineRefused, OutputNets,
+    SwitchRefused, Wishes,
 };
 
 use carrystep_link::C_LIBRARY;
 
 /// Name and text of each file that belongs to the component alone.
-pub const COMPONENT: [(&str, &str); 25] = [
+pub const COMPONENT: [(&str, &str); 28] = [
     ("Makefile", include_str!("../c/Makefile")),
     ("carrystep.9", include_str!("../c/carrystep.9")),
     ("carrystep_main.c", include_str!("../c/carrystep_main.c")),
@@ -39,6 +41,9 @@ pub const COMPONENT: [(&str, &str); 25] = [
     ("carrystep_blocks.c", include_str!("../c/carrystep_blocks.c")),
     ("carrystep_port.h", include_str!("../c/carrystep_port.h")),
     ("carrystep_port.c", include_str!("../c/carrystep_port.c")),
+    ("carrystep_line.h", include_str!("../c/carrystep_line.h")),
+    ("carrystep_uart.c", include_str!("../c/carrystep_uart.c")),
+    ("carrystep_spi.c", include_str!("../c/carrystep_spi.c")),
     ("carrystep_pump.h", include_str!("../c/carrystep_pump.h")),
     ("carrystep_pump.c", include_str!("../c/carrystep_pump.c")),
     ("carrystep_facts.h", include_str!("../c/carrystep_facts.h")),
