@@ -4,6 +4,7 @@
 //! carrystep_main      parameters and messages of HAL
 //!   carrystep_pins      its pins; nothing else knows HAL
 //!   carrystep_servo     what the real-time function does in a servo period; never waits
+//!     carrystep_glide     the jump of a command at an index pulse
 //!     carrystep_blocks    position commands to cubic segments
 //!   carrystep_port      the thread that owns the line (POSIX)
 //!     carrystep_uart      a serial port
@@ -29,7 +30,7 @@ pub use configuration::{
 use carrystep_link::C_LIBRARY;
 
 /// Name and text of each file that belongs to the component alone.
-pub const COMPONENT: [(&str, &str); 28] = [
+pub const COMPONENT: [(&str, &str); 30] = [
     ("Makefile", include_str!("../c/Makefile")),
     ("carrystep.9", include_str!("../c/carrystep.9")),
     ("carrystep_main.c", include_str!("../c/carrystep_main.c")),
@@ -39,6 +40,8 @@ pub const COMPONENT: [(&str, &str); 28] = [
     ("carrystep_servo.c", include_str!("../c/carrystep_servo.c")),
     ("carrystep_blocks.h", include_str!("../c/carrystep_blocks.h")),
     ("carrystep_blocks.c", include_str!("../c/carrystep_blocks.c")),
+    ("carrystep_glide.h", include_str!("../c/carrystep_glide.h")),
+    ("carrystep_glide.c", include_str!("../c/carrystep_glide.c")),
     ("carrystep_port.h", include_str!("../c/carrystep_port.h")),
     ("carrystep_port.c", include_str!("../c/carrystep_port.c")),
     ("carrystep_line.h", include_str!("../c/carrystep_line.h")),

@@ -1,7 +1,9 @@
 //! Compiles the component's C files with a bench that a test talks with through pipes.
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod line;
 pub mod loader;
+pub mod signals;
 pub mod world;
 
 use carrystep_linuxcnc::component;
@@ -29,8 +31,9 @@ const FLAGS: [&str; 14] = [
 ];
 
 /// What knows neither HAL nor a thread, and the SPI.
-const FILES: [&str; 14] = [
+const FILES: [&str; 15] = [
     "carrystep_servo.c",
+    "carrystep_glide.c",
     "carrystep_blocks.c",
     "carrystep_feedback.c",
     "carrystep_facts.c",

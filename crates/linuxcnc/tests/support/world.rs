@@ -1,5 +1,7 @@
 //! A computer with the component, and a board, in simulated time.
 
+use super::line::WINDOW;
+pub use super::line::{Line, SCK_HZ};
 use super::{Bench, Running};
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
@@ -53,10 +55,10 @@ pub struct Says {
 }
 
 /// A computer with the component, and a board.
-pub struct World {
+pub struct World<B = ModelBoard> {
     pub bench: Running,
-    pub board: ModelBoard,
-    line: Line,
+    pub board: B,
+    pub(super) line: Line,
     /// us
     pub now: u64,
     /// Whether the cable is in.
@@ -69,21 +71,6 @@ pub struct World {
     /// The inputs of the board, from the number of the cycle and the position of axis 0.
     pub inputs: Option<fn(u64, i32) -> Switches>,
 }
-
-/// The line between both.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
-    /// A UART whose rate suits the segments.
-    Uart,
-    /// An SPI, by the stand-in for spidev of `bench/spi_bench.c`.
-    Spi,
-}
-
-/// Rate of the SPI, Hz.
-const SCK_HZ: u64 = 4_000_000;
-
-/// Writes that may be unacknowledged over SPI (docs/protocol.md).
-const WINDOW: usize = 6;
 
 pub fn build() -> EngineBuild {
     let timebase = Timebase::new(CLOCK_HZ, 2000, 16).unwrap();
@@ -107,6 +94,24 @@ impl World {
     }
 
     fn on(line: Line, periods: u32, id: u64, build: &EngineBuild, has: &str) -> Self {
+        // A segment of each joint in each period is more than 921 600 baud carry.
+        let baud = if periods == 1 { 3_000_000 } else { 921_600 };
+        let board = match line {
+            Line::Uart => ModelBoard::new(build, Uart::new(CLOCK_HZ, baud).unwrap()),
+            Line::Spi => ModelBoard::on_spi(build, SCK_HZ),
+        };
+        Self::of(board, line, periods, id, has)
+    }
+
+    /// A world whose board is ready.
+    pub fn ready(line: Line, periods: u32) -> Self {
+        Self::new(line, periods, 0).made_ready()
+    }
+}
+
+impl<B: SimulatedBoard> World<B> {
+    /// A world with this board, which is at such a line; the rest as in [`World::with`].
+    pub fn of(board: B, line: Line, periods: u32, id: u64, has: &str) -> Self {
         let mut bench = Bench::component().run("");
         let window = if line == Line::Spi { WINDOW } else { 0 };
         if line == Line::Spi {
@@ -120,12 +125,6 @@ impl World {
             bench.say(&format!("begin {JOINTS} {periods} 40000 {id:x} {SCALE} {most}")),
             "ok"
         );
-        // A segment of each joint in each period is more than 921 600 baud carry.
-        let baud = if periods == 1 { 3_000_000 } else { 921_600 };
-        let board = match line {
-            Line::Uart => ModelBoard::new(build, Uart::new(CLOCK_HZ, baud).unwrap()),
-            Line::Spi => ModelBoard::on_spi(build, SCK_HZ),
-        };
         Self {
             bench,
             board,
@@ -138,11 +137,6 @@ impl World {
             period: PERIOD,
             inputs: None,
         }
-    }
-
-    /// A world whose board is ready.
-    pub fn ready(line: Line, periods: u32) -> Self {
-        Self::new(line, periods, 0).made_ready()
     }
 
     pub fn made_ready(mut self) -> Self {
@@ -165,62 +159,15 @@ impl World {
     }
 
     /// Runs the board up to a cycle.
-    fn reach(&mut self, end: u64) {
+    pub(super) fn reach(&mut self, end: u64) {
         while self.board.cycle() < end {
             let mut next = end;
             if let Some(inputs) = self.inputs {
                 next = end.min(self.board.cycle() + SLICE);
                 self.board.press(inputs(self.board.cycle(), self.board.position(0)));
             }
-            self.board.run(next, &mut ());
+            self.board.run(next, &mut ()).unwrap();
         }
-    }
-
-    /// A round of the thread at a serial port.
-    fn serial(&mut self) {
-        let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
-        let heard = if self.cable { hex(&heard) } else { String::new() };
-        let sent = self.bench.say(&format!("line {} {heard}-", self.now));
-        let sent = bytes(sent.trim_end_matches('-'));
-        if self.cable {
-            sent.into_iter().for_each(|byte| self.board.say(byte));
-        }
-    }
-
-    /// A round of the thread at an SPI.
-    fn transfers(&mut self) {
-        let mut said = self.bench.say(&format!("spi {}", self.now));
-        while let Some(out) = said.strip_prefix("x ") {
-            let heard =
-                if self.device { hex(&self.transfer(&bytes(out))) } else { "gone".to_owned() };
-            said = self.bench.say(&format!("{heard} {}", self.now));
-        }
-        assert_eq!(said, "end");
-    }
-
-    /// A transfer over the bus. Without a cable, MISO is pulled up.
-    fn transfer(&mut self, out: &[u8]) -> Vec<u8> {
-        // No answer can come in the meantime.
-        assert!(writes(out) <= WINDOW, "{out:x?}");
-        // What another program has sent comes first, and its answers are not ours.
-        while self.board.unsaid() > 0 {
-            self.reach(self.board.cycle() + MS / 1000);
-        }
-        while self.board.next_byte().is_some() {}
-        let mut heard = vec![0xff; out.len()];
-        let begun = self.board.cycle();
-        if self.cable {
-            out.iter().for_each(|&byte| self.board.say(byte));
-            while self.board.unsaid() > 0 {
-                self.reach(self.board.cycle() + MS / 1000);
-            }
-            heard.fill_with(|| self.board.next_byte().unwrap());
-            assert_eq!(self.board.next_byte(), None);
-        } else {
-            self.reach(begun + out.len() as u64 * 8 * CLOCK_HZ / SCK_HZ);
-        }
-        self.now = self.now.max(self.board.cycle() * 1000 / MS);
-        heard
     }
 
     /// A servo period with the command of `self.command`, without passing time.
@@ -315,30 +262,6 @@ impl World {
             assert!((place - pulses).abs() < 1e-6, "joint {joint}: {place}, {pulses} pulses");
         }
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        write!(text, "{byte:02x}").unwrap();
-        text
-    })
-}
-
-fn bytes(hex: &str) -> Vec<u8> {
-    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
-    hex.as_bytes().chunks(2).map(byte).collect()
-}
-
-/// Number of writes among the requests of a transfer (docs/protocol.md): frames of 12 bytes or more.
-/// OPEN and STOP have no place in their order.
-fn writes(out: &[u8]) -> usize {
-    let frames = out.split(|&byte| byte == 0xc0);
-    let plain = |frame: &[u8]| {
-        // An escape of two bytes stands for one.
-        let bytes: Vec<u8> = frame.iter().copied().filter(|&byte| byte != 0xdb).collect();
-        (bytes.len() >= 12).then(|| bytes[1])
-    };
-    frames.filter_map(plain).filter(|address| ![0xa5, 0xa6].contains(address)).count()
 }
 
 /// A smooth move of 2.5 units that takes 0.1 s.
