@@ -3,6 +3,7 @@
 
 pub mod line;
 pub mod loader;
+pub mod rounds;
 pub mod signals;
 pub mod world;
 
