@@ -24,6 +24,12 @@ void carrystep_begin(carrystep_session *session, uint32_t resend, uint32_t pause
     memset(session, 0, sizeof *session);
     session->resend = resend;
     session->pause = pause;
+    session->limit = CARRYSTEP_SLOTS;
+}
+
+void carrystep_limit(carrystep_session *session, uint8_t writes)
+{
+    session->limit = writes;
 }
 
 /* Owns the session with this number from now on; none if it is 0. */
@@ -173,7 +179,8 @@ static size_t send_write(carrystep_session *session, uint32_t now, uint8_t *line
         session->sent = 0;
         session->has_refused = false;
     }
-    if (session->sent >= session->length || (session->busy && waited < session->pause)) {
+    if (session->sent >= session->length || session->sent >= session->limit ||
+        (session->busy && waited < session->pause)) {
         return 0;
     }
     if (session->sent == 0) {

@@ -42,6 +42,7 @@ typedef struct {
     uint8_t first;
     uint8_t sent;
     uint8_t reached;
+    uint8_t limit;
     uint32_t since;
     uint8_t refused;
     bool has_refused;
@@ -94,6 +95,11 @@ carrystep_verdict carrystep_check(uint32_t identity, uint32_t protocol, uint64_t
  * `resend`: time without an answer, ms, until a request is sent again; it must exceed the delay of
  * the line. `pause`: time until a request that was refused as busy is sent again, ms. */
 void carrystep_begin(carrystep_session *session, uint32_t resend, uint32_t pause);
+
+/* Has at most `writes` writes on the line that are not acknowledged; the others wait. 1 to
+ * CARRYSTEP_SLOTS, which is the number without this call. Over SPI it must be 6 or less
+ * (docs/protocol.md). */
+void carrystep_limit(carrystep_session *session, uint8_t writes);
 
 /* Asks for a session with this number, 1 to 65535, with a build of `axes` axes. It is granted if no
  * axis moves and no segment waits, or if a stop is complete; then carrystep_owns returns true.

@@ -22,9 +22,11 @@ MODULE_DESCRIPTION("Stepper motors by segments: the carrystep engine in an FPGA"
 MODULE_LICENSE("GPL"); /* what is linked with LinuxCNC; the sources are MIT or Apache-2.0 */
 
 static char *port = "";
-RTAPI_MP_STRING(port, "serial port of the board");
+RTAPI_MP_STRING(port, "serial port or spidev of the board");
 static int baud = 921600;
-RTAPI_MP_INT(baud, "rate of the port, bit/s");
+RTAPI_MP_INT(baud, "rate of a serial port, bit/s");
+static int speed = 1000000;
+RTAPI_MP_INT(speed, "rate of an SPI (its SCK), Hz");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 1 to 8: joint N is axis N of the board");
 static int periods = 4;
@@ -88,8 +90,11 @@ static const char *mistake(carrystep_pump_how *how)
     if (*port == '\0') {
         return "the parameter port is missing: loadrt carrystep port=/dev/ttyUSB1";
     }
-    if (!carrystep_port_has_rate((uint32_t)baud)) {
+    if (!carrystep_uart_has_rate((uint32_t)baud)) {
         return "the parameter baud is not a rate of serial ports, such as 921600";
+    }
+    if (speed < 10000 || speed > 50000000) {
+        return "the parameter speed must be 10000 to 50000000 Hz";
     }
     if (joints < 1 || joints > (int)CARRYSTEP_MOST_AXES) {
         return "the parameter joints must be 1 to 8";
@@ -154,7 +159,8 @@ int rtapi_app_main(void)
     thread.shared = &shared;
     thread.how = how;
     thread.path = port;
-    thread.baud = (uint32_t)baud;
+    thread.rates.baud = (uint32_t)baud;
+    thread.rates.sck_hz = (uint32_t)speed;
     if (carrystep_port_begin(&thread) != 0) {
         hal_exit(component_id);
         return refuse("the system starts no thread");

@@ -75,6 +75,9 @@ void carrystep_pump_begin(carrystep_pump *pump, carrystep_shared *shared, const 
     pump->look.latched = how->probe_latch != CARRYSTEP_NO_LATCH || how->index_latch != CARRYSTEP_NO_LATCH;
     carrystep_latches_begin(&pump->latches, how->probe_latch, how->index_latch);
     carrystep_begin(&pump->session, RESEND_MS, PAUSE_MS);
+    if (how->window != 0) {
+        carrystep_limit(&pump->session, how->window);
+    }
     enter(pump, CARRYSTEP_PUMP_ASKING);
 }
 

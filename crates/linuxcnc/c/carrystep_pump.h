@@ -35,6 +35,7 @@ typedef struct {
     uint16_t number;     /* session, 1 to 65535, random */
     uint8_t probe_latch; /* the latch of the probe's pin, or CARRYSTEP_NO_LATCH */
     uint8_t index_latch; /* the latch of index pulses, another one, or CARRYSTEP_NO_LATCH */
+    uint8_t window;      /* greatest number of unacknowledged writes; 0: CARRYSTEP_SLOTS */
 } carrystep_pump_how;
 
 typedef struct {

@@ -90,6 +90,7 @@ static void begin(carrystep_servo *servo, const carrystep_servo_in *in)
         fail(servo, CARRYSTEP_FAULT_PERIOD, 0);
         return;
     }
+    memset(servo->glide, 0, sizeof servo->glide);
     servo->streams = stream;
     servo->stream = stream;
     __atomic_store_n(&servo->shared->made, (uint64_t)0, __ATOMIC_RELEASE);
@@ -129,7 +130,9 @@ static void follow(carrystep_servo *servo, const carrystep_servo_in *in)
     double steps[CARRYSTEP_MOST_AXES];
     carrystep_block block;
     for (uint8_t axis = 0; axis < servo->axes; axis++) {
-        steps[axis] = in->command[axis] * servo->scale[axis];
+        steps[axis] = carrystep_glide_take(&servo->glide[axis], in->command[axis] * servo->scale[axis],
+                                           servo->blocks.axis[axis].latest, servo->blocks.axis[axis].previous,
+                                           servo->blocks.axis[axis].most, servo->blocks.period_ns);
         /* The bits are compared: a scale that is not a number differs from itself. */
         if (memcmp(&in->scale[axis], &servo->scale[axis], sizeof servo->scale[axis]) != 0) {
             fail(servo, CARRYSTEP_FAULT_SCALE, (uint8_t)(1u << axis));
@@ -240,11 +243,15 @@ void carrystep_servo_run(carrystep_servo *servo, long period_ns, const carrystep
     for (uint8_t axis = 0; axis < servo->axes; axis++) {
         if (servo->stream != 0) {
             bool known = servo->report.stream == servo->stream;
+            double off = servo->glide[axis].rest + (known ? servo->report.error[axis] : 0.0);
+            if (((unsigned)servo->moment.found >> axis & 1u) != 0) {
+                carrystep_glide_show(&servo->glide[axis], carrystep_steps_of(servo->moment.at[axis]));
+            }
             if ((servo->moment.joints >> axis & 1u) != 0) {
                 out->feedback[axis] = carrystep_steps_of(servo->moment.at[axis]) / servo->scale[axis];
                 continue;
             }
-            out->feedback[axis] = in->command[axis] + (known ? servo->report.error[axis] / servo->scale[axis] : 0.0);
+            out->feedback[axis] = in->command[axis] + off / servo->scale[axis];
         } else if (usable(in->scale[axis])) {
             out->feedback[axis] = carrystep_steps_of(servo->at[axis]) / in->scale[axis];
         }

@@ -4,13 +4,15 @@
  * LinuxCNC takes the place of a probe, an index pulse or a home switch from the feedback of the
  * period in which it sees the input. The pulses are a horizon behind the command by then, so in this
  * one period the feedback is the place where the board was: that of the latch, or that of the
- * snapshot which shows the input first. In all others it is the command and the error.
+ * snapshot which shows the input first. In all others it is the command and the error. LinuxCNC's
+ * command jumps to the place of an index pulse: carrystep_glide.h says how the axis gets there.
  *
  * Nothing here knows HAL, so that tests call it as HAL does. */
 #ifndef CARRYSTEP_SERVO_H
 #define CARRYSTEP_SERVO_H
 
 #include "carrystep_blocks.h"
+#include "carrystep_glide.h"
 #include "carrystep_ring.h"
 
 /* Blocks that can wait for the thread, and reports that can wait for the real-time function. */
@@ -107,6 +109,7 @@ typedef struct {
     } moment;
     uint8_t index;        /* the joints that wait for an index pulse, one bit each */
     carrystep_blocks blocks;
+    carrystep_glide glide[CARRYSTEP_MOST_AXES]; /* of the stream */
     double scale[CARRYSTEP_MOST_AXES]; /* of the stream */
 } carrystep_servo;
 

@@ -81,15 +81,30 @@ pub struct OutputNets {
     pub spindle_rpm: Option<u32>,
 }
 
+/// The line to the board, and its rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoardLine {
+    /// A serial port.
+    Uart {
+        /// bit/s
+        baud: u32,
+    },
+    /// An SPI, by Linux' spidev.
+    Spi {
+        /// Rate of SCK, Hz.
+        sck_hz: u32,
+    },
+}
+
 /// A configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configuration {
     /// Name of the machine, and of the files.
     pub name: String,
-    /// The serial port.
+    /// The serial port, or the spidev.
     pub port: String,
-    /// Its rate, bit/s.
-    pub baud: u32,
+    /// What it is, and its rate.
+    pub line: BoardLine,
     /// Build id of the gateware; `None`: any.
     pub build: Option<u64>,
     /// Servo periods in a segment, 1 to 64.

@@ -4,8 +4,11 @@
 //! carrystep_main      parameters and messages of HAL
 //!   carrystep_pins      its pins; nothing else knows HAL
 //!   carrystep_servo     what the real-time function does in a servo period; never waits
+//!     carrystep_glide     the jump of a command at an index pulse
 //!     carrystep_blocks    position commands to cubic segments
-//!   carrystep_port      the thread that owns the serial port (POSIX)
+//!   carrystep_port      the thread that owns the line (POSIX)
+//!     carrystep_uart      a serial port
+//!     carrystep_spi       an SPI by spidev
 //!     carrystep_pump      connects, sends blocks, takes snapshots; knows no port and no clock
 //!       carrystep_facts     which board it is
 //!       carrystep_look      what is read of it again and again
@@ -20,14 +23,14 @@
 mod configuration;
 
 pub use configuration::{
-    Configuration, HomeSwitch, Homing, Joint, LETTERS, MachineRefused, OutputNets, SwitchRefused,
-    Wishes,
+    BoardLine, Configuration, HomeSwitch, Homing, Joint, LETTERS, MachineRefused, OutputNets,
+    SwitchRefused, Wishes,
 };
 
 use carrystep_link::C_LIBRARY;
 
 /// Name and text of each file that belongs to the component alone.
-pub const COMPONENT: [(&str, &str); 25] = [
+pub const COMPONENT: [(&str, &str); 30] = [
     ("Makefile", include_str!("../c/Makefile")),
     ("carrystep.9", include_str!("../c/carrystep.9")),
     ("carrystep_main.c", include_str!("../c/carrystep_main.c")),
@@ -37,8 +40,13 @@ pub const COMPONENT: [(&str, &str); 25] = [
     ("carrystep_servo.c", include_str!("../c/carrystep_servo.c")),
     ("carrystep_blocks.h", include_str!("../c/carrystep_blocks.h")),
     ("carrystep_blocks.c", include_str!("../c/carrystep_blocks.c")),
+    ("carrystep_glide.h", include_str!("../c/carrystep_glide.h")),
+    ("carrystep_glide.c", include_str!("../c/carrystep_glide.c")),
     ("carrystep_port.h", include_str!("../c/carrystep_port.h")),
     ("carrystep_port.c", include_str!("../c/carrystep_port.c")),
+    ("carrystep_line.h", include_str!("../c/carrystep_line.h")),
+    ("carrystep_uart.c", include_str!("../c/carrystep_uart.c")),
+    ("carrystep_spi.c", include_str!("../c/carrystep_spi.c")),
     ("carrystep_pump.h", include_str!("../c/carrystep_pump.h")),
     ("carrystep_pump.c", include_str!("../c/carrystep_pump.c")),
     ("carrystep_facts.h", include_str!("../c/carrystep_facts.h")),

@@ -12,64 +12,16 @@ use carrystep_linuxcnc::component;
 use carrystep_virtual_board::{ModelBoard, Pace, RealTimeBoard, Terminal};
 use rustix::fs::{FlockOperation, flock};
 use std::collections::BTreeSet;
-use std::fs::{self, File};
-use std::path::PathBuf;
+use std::fs::File;
 use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
+use support::loader::{Loader, SANITIZERS, said};
 use support::world::{CLOCK_HZ, build};
-use tempfile::TempDir;
 
 const MANUAL: &str = include_str!("../c/carrystep.9");
 const PAGE: &str = include_str!("../../../docs/linuxcnc.md");
-
-/// The component with a HAL of the test's own.
-struct Loader {
-    program: PathBuf,
-    _folder: TempDir,
-}
-
-impl Loader {
-    fn new(flags: &[&str]) -> Self {
-        let folder = TempDir::new().unwrap();
-        for (name, text) in component() {
-            fs::write(folder.path().join(name), text).unwrap();
-        }
-        for (name, text) in [
-            ("rtapi.h", include_str!("bench/hal/rtapi.h")),
-            ("rtapi_app.h", include_str!("bench/hal/rtapi_app.h")),
-            ("hal.h", include_str!("bench/hal/hal.h")),
-            ("hal_bench.c", include_str!("bench/hal_bench.c")),
-        ] {
-            fs::write(folder.path().join(name), text).unwrap();
-        }
-        let sources = component().map(|(name, _)| name).filter(|name| name.ends_with(".c"));
-        let output = Command::new(std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned()))
-            .current_dir(folder.path())
-            .args(["-std=gnu99", "-O1", "-g", "-Wall", "-Wextra", "-Werror"])
-            .args(["-DCARRYSTEP_SLOTS=64", "-I.", "hal_bench.c"])
-            .args(sources.filter(|name| !name.contains("feeder")))
-            .args(flags)
-            .args(["-lm", "-lpthread", "-o", "hal_bench"])
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        Self { program: folder.path().join("hal_bench"), _folder: folder }
-    }
-
-    fn say(&self, words: &[&str]) -> String {
-        said(&Command::new(&self.program).args(words).output().unwrap())
-    }
-}
-
-/// What a program that must succeed has said.
-fn said(output: &Output) -> String {
-    let all = [&output.stdout[..], &output.stderr[..]].concat();
-    let text = String::from_utf8_lossy(&all).into_owned();
-    assert!(output.status.success(), "{:?}: {text}", output.status);
-    text
-}
 
 /// A board with all outputs at a terminal, in real time, until `end` is set.
 fn board(end: Arc<AtomicBool>) -> (String, JoinHandle<()>) {
@@ -152,6 +104,7 @@ fn parameters_and_ports_that_are_wrong_are_named() {
     for (word, names) in [
         ("port=", "the parameter port is missing"),
         ("baud=3", "the parameter baud"),
+        ("speed=0", "the parameter speed"),
         ("joints=9", "the parameter joints"),
         ("joints=0", "the parameter joints"),
         ("periods=65", "the parameter periods"),
@@ -190,7 +143,7 @@ fn checked(run: impl FnOnce(&str) -> Output) {
 
 #[test]
 fn sanitizers_find_nothing_in_both_threads() {
-    for flag in ["-fsanitize=address,undefined", "-fsanitize=thread"] {
+    for flag in SANITIZERS {
         let loader = Loader::new(&[flag, "-fno-sanitize-recover=all"]);
         checked(|port| Command::new(&loader.program).args(["run", port, "500"]).output().unwrap());
     }

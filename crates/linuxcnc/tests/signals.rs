@@ -1,37 +1,18 @@
-//! What is not a position command: outputs that switch with the motion, a probe, index pulses and
-//! home switches whose place LinuxCNC takes from the feedback.
+//! What is not a position command: outputs that switch with the motion, a probe and home switches
+//! whose place LinuxCNC takes from the feedback.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 
-use carrystep_core::EngineBuild;
-use carrystep_core::engine::{InputRow, Latch, LatchSource, LimitWiring, Outputs};
+use carrystep_core::engine::Outputs;
 use carrystep_virtual_board::{SimulatedBoard as _, Switches};
+use support::signals::{EDGE, SPEED, at_probe, is_the_edge, with};
 use support::world::{JOINTS, MS, SCALE, World, build, fault, long};
 
 /// Bit of INPUTS: the probe.
 const PROBE: u32 = 1 << 16;
 /// Bit of INPUTS: the general input in-1-0.
 const GENERAL: u32 = 1 << 17;
-/// Speed of `long`, steps per ms.
-const SPEED: f64 = 2.5;
-/// Where inputs become active, steps.
-const EDGE: i32 = 400;
-
-/// A board with a probe and a general input, and with these latches.
-fn with(latches: Vec<Latch>) -> EngineBuild {
-    let mut build = build();
-    build.guard.limits = LimitWiring::None;
-    build.guard.inputs = [InputRow { exist: 0b011, low: 0 }, InputRow::default()];
-    build.guard.latches = latches;
-    build.check().unwrap();
-    build
-}
-
-fn at_probe() -> Latch {
-    Latch { source: LatchSource::Switch { row: 2, axis: 0 }, low: false, looks: 1 }
-}
-
 fn probe(closed: bool) -> Switches {
     Switches { inputs: [u8::from(closed), 0], ..Switches::default() }
 }
@@ -40,65 +21,9 @@ fn general(closed: bool) -> Switches {
     Switches { inputs: [u8::from(closed) << 1, 0], ..Switches::default() }
 }
 
-fn index(seen: bool) -> Switches {
-    Switches { latch: u8::from(seen), ..Switches::default() }
-}
-
-impl World {
-    fn asks(&mut self, homing: u32, index: u32, levels: u32, duty: f64) {
-        let words = format!("asks {homing} {index} {levels} {duty:?}");
-        assert_eq!(self.bench.say(&words), "ok");
-    }
-
-    /// Follows `place` until `done`. In that period the feedback is returned, in steps; in all
-    /// others it must be the command.
-    fn watched(
-        &mut self,
-        most_ms: u32,
-        place: impl Fn(f64) -> [f64; JOINTS],
-        done: impl Fn(&World) -> bool,
-    ) -> [f64; JOINTS] {
-        for period in 1..=most_ms {
-            self.command = place(f64::from(period) / 1000.0);
-            let says = self.servo(true);
-            assert_eq!((says.fault, says.running), (0, true), "in period {period}");
-            self.pass();
-            if done(self) {
-                return says.feedback.map(|units| units * SCALE);
-            }
-            for joint in 0..JOINTS {
-                assert!(
-                    (says.feedback[joint] - self.command[joint]).abs() < 1e-6,
-                    "in period {period}"
-                );
-            }
-        }
-        panic!("not within {most_ms} ms: {:?}", self.says);
-    }
-
-    /// Goes on from the place of the command for 20 ms, in which the feedback is the command, and
-    /// rests.
-    fn goes_on(&mut self, per_ms: f64) {
-        let from = self.command;
-        self.follow(20, |time| [from[0] + time * 1000.0 * per_ms, from[1], from[2]]);
-        let from = self.command;
-        // The ramp of a tenth of a second.
-        self.follow(100, |time| {
-            [from[0] + 1000.0 * per_ms * (time - time * time / 0.2), from[1], from[2]]
-        });
-        self.rest();
-    }
-}
-
 /// From rest at `from`, backward, as `long` runs forward.
 fn back(from: f64) -> impl Fn(f64) -> [f64; JOINTS] {
     move |time| [from - long(time)[0], 0.0, 0.0]
-}
-
-/// The edge lies half a step before the pulse that shows it, and is seen up to 10 us later.
-fn is_the_edge(found: f64, edge: i32) {
-    let off = found - (f64::from(edge) - 0.5);
-    assert!((-0.02..0.1).contains(&off), "{found}: {off} steps off");
 }
 
 #[test]
@@ -164,32 +89,6 @@ fn probe_without_a_latch_has_the_place_of_a_snapshot() {
     assert!((-5.0 * SPEED..15.0 * SPEED).contains(&off), "{off} steps");
     world.goes_on(SPEED / SCALE);
     world.bench.end();
-}
-
-#[test]
-fn index_enable_falls_with_the_place_of_the_pulse() {
-    for latches in [vec![Latch::of_pin(false, 1)], vec![Latch::of_pin(false, 1), at_probe()]] {
-        let probes = latches.len() - 1;
-        let has = if probes == 0 { "0 0 255 0" } else { "0 0 1 0" };
-        let mut world = World::with(4, 0, &with(latches), has).made_ready();
-        // A pulse of 2 steps every 200 steps.
-        world.inputs = Some(|_, position| index(position.rem_euclid(200) < 2 && position > 10));
-        // Pulses that nobody waits for change nothing.
-        let command = std::cell::Cell::new(0);
-        let found = world.watched(400, long, |_| {
-            command.set(command.get() + 1);
-            command.get() == 250
-        });
-        assert!((found[0] - world.command[0] * SCALE).abs() < 1e-6);
-        let from = world.command[0];
-        world.asks(0, 1, 0, 0.0);
-        let on = |time: f64| [from + 25.0 * time, 0.0, 0.0];
-        let found = world.watched(400, on, |world| world.says.index == 0);
-        let edge = (found[0] / 200.0).round() as i32 * 200;
-        is_the_edge(found[0], edge);
-        world.goes_on(SPEED / SCALE);
-        world.bench.end();
-    }
 }
 
 #[test]

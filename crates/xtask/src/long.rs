@@ -154,7 +154,7 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "linuxcnc",
-        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; homing, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of every servo period",
+        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; homing on a switch and on an index pulse, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of every servo period; a short program replayed on the exported Verilog, every pin in every clock",
         asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],
         cargo: &["--test", "real_linuxcnc"],
     },

@@ -14,9 +14,10 @@ pub struct LinuxcncArguments {
     /// file.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The serial port of the board; it can be changed in the INI file.
-    #[arg(long, value_name = "PORT", default_value = "/dev/ttyUSB1")]
-    pub port: String,
+    /// The serial port of the board, or its spidev where the machine file has an SPI; it can be
+    /// changed in the INI file. Default: /dev/ttyUSB1, or /dev/spidev0.0.
+    #[arg(long, value_name = "PORT")]
+    pub port: Option<String>,
     /// Time from a command to its pulses, ms: so late may the computer be. Default: 40, or five
     /// segments if they are longer.
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u32).range(1..=1000))]

@@ -3,9 +3,9 @@
 use crate::arguments::LinuxcncArguments;
 use crate::failure::Failure;
 use crate::output::{self, OutputFile};
-use carrystep_core::link::BuildId;
+use carrystep_core::link::{BuildId, LineKind};
 use carrystep_files::{InputError, Machine};
-use carrystep_linuxcnc::{Configuration, Wishes, component};
+use carrystep_linuxcnc::{BoardLine, Configuration, Wishes, component};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,12 @@ pub struct WrittenForLinuxcnc {
     passed: bool,
     build_id: String,
     port: String,
-    baud: u32,
+    /// Rate of a serial port, bit/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    baud: Option<u32>,
+    /// Rate of an SPI, Hz.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sck_hz: Option<u32>,
     /// Servo periods of 1 ms in a segment.
     periods: u32,
     /// Time from a command to its pulses, ms.
@@ -43,9 +48,11 @@ struct WrittenJoint {
 /// Writes the configuration.
 pub fn run(arguments: &LinuxcncArguments) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
+    let spi = machine.line().is_ok_and(|line| line == LineKind::Spi);
+    let usual = if spi { "/dev/spidev0.0" } else { "/dev/ttyUSB1" };
     let wishes = Wishes {
         name: name(&arguments.machine),
-        port: one_word(&arguments.port, "--port")?,
+        port: one_word(arguments.port.as_deref().unwrap_or(usual), "--port")?,
         horizon_ms: arguments.horizon_ms,
         display: one_word(&arguments.display, "--display")?,
         switches: arguments.switches.clone(),
@@ -60,6 +67,10 @@ pub fn run(arguments: &LinuxcncArguments) -> Result<(), Failure> {
         });
         texts.extend(sources);
     }
+    let (baud, sck_hz) = match configuration.line {
+        BoardLine::Uart { baud } => (Some(baud), None),
+        BoardLine::Spi { sck_hz } => (None, Some(sck_hz)),
+    };
     let files = write(&arguments.out, &texts, arguments.force)?;
     let joint =
         |(joint, axis): (&carrystep_linuxcnc::Joint, &carrystep_files::Axis)| WrittenJoint {
@@ -71,7 +82,8 @@ pub fn run(arguments: &LinuxcncArguments) -> Result<(), Failure> {
         passed: true,
         build_id: configuration.build.map_or_else(String::new, |id| BuildId(id).to_string()),
         port: configuration.port.clone(),
-        baud: configuration.baud,
+        baud,
+        sck_hz,
         periods: configuration.periods,
         horizon_ms: configuration.horizon_ms,
         joints: configuration.joints.iter().zip(&machine.axes).map(joint).collect(),
@@ -83,14 +95,18 @@ pub fn run(arguments: &LinuxcncArguments) -> Result<(), Failure> {
 
 /// The text for people: files, figures, notes, and how to go on.
 fn told(written: &WrittenForLinuxcnc) -> String {
-    let WrittenForLinuxcnc { port, baud, periods, horizon_ms, build_id, .. } = written;
+    let WrittenForLinuxcnc { port, baud, sck_hz, periods, horizon_ms, build_id, .. } = written;
+    let rate = match (baud, sck_hz) {
+        (Some(baud), _) => format!("{baud} baud"),
+        (None, sck_hz) => format!("{} Hz", sck_hz.unwrap_or(0)),
+    };
     let letters: String = written.joints.iter().map(|joint| joint.letter).collect();
     let files: String =
         written.files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
     let notes: String = written.notes.iter().map(|note| format!("note: {note}\n")).collect();
     let ini = written.files.first().map(|file| file.display().to_string()).unwrap_or_default();
     format!(
-        "{files}{letters}: segments of {periods} ms, horizon {horizon_ms} ms; {port} at {baud} baud, \
+        "{files}{letters}: segments of {periods} ms, horizon {horizon_ms} ms; {port} at {rate}, \
          build {build_id}\n{notes}start it: linuxcnc {ini}\n"
     )
 }

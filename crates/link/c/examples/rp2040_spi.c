@@ -105,6 +105,7 @@ static bool connect(void)
 {
     carrystep_answer identity, protocol, low, high;
     carrystep_begin(&session, 5u, 1u);
+    carrystep_limit(&session, 6u); /* more could be lost over SPI (docs/protocol.md) */
     if (!ask(CARRYSTEP_IDENTITY, &identity) || !ask(CARRYSTEP_PROTOCOL, &protocol) || !ask(CARRYSTEP_BUILD_LOW, &low) ||
         !ask(CARRYSTEP_BUILD_HIGH, &high)) {
         return false;

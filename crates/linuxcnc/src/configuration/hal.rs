@@ -1,19 +1,23 @@
 //! The HAL file: the component, its thread, and the nets between it and LinuxCNC.
 
-use super::{Configuration, Homing, Joint, OutputNets};
+use super::{BoardLine, Configuration, Homing, Joint, OutputNets};
 use std::fmt::Write as _;
 
 pub fn text(configuration: &Configuration) -> String {
-    let Configuration { baud, periods, horizon_ms, joints, .. } = configuration;
+    let Configuration { line, periods, horizon_ms, joints, .. } = configuration;
     let count = joints.len();
     let build = configuration.build.unwrap_or(0);
     let dio = if configuration.outputs.count > 4 { " num_dio=8" } else { "" };
     let has = built_in(configuration);
+    let rate = match line {
+        BoardLine::Uart { baud } => format!("baud={baud}"),
+        BoardLine::Spi { sck_hz } => format!("speed={sck_hz}"),
+    };
     let mut text = format!(
         "# Written by `carrystep linuxcnc`. The build id is that of the machine file.\n\
          loadrt [KINS]KINEMATICS\n\
          loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS{dio}\n\
-         loadrt carrystep port=[CARRYSTEP]PORT baud={baud} joints={count} periods={periods} \
+         loadrt carrystep port=[CARRYSTEP]PORT {rate} joints={count} periods={periods} \
          horizon={horizon_ms} build={build:x}{has}\n\
          addf motion-command-handler servo-thread\n\
          addf motion-controller servo-thread\n\

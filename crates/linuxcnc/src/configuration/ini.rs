@@ -39,7 +39,7 @@ pub fn text(configuration: &Configuration) -> String {
          [RS274NGC]\nPARAMETER_FILE = {name}.var\n\n\
          [EMCMOT]\nEMCMOT = motmod\nCOMM_TIMEOUT = 4.0\nSERVO_PERIOD = {SERVO_NS}\n\n\
          [EMCIO]\nEMCIO = io\nCYCLE_TIME = 0.1\nTOOL_TABLE = {name}.tbl\n\n\
-         # The board's serial port.\n\
+         # The board's serial port, or its spidev.\n\
          [CARRYSTEP]\nPORT = {port}\n\n\
          [HAL]\nHALFILE = {name}.hal\n"
     );

@@ -1,7 +1,9 @@
 //! The configuration of a machine file.
 
 use super::refused::MachineRefused;
-use super::{Configuration, HomeSwitch, Homing, Joint, LETTERS, OutputNets, SwitchRefused, rates};
+use super::{
+    BoardLine, Configuration, HomeSwitch, Homing, Joint, LETTERS, OutputNets, SwitchRefused, rates,
+};
 use carrystep_core::StartPhase;
 use carrystep_core::engine::{Guard, Latch, LatchSource, LimitWiring};
 use carrystep_core::link::LineKind;
@@ -13,7 +15,7 @@ use carrystep_files::{Axis, Machine, decimal};
 pub struct Wishes {
     /// Name of the machine, and of the files: letters, digits, `-` and `_`.
     pub name: String,
-    /// The serial port.
+    /// The serial port, or the spidev.
     pub port: String,
     /// Time from a command to its pulses, ms; `None`: as short as is usual.
     pub horizon_ms: Option<u32>,
@@ -40,9 +42,10 @@ impl Configuration {
         }
         let engine = machine.engine();
         engine.check().map_err(|error| MachineRefused::Build(error.to_string()))?;
-        let uart = match machine.line().map_err(|error| MachineRefused::Build(error.to_string()))? {
-            LineKind::Uart(uart) => uart,
-            LineKind::Spi => return Err(MachineRefused::Spi),
+        let kind = machine.line().map_err(|error| MachineRefused::Build(error.to_string()))?;
+        let line = match kind {
+            LineKind::Uart(uart) => BoardLine::Uart { baud: uart.baud() },
+            LineKind::Spi => BoardLine::Spi { sck_hz: rates::sck_hz(machine.timebase.clock_hz()) },
         };
         let mut inches = None;
         let mut joints: Vec<Joint> = Vec::with_capacity(machine.axes.len());
@@ -67,12 +70,12 @@ impl Configuration {
         has_one_switch_each(machine, &wishes.switches)?;
         let count = u32::try_from(joints.len()).unwrap_or(u32::MAX);
         let depth = u32::try_from(machine.queue).unwrap_or(u32::MAX);
-        let (periods, horizon_ms) = rates::choose(count, uart.baud(), depth, wishes.horizon_ms)?;
+        let (periods, horizon_ms) = rates::choose(count, line, depth, wishes.horizon_ms)?;
         let configuration = Self {
             name: wishes.name,
             port: wishes.port,
-            baud: uart.baud(),
-            build: Some(uart.build_id(&engine).0),
+            line,
+            build: Some(kind.build_id(&engine).0),
             periods,
             horizon_ms,
             inches: inches == Some(true),

@@ -1,11 +1,15 @@
 //! How long segments are and how far ahead they are sent, so that line and queue hold them.
 
+use super::BoardLine;
 use super::refused::{BAUDS, MachineRefused};
 
 /// Bytes of a segment on the line, with the ends of its frame and a few escapes.
 const SEGMENT_BYTES: u32 = 44;
-/// Bits of a byte on the line.
-const BYTE_BITS: u32 = 10;
+/// Bits of a byte on a UART and on an SPI.
+const UART_BITS: u32 = 10;
+const SPI_BITS: u32 = 8;
+/// Greatest rate of an SPI, Hz, without a look at its wires: what short jumper wires carry.
+const MOST_SCK_HZ: u64 = 4_000_000;
 /// Lengths of segments in servo periods of 1 ms, the best first: the error of a cubic grows with
 /// the fourth power of its length.
 const PERIODS: [u32; 3] = [4, 8, 16];
@@ -16,18 +20,28 @@ const SEGMENTS: u32 = 5;
 /// Greatest horizon of the component, ms.
 const MOST_MS: u32 = 1000;
 
+/// The rate of an SPI to a gateware with this clock, Hz: half of what the gateware can, which leaves
+/// room for a controller whose SCK is not even.
+pub fn sck_hz(clock_hz: u64) -> u32 {
+    u32::try_from((clock_hz / 10).min(MOST_SCK_HZ)).unwrap_or(u32::MAX)
+}
+
 /// Periods of a segment and horizon in ms, for so many joints on a line of this rate and with
 /// queues of this depth. Segments take at most half of the line: snapshots and answers use the rest.
 pub fn choose(
     joints: u32,
-    baud: u32,
+    line: BoardLine,
     depth: u32,
     horizon_ms: Option<u32>,
 ) -> Result<(u32, u32), MachineRefused> {
-    if !BAUDS.contains(&baud) {
-        return Err(MachineRefused::Baud { baud });
-    }
-    let line_holds = |periods: u32| joints * SEGMENT_BYTES * BYTE_BITS * 1000 / periods <= baud / 2;
+    let (rate, bits) = match line {
+        BoardLine::Uart { baud } if !BAUDS.contains(&baud) => {
+            return Err(MachineRefused::Baud { baud });
+        }
+        BoardLine::Uart { baud } => (baud, UART_BITS),
+        BoardLine::Spi { sck_hz } => (sck_hz, SPI_BITS),
+    };
+    let line_holds = |periods: u32| joints * SEGMENT_BYTES * bits * 1000 / periods <= rate / 2;
     let horizon = |periods: u32| horizon_ms.unwrap_or(HORIZON_MS.max(SEGMENTS * periods));
     let queue_holds = |periods: u32| horizon(periods) <= (depth * periods).min(MOST_MS);
     let fits = PERIODS.into_iter().filter(|&periods| line_holds(periods));
@@ -38,6 +52,6 @@ pub fn choose(
         None if line_holds(PERIODS[PERIODS.len() - 1]) => Err(MachineRefused::LongHorizon {
             most_ms: (depth * PERIODS[PERIODS.len() - 1]).min(MOST_MS),
         }),
-        None => Err(MachineRefused::SlowLine { baud, joints }),
+        None => Err(MachineRefused::SlowLine { rate, joints }),
     }
 }

@@ -3,7 +3,7 @@
 use super::home_switch::SwitchRefused;
 use thiserror::Error;
 
-/// Rates that a serial port can be set to, bit/s, as `carrystep_port.c` lists them.
+/// Rates that a serial port can be set to, bit/s, as `carrystep_uart.c` lists them.
 pub const BAUDS: [u32; 12] = [
     115_200, 230_400, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_152_000, 1_500_000,
     2_000_000, 2_500_000, 3_000_000,
@@ -55,9 +55,6 @@ pub enum MachineRefused {
     /// Places are not those that the component computes.
     #[error("phase = \"zero\": the component needs phase = \"half\", the default")]
     Phase,
-    /// The link is an SPI.
-    #[error("the host link is an SPI: the component drives a serial port")]
-    Spi,
     /// The engine or the rate cannot be built.
     #[error("{0}")]
     Build(String),
@@ -69,11 +66,11 @@ pub enum MachineRefused {
     },
     /// The line does not hold the segments.
     #[error(
-        "the line is too slow: segments of {joints} joints in 16 ms take more than half of {baud} baud"
+        "the line is too slow: segments of {joints} joints in 16 ms take more than half of {rate} bit/s"
     )]
     SlowLine {
-        /// Its rate.
-        baud: u32,
+        /// Its rate, bit/s.
+        rate: u32,
         /// The number of joints.
         joints: u32,
     },
@@ -105,8 +102,8 @@ mod tests {
 
     #[test]
     fn rates_are_those_of_the_component() {
-        let port = component().find(|(name, _)| *name == "carrystep_port.c").unwrap().1;
-        let (_, rows) = port.split_once("RATES[] = {").unwrap();
+        let uart = component().find(|(name, _)| *name == "carrystep_uart.c").unwrap().1;
+        let (_, rows) = uart.split_once("RATES[] = {").unwrap();
         let (rows, _) = rows.split_once("};").unwrap();
         let rates: Vec<u32> = rows
             .split('{')

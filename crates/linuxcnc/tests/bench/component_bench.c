@@ -1,5 +1,5 @@
 /* The component without HAL and port, in simulated time: a line is answered by a line. */
-#include "carrystep_pump.h"
+#include "spi_bench.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -11,8 +11,8 @@ static carrystep_servo servo;
 static carrystep_pump pump;
 static carrystep_pump_how how;
 static struct {
-    unsigned outputs, pwm, probe, index;
-} has = {0, 0, CARRYSTEP_NO_LATCH, CARRYSTEP_NO_LATCH};
+    unsigned outputs, pwm, probe, index, window;
+} has = {0, 0, CARRYSTEP_NO_LATCH, CARRYSTEP_NO_LATCH, 0};
 static struct {
     unsigned homing, index, levels;
     double duty;
@@ -34,6 +34,7 @@ static void begin(void)
     how.number = 77;
     how.probe_latch = (uint8_t)has.probe;
     how.index_latch = (uint8_t)has.index;
+    how.window = (uint8_t)has.window;
     for (unsigned axis = 0; axis < axes; axis++) {
         scale[axis] = of_all;
         most[axis] = fastest;
@@ -118,8 +119,8 @@ int main(void)
             carrystep_pump_begin(&pump, &shared, &how, pump.now);
             printf("ok\n");
         } else if (strcmp(word, "has") == 0) {
-            /* "has outputs pwm probe index": what the board has; before "begin" */
-            if (scanf("%u %u %u %u", &has.outputs, &has.pwm, &has.probe, &has.index) != 4) {
+            /* "has outputs pwm probe index window": the board, and the line; before "begin" */
+            if (scanf("%u %u %u %u %u", &has.outputs, &has.pwm, &has.probe, &has.index, &has.window) != 5) {
                 return 1;
             }
             printf("ok\n");
@@ -132,7 +133,7 @@ int main(void)
         } else if (strcmp(word, "scale") == 0) {
             scale[0] *= 2;
             printf("ok\n");
-        } else {
+        } else if (!spi_bench(word, &shared, &pump)) {
             return 1;
         }
         fflush(stdout);

@@ -3,7 +3,8 @@
  *
  *     hal_bench names                    the pins and parameters: type, direction, name
  *     hal_bench run PORT PERIODS         enables the joints, moves joint 0, disables them
- *     hal_bench load PARAMETER=VALUE ... loads and removes it; prints what it says */
+ *     hal_bench load PARAMETER=VALUE ... loads and removes it; prints what it says. wait=PERIODS is
+ *                                        half of the time between both. */
 #include "rtapi.h"
 #include "rtapi_app.h"
 #include "hal.h"
@@ -31,6 +32,7 @@ static bool loaded;
 char **parameter_port(void);
 char **parameter_build(void);
 int *parameter_baud(void);
+int *parameter_speed(void);
 int *parameter_joints(void);
 int *parameter_periods(void);
 int *parameter_horizon(void);
@@ -200,7 +202,9 @@ static int run(int periods)
     return 0;
 }
 
-/* Sets a parameter of loadrt, as LinuxCNC does. */
+static int waits = 50; /* periods before and behind the second instance */
+
+/* Sets a parameter of loadrt, as LinuxCNC does, or `waits`. */
 static bool set(char *word)
 {
     static const struct {
@@ -209,13 +213,17 @@ static bool set(char *word)
     } NUMBERS[] = {
         {"baud", parameter_baud},       {"joints", parameter_joints},           {"periods", parameter_periods},
         {"horizon", parameter_horizon}, {"outputs", parameter_outputs},         {"pwm", parameter_pwm},
-        {"probe_latch", parameter_probe_latch}, {"index_latch", parameter_index_latch},
+        {"speed", parameter_speed},     {"probe_latch", parameter_probe_latch}, {"index_latch", parameter_index_latch},
     };
     char *value = strchr(word, '=');
     if (value == NULL) {
         return false;
     }
     *value++ = '\0';
+    if (strcmp(word, "wait") == 0) {
+        waits = atoi(value);
+        return true;
+    }
     for (size_t at = 0; at < sizeof NUMBERS / sizeof NUMBERS[0]; at++) {
         if (strcmp(word, NUMBERS[at].name) == 0) {
             *NUMBERS[at].number() = atoi(value);
@@ -266,12 +274,12 @@ int main(int words, char **word)
         status = run(atoi(word[3]));
     } else {
         printf("loaded\n");
-        for (int at = 0; at < 50; at++) {
+        for (int at = 0; at < waits; at++) {
             period();
         }
         /* A second time, as `loadrt carrystep` twice. */
         printf("again %d\n", rtapi_app_main());
-        for (int at = 0; at < 50; at++) {
+        for (int at = 0; at < waits; at++) {
             period();
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::board::Done;
 use crate::{JOINTS, PERIODS, SCALES, TICK};
+use std::ops::Range;
 
 /// A servo period.
 pub struct Sample {
@@ -29,10 +30,27 @@ pub fn samples(text: &str) -> Option<Vec<Sample>> {
     (whole && !text.contains("overrun")).then_some(all)
 }
 
+/// Steps of joint 0 in a period: a command that moves further jumps, as no axis can. At the speed of
+/// homing, an index pulse is reported before the axis is commanded to be so far behind it.
+const JUMP: f64 = 10.0;
+const REPORT: f64 = 60.0;
+
+/// The periods in which joint 0 returns to its command, which has jumped to an index pulse: a second
+/// (carrystep_glide.h), and the blocks around it.
+fn returns(samples: &[Sample]) -> Range<u64> {
+    let way = |pair: &[Sample]| (pair[1].steps[0] - pair[0].steps[0]).abs();
+    samples.windows(2).find(|pair| way(pair) > JUMP).map_or(0..0, |pair| {
+        assert!(way(pair) < REPORT, "{} steps", way(pair));
+        let blocks = 2 * PERIODS as u64;
+        pair[1].number - blocks..pair[1].number + 1000 + blocks
+    })
+}
+
 /// The greatest distance of the pulses from the commands, for each joint, and how many servo periods
 /// were compared.
 pub fn compare(samples: &[Sample], done: &Done) -> ([f64; JOINTS], usize) {
     let (mut worst, mut compared) = ([0.0_f64; JOINTS], 0);
+    let returns = returns(samples);
     let (mut at, mut places) = (0, [0_i32; JOINTS]);
     let streams: Vec<&[Sample]> =
         samples.chunk_by(|a, b| a.running == b.running).filter(|run| run[0].running).collect();
@@ -62,6 +80,9 @@ pub fn compare(samples: &[Sample], done: &Done) -> ([f64; JOINTS], usize) {
                         places[axis] += step;
                     }
                     at += 1;
+                }
+                if returns.contains(&stream[number].number) {
+                    continue;
                 }
                 for joint in 0..JOINTS {
                     let off = stream[number].steps[joint] - f64::from(places[joint]);

@@ -1,7 +1,8 @@
 //! The real LinuxCNC: the component among its modules, and a run of it as a user without rights.
 
-use crate::{HORIZON_MS, PERIODS, PRIORITIES, machine};
-use carrystep_linuxcnc::{Configuration, Wishes, component};
+use crate::{HORIZON_MS, PERIODS, PRIORITIES};
+use carrystep_files::Machine;
+use carrystep_linuxcnc::{Configuration, Homing, Wishes, component};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -90,7 +91,8 @@ fn watch(folder: PathBuf, end: Arc<AtomicBool>) -> JoinHandle<()> {
 const SWITCH: &str = "x,input=0,toward=min,seek_speed=20,slow_speed=2,pull_off=5,position=0";
 
 /// What `carrystep linuxcnc` writes for the machine; with a switch for joint 0, or without a probe.
-fn configuration(port: &str, homes: bool) -> Configuration {
+/// With an index latch, joint 0 homes on the first index pulse behind its switch.
+fn configuration(machine: &Machine, port: &str, homes: bool) -> Configuration {
     let wishes = Wishes {
         name: "virtual".to_owned(),
         port: port.to_owned(),
@@ -98,11 +100,16 @@ fn configuration(port: &str, homes: bool) -> Configuration {
         display: "./ui.py".to_owned(),
         switches: if homes { vec![SWITCH.parse().unwrap()] } else { Vec::new() },
     };
-    let (mut configuration, _) = Configuration::of_machine(&machine(), wishes).unwrap();
+    let (mut configuration, _) = Configuration::of_machine(machine, wishes).unwrap();
     assert_eq!(configuration.periods as usize, PERIODS);
     configuration.hal_files = vec!["sampler.hal".to_owned()];
     // Without a probe, LinuxCNC's own following error is at its tightest.
     configuration.probe = homes;
+    if configuration.index_latch.is_some()
+        && let Homing::Switch { index, .. } = &mut configuration.joints[0].homing
+    {
+        *index = true;
+    }
     configuration
 }
 
@@ -143,13 +150,13 @@ impl Ran {
     }
 }
 
-/// Runs LinuxCNC at this port; `what` is the part of ui.py that is run.
-pub fn linuxcnc(folder: &Path, port: &str, what: &str, program: &Path) -> Ran {
+/// Runs LinuxCNC for this machine at this port; `what` is the part of ui.py that is run.
+pub fn linuxcnc(folder: &Path, machine: &Machine, port: &str, what: &str, program: &Path) -> Ran {
     fs::set_permissions(port, Permissions::from_mode(0o666)).unwrap();
     let run = tempfile::tempdir_in(folder).unwrap();
     let own = run.path();
     fs::set_permissions(own, Permissions::from_mode(0o777)).unwrap();
-    for (name, text) in configuration(port, what == "home_and_probe").files() {
+    for (name, text) in configuration(machine, port, what.starts_with("home")).files() {
         fs::write(own.join(name), text).unwrap();
     }
     fs::write(own.join("sampler.hal"), SAMPLER).unwrap();

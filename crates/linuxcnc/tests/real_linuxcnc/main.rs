@@ -1,6 +1,7 @@
 //! The real LinuxCNC, headless, drives a virtual board through the component: it runs programs,
-//! pauses, aborts, jogs and stops, homes on a switch, probes, and is killed in motion. The pulses
-//! are compared with the motor-pos-cmd of every servo period.
+//! pauses, aborts, jogs and stops, homes on a switch and on an index pulse, probes, and is killed in
+//! motion. The pulses are compared with the motor-pos-cmd of every servo period. What reaches the
+//! board in a short program is replayed on the exported Verilog.
 //!
 //! LinuxCNC and the board run in real time, so this is a longer run: `cargo xtask long linuxcnc`. It
 //! needs the packages linuxcnc-uspace and linuxcnc-uspace-dev, and root or write access to the folder
@@ -12,6 +13,10 @@
 mod board;
 mod compare;
 mod installation;
+#[path = "../../../virtual-board/tests/support/recorder.rs"]
+#[allow(dead_code, reason = "the tests of other crates use the rest")]
+mod recorder;
+mod replay;
 
 use board::{Done, board};
 use carrystep_core::engine::Cause;
@@ -43,9 +48,18 @@ const LATCH_SPEED: f64 = 160.0;
 /// set them: both run in real time, beside whatever else this computer does.
 const PRIORITIES: [&str; 2] = ["10", "11"];
 
-/// The machine of all runs.
+/// The machine of most runs.
 fn machine() -> Machine {
-    let text = include_str!("machine.toml");
+    machine_with(&[])
+}
+
+/// The same with other words in its file.
+fn machine_with(changes: &[(&str, &str)]) -> Machine {
+    let mut text = include_str!("machine.toml").to_owned();
+    for (old, new) in changes {
+        assert_eq!(text.matches(old).count(), 1, "{old}");
+        text = text.replace(old, new);
+    }
     let source = SourceText { path: "machine.toml".into(), text: text.into() };
     Machine::from_source(&source).unwrap()
 }
@@ -103,7 +117,7 @@ impl Workshop {
     /// A run whose pulses must follow the commands.
     fn follows(&self, name: &str, what: &str, program: &Path) {
         self.until_not_void(name, |folder| {
-            let (ran, done) = one(folder, what, program);
+            let (ran, done) = one(folder, &machine(), what, program);
             if let Some(void) = void(&ran, &done) {
                 return void;
             }
@@ -117,10 +131,10 @@ impl Workshop {
 }
 
 /// Runs LinuxCNC with a new board. `None` if the computer was too late.
-fn one(folder: &Path, what: &str, program: &Path) -> (Ran, Done) {
+fn one(folder: &Path, machine: &Machine, what: &str, program: &Path) -> (Ran, Done) {
     let end = Arc::new(AtomicBool::new(false));
-    let (port, thread) = board(Arc::clone(&end));
-    let ran = linuxcnc(folder, &port, what, program);
+    let (port, thread) = board(machine, Arc::clone(&end));
+    let ran = linuxcnc(folder, machine, &port, what, program);
     end.store(true, Ordering::Relaxed);
     (ran, thread.join().unwrap())
 }
@@ -179,7 +193,7 @@ fn the_real_linuxcnc_homes_and_probes() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(workshop) = Workshop::new() else { return };
     workshop.until_not_void("home and probe", |folder| {
-        let (ran, done) = one(folder, "home_and_probe", &workshop.square);
+        let (ran, done) = one(folder, &machine(), "home_and_probe", &workshop.square);
         if let Some(void) = void(&ran, &done) {
             return void;
         }
@@ -200,6 +214,32 @@ fn the_real_linuxcnc_homes_and_probes() {
     });
 }
 
+/// A home switch, and behind it the first index pulse, whose edge a latch has: its place gets the
+/// coordinate.
+#[test]
+fn the_real_linuxcnc_homes_on_an_index_pulse() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(workshop) = Workshop::new() else { return };
+    let latches = ("edge = \"rising\" }]", "edge = \"rising\" }, { edge = \"rising\" }]");
+    workshop.until_not_void("home on an index pulse", |folder| {
+        let machine = machine_with(&[latches]);
+        let (ran, done) = one(folder, &machine, "home_on_index", &workshop.square);
+        if let Some(void) = void(&ran, &done) {
+            return void;
+        }
+        is_whole(&ran);
+        let figures = match follows(&ran, &done) {
+            Ok(figures) => figures,
+            Err(void) => return void,
+        };
+        // The axis moves backward: the edge lies half a step before the pulse that leads to it.
+        let (home, edge) = (ran.number("home_steps"), f64::from(done.index.unwrap()) + 0.5);
+        let off = edge - home;
+        assert!((-0.01..=1.01).contains(&off), "{home}, {edge}\n{}", ran.result);
+        Outcome::Good(format!("{off:.2} steps behind the edge at {edge}; {figures}"))
+    });
+}
+
 /// SIGKILL for LinuxCNC's real-time process: the board ramps down, and the next LinuxCNC has the
 /// true position.
 #[test]
@@ -208,9 +248,10 @@ fn the_real_linuxcnc_is_killed_in_motion() {
     let Some(workshop) = Workshop::new() else { return };
     workshop.until_not_void("killed in motion", |folder| {
         let end = Arc::new(AtomicBool::new(false));
-        let (port, thread) = board(Arc::clone(&end));
-        let killed = linuxcnc(folder, &port, "killed", &workshop.square);
-        let next = linuxcnc(folder, &port, "look", &workshop.square);
+        let machine = machine();
+        let (port, thread) = board(&machine, Arc::clone(&end));
+        let killed = linuxcnc(folder, &machine, &port, "killed", &workshop.square);
+        let next = linuxcnc(folder, &machine, &port, "look", &workshop.square);
         end.store(true, Ordering::Relaxed);
         let done = thread.join().unwrap();
         if let Some(void) = void(&killed, &done) {

@@ -189,6 +189,15 @@ def home_and_probe():
     off()
 
 
+def home_on_index():
+    home(60)
+    until(lambda: idle() and stat.current_vel == 0, 20, "rest behind homing")
+    time.sleep(0.5)
+    # The coordinate of the index pulse is 0.
+    result["home_steps"] = motor_offset() * 80
+    off()
+
+
 def killed():
     home(10)
     begin(os.environ["PROGRAM"])
@@ -209,7 +218,14 @@ def look_at_it():
 
 
 what = os.environ["WHAT"]
-work = {"program": program, "cases": cases, "home_and_probe": home_and_probe, "killed": killed, "look": look_at_it}
+work = {
+    "program": program,
+    "cases": cases,
+    "home_and_probe": home_and_probe,
+    "home_on_index": home_on_index,
+    "killed": killed,
+    "look": look_at_it,
+}
 samples = open("samples.txt", "w")
 sampler = subprocess.Popen(["stdbuf", "-oL", "halsampler", "-t"], stdout=samples)
 try:

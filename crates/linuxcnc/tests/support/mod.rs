@@ -1,6 +1,10 @@
 //! Compiles the component's C files with a bench that a test talks with through pipes.
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod line;
+pub mod loader;
+pub mod rounds;
+pub mod signals;
 pub mod world;
 
 use carrystep_linuxcnc::component;
@@ -10,8 +14,10 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-const FLAGS: [&str; 12] = [
+const FLAGS: [&str; 14] = [
     "-std=c99",
+    "-D_DEFAULT_SOURCE",
+    "-Wl,--wrap=ioctl",
     "-O1",
     "-g",
     "-Wall",
@@ -25,9 +31,10 @@ const FLAGS: [&str; 12] = [
     "-DCARRYSTEP_SLOTS=64",
 ];
 
-/// What knows neither HAL nor a port.
-const FILES: [&str; 12] = [
+/// What knows neither HAL nor a thread, and the SPI.
+const FILES: [&str; 15] = [
     "carrystep_servo.c",
+    "carrystep_glide.c",
     "carrystep_blocks.c",
     "carrystep_feedback.c",
     "carrystep_facts.c",
@@ -39,6 +46,8 @@ const FILES: [&str; 12] = [
     "carrystep_session.c",
     "carrystep_frame.c",
     "carrystep_time.c",
+    "carrystep_spi.c",
+    "spi_bench.c",
 ];
 
 /// A bench, compiled with the sanitizers of GCC.
@@ -54,7 +63,13 @@ impl Bench {
         for (name, text) in component() {
             std::fs::write(folder.path().join(name), change(name, text)).unwrap();
         }
-        std::fs::write(folder.path().join("bench.c"), text).unwrap();
+        for (name, text) in [
+            ("bench.c", text),
+            ("spi_bench.c", include_str!("../bench/spi_bench.c")),
+            ("spi_bench.h", include_str!("../bench/spi_bench.h")),
+        ] {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
         let program = folder.path().join("bench");
         let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
         let output = Command::new(&compiler)
@@ -77,7 +92,7 @@ impl Bench {
         })
     }
 
-    /// The whole component but HAL and port.
+    /// The whole component but HAL and thread.
     pub fn component() -> &'static Self {
         static BENCH: OnceLock<Bench> = OnceLock::new();
         BENCH.get_or_init(|| {

@@ -1,5 +1,7 @@
 //! A computer with the component, and a board, in simulated time.
 
+use super::line::WINDOW;
+pub use super::line::{Line, SCK_HZ};
 use super::{Bench, Running};
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
@@ -21,6 +23,7 @@ pub const STOP: u64 = 1 << 45;
 
 /// Numbers of the faults in carrystep_servo.h.
 pub mod fault {
+    pub const NO_PORT: u32 = 1;
     pub const NO_ANSWER: u32 = 3;
     pub const OTHER_BOARD: u32 = 4;
     pub const SESSION: u32 = 5;
@@ -52,12 +55,16 @@ pub struct Says {
 }
 
 /// A computer with the component, and a board.
-pub struct World {
+pub struct World<B = ModelBoard> {
     pub bench: Running,
-    pub board: ModelBoard,
+    pub board: B,
+    pub(super) line: Line,
+    /// us
     pub now: u64,
     /// Whether the cable is in.
     pub cable: bool,
+    /// Whether the computer has its spidev.
+    pub device: bool,
     pub says: Says,
     pub command: [f64; JOINTS],
     pub period: i64,
@@ -76,29 +83,60 @@ pub fn build() -> EngineBuild {
 }
 
 impl World {
-    pub fn new(periods: u32, id: u64) -> Self {
-        Self::with(periods, id, &build(), "0 0 255 255")
+    pub fn new(line: Line, periods: u32, id: u64) -> Self {
+        Self::on(line, periods, id, &build(), "0 0 255 255")
     }
 
-    /// A world with this board; `has` are its outputs, its PWM, and the latches of probe and index.
+    /// A world with this board at a UART; `has` are its outputs, its PWM, and the latches of probe
+    /// and index.
     pub fn with(periods: u32, id: u64, build: &EngineBuild, has: &str) -> Self {
+        Self::on(Line::Uart, periods, id, build, has)
+    }
+
+    fn on(line: Line, periods: u32, id: u64, build: &EngineBuild, has: &str) -> Self {
+        // A segment of each joint in each period is more than 921 600 baud carry.
+        let baud = if periods == 1 { 3_000_000 } else { 921_600 };
+        let board = match line {
+            Line::Uart => ModelBoard::new(build, Uart::new(CLOCK_HZ, baud).unwrap()),
+            Line::Spi => ModelBoard::on_spi(build, SCK_HZ),
+        };
+        Self::of(board, line, periods, id, has)
+    }
+
+    /// A world whose board is ready.
+    pub fn ready(line: Line, periods: u32) -> Self {
+        Self::new(line, periods, 0).made_ready()
+    }
+}
+
+impl<B: SimulatedBoard> World<B> {
+    /// A world with this board, which is at such a line; the rest as in [`World::with`].
+    pub fn of(board: B, line: Line, periods: u32, id: u64, has: &str) -> Self {
         let mut bench = Bench::component().run("");
-        assert_eq!(bench.say(&format!("has {has}")), "ok");
+        let window = if line == Line::Spi { WINDOW } else { 0 };
+        if line == Line::Spi {
+            // An SPI of mode 0 with 8 bits, and so many unacknowledged writes.
+            let said = bench.say(&format!("prepare {SCK_HZ}"));
+            assert_eq!(said, format!("1 1 0 8 {SCK_HZ} {WINDOW}"));
+        }
+        assert_eq!(bench.say(&format!("has {has} {window}")), "ok");
         let most = 300.0;
         assert_eq!(
             bench.say(&format!("begin {JOINTS} {periods} 40000 {id:x} {SCALE} {most}")),
             "ok"
         );
-        // A segment of each joint in each period is more than 921 600 baud carry.
-        let baud = if periods == 1 { 3_000_000 } else { 921_600 };
-        let board = ModelBoard::new(build, Uart::new(CLOCK_HZ, baud).unwrap());
-        let (says, command) = (Says::default(), [0.0; JOINTS]);
-        Self { bench, board, now: 0, cable: true, says, command, period: PERIOD, inputs: None }
-    }
-
-    /// A world whose board is ready.
-    pub fn ready(periods: u32) -> Self {
-        Self::new(periods, 0).made_ready()
+        Self {
+            bench,
+            board,
+            line,
+            now: 0,
+            cable: true,
+            device: true,
+            says: Says::default(),
+            command: [0.0; JOINTS],
+            period: PERIOD,
+            inputs: None,
+        }
     }
 
     pub fn made_ready(mut self) -> Self {
@@ -108,29 +146,27 @@ impl World {
 
     /// A millisecond of the thread and of the board.
     pub fn pass(&mut self) {
-        for _ in 0..4 {
-            self.now += 250;
-            let mut hex = String::new();
-            while let Some(byte) = self.board.next_byte() {
-                if self.cable {
-                    write!(hex, "{byte:02x}").unwrap();
-                }
+        // The transfers of an SPI take time of this millisecond.
+        let end = self.now / 1000 * 1000 + 1000;
+        while self.now < end {
+            self.now = (self.now + 250).min(end);
+            match self.line {
+                Line::Uart => self.serial(),
+                Line::Spi => self.transfers(),
             }
-            let sent = self.bench.say(&format!("line {} {hex}-", self.now));
-            let sent = sent.trim_end_matches('-').as_bytes();
-            for pair in sent.chunks(2).filter(|_| self.cable) {
-                let text = std::str::from_utf8(pair).unwrap();
-                self.board.say(u8::from_str_radix(text, 16).unwrap());
+            self.reach(self.now * MS / 1000);
+        }
+    }
+
+    /// Runs the board up to a cycle.
+    pub(super) fn reach(&mut self, end: u64) {
+        while self.board.cycle() < end {
+            let mut next = end;
+            if let Some(inputs) = self.inputs {
+                next = end.min(self.board.cycle() + SLICE);
+                self.board.press(inputs(self.board.cycle(), self.board.position(0)));
             }
-            let end = self.now * MS / 1000;
-            while self.board.cycle() < end {
-                let mut next = end;
-                if let Some(inputs) = self.inputs {
-                    next = end.min(self.board.cycle() + SLICE);
-                    self.board.press(inputs(self.board.cycle(), self.board.position(0)));
-                }
-                self.board.run(next, &mut ());
-            }
+            self.board.run(next, &mut ()).unwrap();
         }
     }
 
