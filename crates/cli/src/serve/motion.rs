@@ -2,18 +2,19 @@
 //! `run`.
 
 use super::probe::Probing;
-use super::requests::{Flush, Requests};
+use super::requests::{Flush, Positions, Requests};
 use super::server::{Next, REST, Server};
 use crate::connection::ConnectedBoardError;
 use crate::control::Control;
 use crate::drive::settle;
 use crate::failure::Failure;
 use crate::interrupt;
+use carrystep_files::Machine;
 use carrystep_grbl::Alarm;
-use carrystep_job::{Hold, Pace};
+use carrystep_job::{Hold, JobError, Pace};
 use carrystep_link::{Ended, HostError, Progress, Wish};
-use carrystep_program::LineBreak;
-use carrystep_runner::{GrowingRows, Stretches};
+use carrystep_program::{LineBreak, RowOutputs};
+use carrystep_runner::{GrowingRows, OverrideSetting, Stretches};
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
@@ -69,34 +70,20 @@ impl Server<'_> {
     }
 
     fn way(&mut self) -> Result<Way, Failure> {
-        let refused = |error: carrystep_job::JobError| Failure::input(error.to_string());
+        let scales = self.requests.scales();
+        let overrides = self.control.program().filter(|_| scales).map(|one| one.overrides());
         let positions = self.board.status().positions;
-        let start: Vec<i64> = self
-            .requests
-            .place
-            .zero
-            .iter()
-            .zip(positions)
-            .map(|(zero, at)| zero + i64::from(at))
-            .collect();
-        let machine = self.machine;
-        let hold = Hold::new(machine).map_err(refused)?;
-        let pace = Pace::new(machine, &start).map_err(refused)?;
-        let way = Stretches::new(self.requests.growing.rows(), &start, hold, pace, machine.queue);
-        let way = way.with_outputs(self.outputs.clone());
-        let mut way = way.for_holds(machine.cuts, machine.timebase.tick_ns());
-        if let Some(program) = self.control.program().filter(|_| self.requests.scales()) {
-            way.set_overrides(program.overrides());
-        }
-        Ok(RefCell::new(way))
+        let way = self.requests.way(self.machine, &positions, (&self.outputs, overrides));
+        way.map_err(|error| Failure::input(error.to_string()))
     }
 
     /// Sends a stretch.
     fn stream(&mut self, way: &Way) -> Result<Ended, ConnectedBoardError> {
         let Self { board, control, requests, failed, .. } = self;
-        let mut looks = Looks::new();
+        let mut looks = Looks::new(Instant::now());
         board.stream(way, |progress| {
-            looks.look((&mut *requests, &mut **control), way, progress, failed)
+            let now = Instant::now();
+            looks.look(now, (&mut *requests, &mut **control), way, progress, failed)
         })
     }
 
@@ -148,6 +135,26 @@ impl Server<'_> {
     }
 }
 
+impl Requests {
+    /// The way of the batch from these positions on, with the outputs where it begins, and these
+    /// overrides if any scale it.
+    fn way(
+        &self,
+        machine: &Machine,
+        positions: &Positions,
+        (outputs, overrides): (&RowOutputs, Option<OverrideSetting>),
+    ) -> Result<Way, JobError> {
+        let steps = self.place.zero.iter().zip(positions);
+        let start: Vec<i64> = steps.map(|(zero, &at)| zero + i64::from(at)).collect();
+        let (hold, pace) = (Hold::new(machine)?, Pace::new(machine, &start)?);
+        let way = Stretches::new(self.growing.rows(), &start, hold, pace, machine.queue);
+        let way = way.with_outputs(outputs.clone());
+        let mut way = way.for_holds(machine.cuts, machine.timebase.tick_ns());
+        overrides.into_iter().for_each(|overrides| way.set_overrides(overrides));
+        Ok(RefCell::new(way))
+    }
+}
+
 /// When what was looked at last.
 struct Looks {
     next: Instant,
@@ -157,20 +164,19 @@ struct Looks {
 }
 
 impl Looks {
-    fn new() -> Self {
-        let now = Instant::now();
+    fn new(now: Instant) -> Self {
         Self { next: now, line: now, hold: now, overrides: now }
     }
 
-    /// What is wanted of a stretch that runs.
+    /// What is wanted of a stretch that runs, at this time.
     fn look(
         &mut self,
+        now: Instant,
         (requests, control): (&mut Requests, &mut Control),
         way: &Way,
         progress: &Progress<'_>,
         failed: &mut Option<Failure>,
     ) -> Wish {
-        let now = Instant::now();
         if now < self.next {
             return Wish::GoOn;
         }
@@ -221,3 +227,6 @@ impl Looks {
         }
     }
 }
+
+#[cfg(test)]
+mod first_changes;

@@ -164,6 +164,27 @@ impl Requests {
         self.motion == Motion::Moves || self.growing.is_planned() || self.growing.waits()
     }
 
+    /// Whether a batch can begin; begins to plan one if lines wait.
+    pub fn may_move(&mut self) -> bool {
+        if self.alarm || self.holds || self.sleeps {
+            return false;
+        }
+        if self.growing.waits() && !self.growing.is_planned() {
+            match self.lines.planner(&self.from) {
+                Ok(planner) => self.growing.begin(planner, self.from.clone()),
+                Err(fault) => {
+                    self.alarms(Alarm::SoftLimit, &fault.to_string());
+                    self.flush = Some(Flush::Gone);
+                }
+            }
+        }
+        let ready = self.growing.is_ready();
+        if ready {
+            self.motion = Motion::Moves;
+        }
+        ready
+    }
+
     /// Whether overrides scale what moves. A jog has a feed of its own, and so has a probe move.
     pub const fn scales(&self) -> bool {
         !self.jogs && self.probing.is_none()

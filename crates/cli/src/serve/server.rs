@@ -1,6 +1,6 @@
 //! A board that senders drive: what is done at rest, and when a batch of lines begins.
 
-use super::requests::{Flush, Motion, Requests, Todo};
+use super::requests::{Flush, Requests, Todo};
 use crate::connection::{self, ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
@@ -68,7 +68,7 @@ impl Server<'_> {
                 self.fault()?
             } else if let Some(flush) = self.requests.flush {
                 self.flushed(flush)?
-            } else if self.may_move() {
+            } else if self.requests.may_move() {
                 self.batch()?
             } else if let Some(todo) = self.requests.todo.filter(|_| !self.requests.is_busy()) {
                 self.does(todo)?;
@@ -121,28 +121,6 @@ impl Server<'_> {
             door: inputs >> INTERLOCK & 1 == 1,
             reset: estop.fault && Cause::from_number(estop.cause) == Some(Cause::EStop),
         }
-    }
-
-    /// Whether a batch can begin; begins to plan one if lines wait.
-    fn may_move(&mut self) -> bool {
-        let requests = &mut self.requests;
-        if requests.alarm || requests.holds || requests.sleeps {
-            return false;
-        }
-        if requests.growing.waits() && !requests.growing.is_planned() {
-            match requests.lines.planner(&requests.from) {
-                Ok(planner) => requests.growing.begin(planner, requests.from.clone()),
-                Err(fault) => {
-                    requests.alarms(Alarm::SoftLimit, &fault.to_string());
-                    requests.flush = Some(Flush::Gone);
-                }
-            }
-        }
-        let ready = requests.growing.is_ready();
-        if ready {
-            requests.motion = Motion::Moves;
-        }
-        ready
     }
 
     /// All that was planned is dropped; the axes rest with P at its start value.
