@@ -31,6 +31,7 @@ impl Server<'_> {
     pub fn batch(&mut self) -> Result<Next, Failure> {
         let way = self.way()?;
         while way.borrow_mut().begin().is_some() {
+            self.requests.accessories.begins();
             let probing = self.requests.probing;
             if let Some(probe) = probing
                 && !self.arms(probe)?
@@ -41,6 +42,9 @@ impl Server<'_> {
             let ended = self.disarms(probing, ended);
             // Each batch begins and ends at rest.
             self.outputs = way.borrow().row_outputs().at_rest();
+            let left = way.borrow_mut().take_switch();
+            self.requests.accessories.of_stretch(way.borrow().switched());
+            self.requests.accessories.give_back(left);
             match ended {
                 Ok(Probing::Tripped(states)) => return self.tripped(&states),
                 Ok(Probing::Ended(Ended::Done | Ended::SeekEnded)) => {}
@@ -69,6 +73,16 @@ impl Server<'_> {
         Ok(Next::GoesOn)
     }
 
+    /// The next line would move an axis toward a closed limit switch. Nothing has moved.
+    fn refuses(&mut self, why: &str) {
+        let probes = self.requests.probing.is_some();
+        self.requests.alarms(Alarm::HardLimit, why);
+        self.requests.rests_at(&self.board.status().positions);
+        if probes {
+            self.requests.clients.tell(&carrystep_grbl::Dialect::ok());
+        }
+    }
+
     fn way(&mut self) -> Result<Way, Failure> {
         let scales = self.requests.scales();
         let overrides = self.control.program().filter(|_| scales).map(|one| one.overrides());
@@ -89,7 +103,12 @@ impl Server<'_> {
 
     /// Waits behind a stretch as long as a hold is in force. Returns at once if none is.
     fn rests(&mut self) -> Result<Next, Failure> {
-        while self.requests.flush.is_none() && (self.requests.holds || interrupt::is_asked()) {
+        loop {
+            self.switches()?;
+            let holds = self.requests.holds || interrupt::is_asked();
+            if self.requests.flush.is_some() || !holds {
+                return Ok(Next::GoesOn);
+            }
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 self.settles()?;
                 self.requests.rests_at(&self.board.status().positions);
@@ -101,7 +120,6 @@ impl Server<'_> {
             }
             std::thread::sleep(REST);
         }
-        Ok(Next::GoesOn)
     }
 
     /// Brings P of all axes to its start value, where plans begin.
@@ -119,6 +137,10 @@ impl Server<'_> {
             self.requests.rests_at(&self.board.status().positions);
             return;
         };
+        if let Some(why) = end.refused {
+            self.refuses(&why);
+            return;
+        }
         self.requests.batch_ends(end.place);
         if let Some(error) = end.error {
             let why = error.to_string();
@@ -194,6 +216,7 @@ impl Looks {
             let places: Vec<i64> = zero.map(|(zero, at)| zero + i64::from(at)).collect();
             let block = way.borrow().block_at(&places);
             requests.line = block.map(|block| block.line);
+            requests.accessories.of_stretch(way.borrow().switched());
             control.reached(block);
         }
         let wanted = control.program().map(|program| program.overrides());
@@ -209,6 +232,21 @@ impl Looks {
                     }
                 }
                 None => way.set_overrides(wanted),
+            }
+        }
+        let coolant = requests.accessories.take_coolant();
+        if !coolant.is_none() {
+            let mut way = way.borrow_mut();
+            let keep = match progress.queues {
+                Some(queues) => way.switch_in(coolant, queues),
+                None => {
+                    way.switch(coolant);
+                    None
+                }
+            };
+            requests.accessories.of_stretch(way.switched());
+            if let Some(keep) = keep {
+                return Wish::Cut { keep };
             }
         }
         let holds = requests.holds || requests.flush.is_some() || interrupt::is_asked();

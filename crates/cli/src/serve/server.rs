@@ -64,6 +64,8 @@ impl Server<'_> {
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 return Ok(());
             }
+            self.switches()?;
+            self.reads_limits()?;
             let next = if self.board.status().answer.fault && !self.requests.alarm {
                 self.fault()?
             } else if let Some(flush) = self.requests.flush {
@@ -173,7 +175,11 @@ impl Server<'_> {
         let read = self.board.read_status();
         let status = read.map_err(|error| self.lost(&error))?;
         let answer = status.answer;
-        if memory::freezes(answer.cause, self.machine.guard.limit_freezes) {
+        let freezes = memory::freezes(answer.cause, self.machine.guard.limit_freezes);
+        if freezes || self.machine.outputs.off_at_ramps {
+            self.requests.accessories.safe();
+        }
+        if freezes {
             self.memory.forget_places();
         }
         let cause = found::cause(&answer);
