@@ -34,9 +34,38 @@ impl ClosedLimits {
         (self.low | self.high) >> axis & 1 == 1
     }
 
-    /// Checks a motion that begins with these directions, 1, -1 or 0 for each axis. `met` are the
-    /// directions in which the axes have met limits whose switches are still closed, as far as they
-    /// are known.
+    /// The first axis that would move toward a closed switch in a motion that begins with these
+    /// directions, 1, -1 or 0 for each axis. `met` are the directions in which the axes have met
+    /// limits whose switches are still closed, as far as they are known.
+    pub fn blocked(
+        self,
+        wiring: LimitWiring,
+        directions: &[i8],
+        met: &[Option<i8>],
+    ) -> Option<Blocked> {
+        for (axis, &direction) in directions.iter().enumerate().filter(|(_, way)| **way != 0) {
+            let closed = |mask: u8| mask >> axis & 1 == 1;
+            let toward = match wiring {
+                LimitWiring::None => continue,
+                LimitWiring::Pair if closed(if direction < 0 { self.low } else { self.high }) => {
+                    Some(direction)
+                }
+                LimitWiring::Pair => continue,
+                LimitWiring::Each | LimitWiring::One if !closed(self.low) => continue,
+                // With one input for all, the switch is that of an axis that has met it.
+                LimitWiring::One if met[axis].is_none() && met.iter().any(Option::is_some) => {
+                    continue;
+                }
+                LimitWiring::Each | LimitWiring::One => met[axis],
+            };
+            if toward.is_none_or(|toward| toward == direction) {
+                return Some(Blocked { axis, direction, is_known: toward.is_some() });
+            }
+        }
+        None
+    }
+
+    /// Checks such a motion.
     ///
     /// # Errors
     /// An axis would move toward a closed switch, or it is not known at which end the closed switch
@@ -48,39 +77,38 @@ impl ClosedLimits {
         met: &[Option<i8>],
         axes: &[String],
     ) -> Result<(), Failure> {
-        for (number, &direction) in directions.iter().enumerate().filter(|(_, way)| **way != 0) {
-            let closed = |mask: u8| mask >> number & 1 == 1;
-            let toward = match wiring {
-                LimitWiring::None => continue,
-                LimitWiring::Pair if closed(if direction < 0 { self.low } else { self.high }) => {
-                    Some(direction)
-                }
-                LimitWiring::Pair => continue,
-                LimitWiring::Each | LimitWiring::One if !closed(self.low) => continue,
-                // With one input for all, the switch is that of an axis that has met it.
-                LimitWiring::One if met[number].is_none() && met.iter().any(Option::is_some) => {
-                    continue;
-                }
-                LimitWiring::Each | LimitWiring::One => met[number],
-            };
-            let (axis, further) = (&axes[number], if direction > 0 { "forward" } else { "back" });
-            let away = if direction > 0 { "back" } else { "forward" };
-            match toward {
-                Some(toward) if toward == direction => {
-                    return Err(Failure::input(format!(
-                        "the limit switch of axis {axis} is closed, and the axis would move further {further}: jog it {away} \
-                         until the switch is open, or home it; --into-limit moves it {further} all the same"
-                    )));
-                }
-                Some(_) => {}
-                None => {
-                    return Err(Failure::input(format!(
-                        "the limit switch of axis {axis} is closed, and it is not known at which end: home the axis, or move it \
-                         away from the switch with --into-limit"
-                    )));
-                }
-            }
-        }
-        Ok(())
+        let Some(Blocked { axis, direction, is_known }) = self.blocked(wiring, directions, met)
+        else {
+            return Ok(());
+        };
+        let axis = &axes[axis];
+        let [further, away] = ways(direction);
+        Err(Failure::input(if is_known {
+            format!(
+                "the limit switch of axis {axis} is closed, and the axis would move further {further}: jog it {away} \
+                 until the switch is open, or home it; --into-limit moves it {further} all the same"
+            )
+        } else {
+            format!(
+                "the limit switch of axis {axis} is closed, and it is not known at which end: home the axis, or move it \
+                 away from the switch with --into-limit"
+            )
+        }))
     }
+}
+
+/// An axis that would move toward a closed switch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Blocked {
+    /// Its number.
+    pub axis: usize,
+    /// 1 or -1.
+    pub direction: i8,
+    /// Whether it is known that the switch is at this end.
+    pub is_known: bool,
+}
+
+/// A direction and the other one, in words.
+pub const fn ways(direction: i8) -> [&'static str; 2] {
+    if direction > 0 { ["forward", "back"] } else { ["back", "forward"] }
 }

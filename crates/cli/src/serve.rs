@@ -8,6 +8,8 @@
 //! new_lines  the lines: answered, refused, or given to the plan
 //! requests   what is asked for, planned and left to do; it moves nothing
 //! server     the board at rest: alarms, homing (home), when a batch begins
+//! accessories what is wanted of spindle and coolant beside the lines; switching: at rest
+//! closed_limits lines toward a limit switch that is closed already
 //! motion     a batch: stretches from rest to rest, with the holds and overrides of `run`
 //! reports    what status reports say
 //! web        the page, and the WebSockets of pages; pages: what they show and want
@@ -15,8 +17,10 @@
 //! simulated  the board of `--virtual`; link: the symbolic link to the pseudo-terminal
 //! ```
 
+mod accessories;
 mod client;
 mod clients;
+mod closed_limits;
 mod home;
 mod http;
 mod link;
@@ -32,9 +36,11 @@ mod reports;
 mod requests;
 mod server;
 mod simulated;
+mod switching;
 mod terms;
 mod web;
 
+pub use accessories::Accessories;
 pub use clients::Clients;
 pub use link::Link;
 pub use places::{find, lines};

@@ -34,4 +34,4 @@ pub use realtime::{Realtime, Received};
 pub use report::{Accessories, Pins, Reporter, Seen};
 pub use request::{Request, Restore};
 pub use settings::{AxisSettings, HomingSettings, MachineSettings, Settings};
-pub use state::State;
+pub use state::{Door, State};

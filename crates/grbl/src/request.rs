@@ -119,7 +119,7 @@ impl<'a> Request<'a> {
             Self::Empty | Self::Help | Self::ParserState | Self::Unlock => Ok(()),
             Self::Gcode(_) if matches!(state, Alarm | Jog | Sleep) => Err(ErrorCode::Locked),
             Self::Gcode(_) => Ok(()),
-            Self::Settings if matches!(state, Run | Hold { .. } | Jog | Home | Door { .. }) => {
+            Self::Settings if matches!(state, Run | Hold { .. } | Jog | Home | Door(_)) => {
                 Err(ErrorCode::NotIdle)
             }
             Self::Settings => Ok(()),

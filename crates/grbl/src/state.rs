@@ -2,6 +2,19 @@
 
 use std::fmt;
 
+/// What a safety door has come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Door {
+    /// It is closed, and the machine may go on.
+    IsClosed,
+    /// It is still open, and the machine rests.
+    IsOpen,
+    /// The machine is brought to rest.
+    Stops,
+    /// Spindle and coolant are switched on again.
+    Restores,
+}
+
 /// The state of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum State {
@@ -19,11 +32,8 @@ pub enum State {
     Jog,
     /// G-code is locked out.
     Alarm,
-    /// The safety door was reported; whether the axes already rest.
-    Door {
-        /// The axes rest.
-        rests: bool,
-    },
+    /// The safety door was reported.
+    Door(Door),
     /// G-code is only checked.
     Check,
     /// It homes.
@@ -35,7 +45,7 @@ pub enum State {
 impl State {
     /// Whether fields that come only now and then come less often.
     pub const fn is_busy(self) -> bool {
-        matches!(self, Self::Home | Self::Run | Self::Hold { .. } | Self::Jog | Self::Door { .. })
+        matches!(self, Self::Home | Self::Run | Self::Hold { .. } | Self::Jog | Self::Door(_))
     }
 }
 
@@ -48,8 +58,10 @@ impl fmt::Display for State {
             Self::Hold { rests: false } => "Hold:1",
             Self::Jog => "Jog",
             Self::Alarm => "Alarm",
-            Self::Door { rests: true } => "Door:0",
-            Self::Door { rests: false } => "Door:2",
+            Self::Door(Door::IsClosed) => "Door:0",
+            Self::Door(Door::IsOpen) => "Door:1",
+            Self::Door(Door::Stops) => "Door:2",
+            Self::Door(Door::Restores) => "Door:3",
             Self::Check => "Check",
             Self::Home => "Home",
             Self::Sleep => "Sleep",

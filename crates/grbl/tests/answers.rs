@@ -1,7 +1,7 @@
 //! The answers to lines: one for each, whatever it is, in each state.
 
 use carrystep_grbl::{
-    Action, Alarm, AxisSettings, Dialect, ErrorCode, MachineSettings, Outcome, Parameters,
+    Action, Alarm, AxisSettings, Dialect, Door, ErrorCode, MachineSettings, Outcome, Parameters,
     ParserState, Request, Restore, Restored, Settings, State,
 };
 use proptest::prelude::*;
@@ -13,8 +13,8 @@ const STATES: [State; 11] = [
     State::Hold { rests: false },
     State::Jog,
     State::Alarm,
-    State::Door { rests: true },
-    State::Door { rests: false },
+    State::Door(Door::IsClosed),
+    State::Door(Door::Stops),
     State::Check,
     State::Home,
     State::Sleep,

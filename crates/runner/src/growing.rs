@@ -11,6 +11,7 @@
 //! no line waits and few planned rows are left to send. So a sender that is late makes the machine
 //! rest on its path, and no queue of the board runs dry.
 
+use crate::first_ways::directions;
 use carrystep_job::{Item, JobError, Planner};
 use carrystep_program::{LineBreak, PlannedLine, Row};
 use std::collections::VecDeque;
@@ -35,6 +36,10 @@ const GATHERING: Duration = Duration::from_millis(250);
 /// Time between two looks at the clock.
 const LOOK: Duration = Duration::from_millis(2);
 
+/// What refuses motion: it is given the direction, 1, -1 or 0, in which each axis moves for the first
+/// time in a batch, and returns why an axis must not.
+pub type MotionGuard = Box<dyn Fn(&[i8]) -> Result<(), String> + Send>;
+
 /// How a batch has ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BatchEnd {
@@ -44,6 +49,8 @@ pub struct BatchEnd {
     pub place: Vec<f64>,
     /// Why the lines cannot be planned. The rows break off.
     pub error: Option<JobError>,
+    /// Why the line that comes next must not be executed. Nothing of the batch has moved.
+    pub refused: Option<String>,
 }
 
 /// The present batch.
@@ -110,11 +117,18 @@ impl Growing {
     /// Begins to plan the lines that wait and those that come, from this place on: the coordinates
     /// of the axes. A batch that has not ended is dropped.
     pub fn begin(&self, planner: Planner, place: Vec<f64>) {
+        self.begin_guarded(planner, place, None);
+    }
+
+    /// The same with a guard. The batch ends before a line that the guard refuses; if nothing moves
+    /// before that line, the batch says so.
+    pub fn begin_guarded(&self, planner: Planner, place: Vec<f64>, guard: Option<MotionGuard>) {
         let mut shared = self.lock();
         let since = Instant::now();
         shared.batch = Some(Batch { rows: VecDeque::new(), has_begun: false, since, end: None });
         shared.number += 1;
-        let work = Work { growing: self.clone(), number: shared.number, place, at: None };
+        let (growing, number, moved) = (self.clone(), shared.number, vec![false; place.len()]);
+        let work = Work { growing, number, place, at: None, guard, moved };
         std::thread::spawn(move || work.plan(planner));
     }
 
@@ -186,11 +200,14 @@ struct Work {
     place: Vec<f64>,
     /// Why the batch ends.
     at: Option<LineBreak>,
+    guard: Option<MotionGuard>,
+    /// The axes that have moved in the batch.
+    moved: Vec<bool>,
 }
 
 impl Work {
     fn plan(mut self, mut planner: Planner) {
-        let mut ends = false;
+        let (mut ends, mut refused) = (false, None);
         let error = loop {
             match planner.next_row() {
                 Ok(Some(row)) => {
@@ -203,13 +220,23 @@ impl Work {
                 Ok(None) => {}
                 Err(error) => break Some(error),
             }
-            let Some(items) = self.next() else { return };
-            let pushed = if items.is_empty() {
+            let Some(mut items) = self.next() else { return };
+            let mut is_last = items.is_empty();
+            let mut pushed = Ok(());
+            while let Some(item) = items.pop_front().filter(|_| pushed.is_ok()) {
+                if let Err(why) = self.guarded(&item) {
+                    refused = Some(why).filter(|_| !self.moved.contains(&true));
+                    is_last = true;
+                    items.push_front(item);
+                    self.give_back(items);
+                    break;
+                }
+                pushed = self.push(&mut planner, &item);
+            }
+            if is_last && pushed.is_ok() {
                 ends = true;
-                planner.finish()
-            } else {
-                items.iter().try_for_each(|item| self.push(&mut planner, item))
-            };
+                pushed = planner.finish();
+            }
             if let Err(error) = pushed {
                 break Some(error);
             }
@@ -218,8 +245,32 @@ impl Work {
         if shared.number == self.number
             && let Some(batch) = &mut shared.batch
         {
-            batch.end = Some(BatchEnd { at: self.at, place: self.place, error });
+            batch.end = Some(BatchEnd { at: self.at, place: self.place, error, refused });
             self.growing.shared.1.notify_all();
+        }
+    }
+
+    /// Asks the guard for the axes that the next item moves and that have not moved before.
+    fn guarded(&mut self, item: &Item) -> Result<(), String> {
+        let (Some(guard), Item::Move(element)) = (&self.guard, item) else { return Ok(()) };
+        let directions = directions(&self.place, element);
+        let first: Vec<i8> = directions
+            .iter()
+            .zip(&self.moved)
+            .map(|(way, moved)| if *moved { 0 } else { *way })
+            .collect();
+        guard(&first)?;
+        for (moved, way) in self.moved.iter_mut().zip(directions) {
+            *moved |= way != 0;
+        }
+        Ok(())
+    }
+
+    /// These items of a line were not planned, and come first again.
+    fn give_back(&self, items: VecDeque<Item>) {
+        let mut shared = self.growing.lock();
+        if shared.number == self.number {
+            shared.lines.push_front(items.into_iter().map(PlannedLine::Item).collect());
         }
     }
 
@@ -249,17 +300,17 @@ impl Work {
     }
 
     /// The items of the next line; none if the batch ends. `None` if it was dropped.
-    fn next(&mut self) -> Option<Vec<Item>> {
+    fn next(&mut self) -> Option<VecDeque<Item>> {
         let mut shared = self.growing.lock();
         loop {
             if shared.number != self.number {
                 return None;
             }
             if let Some(line) = shared.lines.front_mut() {
-                let mut items = Vec::new();
+                let mut items = VecDeque::new();
                 while let Some(part) = line.pop_front() {
                     match part {
-                        PlannedLine::Item(item) => items.push(item),
+                        PlannedLine::Item(item) => items.push_back(item),
                         PlannedLine::Break(_) if !items.is_empty() => {
                             line.push_front(part);
                             return Some(items);
@@ -287,7 +338,7 @@ impl Work {
                 }
             };
             if late {
-                return Some(Vec::new());
+                return Some(VecDeque::new());
             }
             let waited = self.growing.shared.1.wait_timeout(shared, LOOK);
             shared = waited.unwrap_or_else(PoisonError::into_inner).0;

@@ -10,6 +10,7 @@
 //! The crate knows rows, and what a board's queues hold; it knows no line and no terminal.
 
 mod blocks;
+mod first_ways;
 mod growing;
 mod held;
 mod horizon;
@@ -21,7 +22,7 @@ mod stretches;
 mod time_left;
 
 pub use blocks::BlockAt;
-pub use growing::{BatchEnd, Growing, GrowingRows, LINES};
+pub use growing::{BatchEnd, Growing, GrowingRows, LINES, MotionGuard};
 pub use horizon::Horizon;
 pub use override_setting::OverrideSetting;
 pub use settling::settling;

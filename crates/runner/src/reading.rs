@@ -44,6 +44,9 @@ struct ReadRow {
     /// The outputs and the spindle before it.
     outputs: RowOutputs,
     spindle: Spindle,
+    switched: OutputChange,
+    /// What changed with it besides what the program says.
+    added: OutputChange,
 }
 
 /// A place in the rows of a program.
@@ -58,6 +61,10 @@ pub(crate) struct Reading {
     /// The outputs and the spindle behind the rows that were read.
     pub row_outputs: RowOutputs,
     spindle: Spindle,
+    /// All changes of outputs of the rows of the stretch that were read, as one.
+    pub switched: OutputChange,
+    /// What changes with the next row that is read besides what the program says.
+    pub pending: OutputChange,
     /// Planned ticks per tick in the row that was read last.
     pub rate: f64,
     /// Number of rows of the stretch that were read.
@@ -89,6 +96,8 @@ impl Reading {
             pace,
             row_outputs,
             spindle: Spindle::default(),
+            switched: OutputChange::NONE,
+            pending: OutputChange::NONE,
             rate: 1.0,
             ahead: VecDeque::new(),
             read: VecDeque::new(),
@@ -110,6 +119,7 @@ impl Reading {
         self.forget();
         self.read.clear();
         self.count = 0;
+        self.switched = OutputChange::NONE;
         (self.left, self.whole) = (None, false);
     }
 
@@ -146,10 +156,13 @@ impl Reading {
         travel: impl Fn(&Segment) -> i128,
     ) {
         let NextRow { row, rate, from } = next;
-        let (before, spindle) = (self.at.clone(), self.spindle);
+        let (before, spindle, switched) = (self.at.clone(), self.spindle, self.switched);
         let outputs = self.row_outputs.clone();
-        let change = self.row_outputs.change(&row);
-        self.outputs.push_back(self.spindle.turns(change, percent));
+        let added = std::mem::take(&mut self.pending);
+        let change = added.then(self.row_outputs.change(&row));
+        let change = self.spindle.turns(change, percent);
+        self.outputs.push_back(change);
+        self.switched = switched.then(change);
         self.rate = rate;
         self.gone += f64::from(row.ticks) * rate;
         let places = self.at.iter_mut().zip(&mut self.segments);
@@ -160,7 +173,8 @@ impl Reading {
         if self.read.len() == KEPT {
             self.read.pop_front();
         }
-        self.read.push_back(ReadRow { row: (row, before), rate, from, outputs, spindle });
+        let row = (row, before);
+        self.read.push_back(ReadRow { row, rate, from, outputs, spindle, switched, added });
         self.count += 1;
     }
 
@@ -194,7 +208,9 @@ impl Reading {
         }
         while self.count > keep {
             if let Some(read) = self.read.pop_back() {
-                let ReadRow { row: (row, at), rate, from, outputs, spindle } = read;
+                let ReadRow { row: (row, at), rate, from, outputs, spindle, .. } = read;
+                self.switched = read.switched;
+                self.pending = read.added.then(self.pending);
                 self.gone -= f64::from(row.ticks) * rate;
                 self.ahead.push_front(NextRow { row, rate, from });
                 (self.at, self.row_outputs, self.spindle) = (at, outputs, spindle);

@@ -270,6 +270,40 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         keep
     }
 
+    /// Changes outputs with the next row that is read, before what the program says of that row.
+    pub fn switch(&mut self, change: OutputChange) {
+        let before = self.uncut.as_mut().map(|(before, _)| before);
+        for now in [Some(&mut self.now), before].into_iter().flatten() {
+            now.pending = now.pending.then(change);
+        }
+    }
+
+    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
+    /// stretch behind which the board has to cut its queues. `None` if nothing has to be cut. If the
+    /// board refuses the cut, the outputs change later.
+    pub fn switch_in(&mut self, change: OutputChange, queues: Queues) -> Option<u32> {
+        self.decide(queues);
+        self.switch(change);
+        let keep = self.cut(queues)?;
+        let before = (self.now.clone(), self.overrides);
+        if !self.now.rewind(keep) {
+            return None;
+        }
+        (self.uncut, self.granted) = (Some(before), queues.cuts);
+        Some(keep)
+    }
+
+    /// Takes back what [`Self::switch`] has not brought to a row.
+    pub const fn take_switch(&mut self) -> OutputChange {
+        std::mem::replace(&mut self.now.pending, OutputChange::NONE)
+    }
+
+    /// All changes of outputs of the rows of the stretch that were read so far, and those that come
+    /// with the next row, as one.
+    pub const fn switched(&self) -> OutputChange {
+        self.now.switched.then(self.now.pending)
+    }
+
     /// The number of rows of the stretch that a cut keeps; `None` if it would drop none. A host that
     /// was late for a cut keeps more with the next one.
     fn cut(&self, queues: Queues) -> Option<u32> {

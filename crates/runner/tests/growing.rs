@@ -7,7 +7,7 @@ use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Item, rows};
 use carrystep_plan::exact::travel;
 use carrystep_program::{LineBreak, Lines, Offsets, PlannedLine, Row};
-use carrystep_runner::{BatchEnd, Growing, LINES};
+use carrystep_runner::{BatchEnd, Growing, LINES, MotionGuard};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -229,4 +229,35 @@ fn faults_of_lines_are_found_before_anything_is_planned() {
         assert!(!given.interpreter().modes().inches);
     }
     assert_eq!(given.execute("G1 X5").unwrap().len(), 1);
+}
+
+/// A batch whose x must not go back at first.
+fn guarded(growing: &Growing, given: &Lines, place: Vec<f64>) -> (Vec<Row>, BatchEnd) {
+    let guard: MotionGuard =
+        Box::new(|ways| if ways[0] < 0 { Err("x is closed".to_owned()) } else { Ok(()) });
+    growing.begin_guarded(given.planner(&place).unwrap(), place, Some(guard));
+    batch(growing)
+}
+
+#[test]
+fn batch_ends_before_a_line_that_its_guard_refuses() {
+    let (mut given, growing) = (lines(), Growing::default());
+    let add = |given: &mut Lines, line: &str| growing.add(given.execute(line).unwrap());
+    for line in ["G21 G91 G1 Y1 F600", "G1 X-1 Y1", "G1 Y2"] {
+        add(&mut given, line);
+    }
+    let (rows, end) = guarded(&growing, &given, vec![0.0; 2]);
+    assert_eq!((gone(&rows), &end.refused), (vec![0, 80], &None));
+    assert!(growing.waits());
+    let (rows, end) = guarded(&growing, &given, end.place);
+    assert_eq!((rows.len(), end.refused.as_deref()), (0, Some("x is closed")));
+    assert_eq!(end.place, [0.0, 1.0]);
+    // An axis that has moved away may come back.
+    growing.clear();
+    given.place([0.0; 6]);
+    for line in ["G1 X2 Y-1", "G1 X-1", "G1 Y-1"] {
+        add(&mut given, line);
+    }
+    let (rows, end) = guarded(&growing, &given, vec![0.0; 2]);
+    assert_eq!((gone(&rows), end.refused), (vec![80, -160], None));
 }

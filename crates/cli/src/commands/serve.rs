@@ -5,7 +5,9 @@ use crate::connection::{self, Connection};
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use crate::output;
-use crate::serve::{Clients, Link, Pty, Requests, Server, Web, find, lines, settings, simulate};
+use crate::serve::{
+    Accessories, Clients, Link, Pty, Requests, Server, Web, find, lines, settings, simulate,
+};
 use carrystep_files::Machine;
 use carrystep_grbl::{Dialect, Settings};
 use carrystep_link::Ended;
@@ -54,6 +56,7 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     let clients = Clients::new(pty, listener, web);
     let clients = clients.map_err(|error| Failure::Run(error.to_string()))?;
     let mut requests = Requests::new((dialect, clients), lines, place, arguments.when_gone);
+    requests.accessories = Accessories::new(&machine);
     (requests.alarm, requests.keeps) = (lost, !lost);
     requests.begins();
     control.runs_program(machine.output_uses.spindle_rpm.is_some());

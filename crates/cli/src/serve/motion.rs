@@ -2,18 +2,19 @@
 //! `run`.
 
 use super::probe::Probing;
-use super::requests::{Flush, Requests};
+use super::requests::{Flush, Positions, Requests};
 use super::server::{Next, REST, Server};
 use crate::connection::ConnectedBoardError;
 use crate::control::Control;
 use crate::drive::settle;
 use crate::failure::Failure;
 use crate::interrupt;
+use carrystep_files::Machine;
 use carrystep_grbl::Alarm;
-use carrystep_job::{Hold, Pace};
+use carrystep_job::{Hold, JobError, Pace};
 use carrystep_link::{Ended, HostError, Progress, Wish};
-use carrystep_program::LineBreak;
-use carrystep_runner::{GrowingRows, Stretches};
+use carrystep_program::{LineBreak, RowOutputs};
+use carrystep_runner::{GrowingRows, OverrideSetting, Stretches};
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
@@ -30,6 +31,7 @@ impl Server<'_> {
     pub fn batch(&mut self) -> Result<Next, Failure> {
         let way = self.way()?;
         while way.borrow_mut().begin().is_some() {
+            self.requests.accessories.begins();
             let probing = self.requests.probing;
             if let Some(probe) = probing
                 && !self.arms(probe)?
@@ -40,6 +42,9 @@ impl Server<'_> {
             let ended = self.disarms(probing, ended);
             // Each batch begins and ends at rest.
             self.outputs = way.borrow().row_outputs().at_rest();
+            let left = way.borrow_mut().take_switch();
+            self.requests.accessories.of_stretch(way.borrow().switched());
+            self.requests.accessories.give_back(left);
             match ended {
                 Ok(Probing::Tripped(states)) => return self.tripped(&states),
                 Ok(Probing::Ended(Ended::Done | Ended::SeekEnded)) => {}
@@ -68,41 +73,42 @@ impl Server<'_> {
         Ok(Next::GoesOn)
     }
 
-    fn way(&mut self) -> Result<Way, Failure> {
-        let refused = |error: carrystep_job::JobError| Failure::input(error.to_string());
-        let positions = self.board.status().positions;
-        let start: Vec<i64> = self
-            .requests
-            .place
-            .zero
-            .iter()
-            .zip(positions)
-            .map(|(zero, at)| zero + i64::from(at))
-            .collect();
-        let machine = self.machine;
-        let hold = Hold::new(machine).map_err(refused)?;
-        let pace = Pace::new(machine, &start).map_err(refused)?;
-        let way = Stretches::new(self.requests.growing.rows(), &start, hold, pace, machine.queue);
-        let way = way.with_outputs(self.outputs.clone());
-        let mut way = way.for_holds(machine.cuts, machine.timebase.tick_ns());
-        if let Some(program) = self.control.program().filter(|_| self.requests.scales()) {
-            way.set_overrides(program.overrides());
+    /// The next line would move an axis toward a closed limit switch. Nothing has moved.
+    fn refuses(&mut self, why: &str) {
+        let probes = self.requests.probing.is_some();
+        self.requests.alarms(Alarm::HardLimit, why);
+        self.requests.rests_at(&self.board.status().positions);
+        if probes {
+            self.requests.clients.tell(&carrystep_grbl::Dialect::ok());
         }
-        Ok(RefCell::new(way))
+    }
+
+    fn way(&mut self) -> Result<Way, Failure> {
+        let scales = self.requests.scales();
+        let overrides = self.control.program().filter(|_| scales).map(|one| one.overrides());
+        let positions = self.board.status().positions;
+        let way = self.requests.way(self.machine, &positions, (&self.outputs, overrides));
+        way.map_err(|error| Failure::input(error.to_string()))
     }
 
     /// Sends a stretch.
     fn stream(&mut self, way: &Way) -> Result<Ended, ConnectedBoardError> {
         let Self { board, control, requests, failed, .. } = self;
-        let mut looks = Looks::new();
+        let mut looks = Looks::new(Instant::now());
         board.stream(way, |progress| {
-            looks.look((&mut *requests, &mut **control), way, progress, failed)
+            let now = Instant::now();
+            looks.look(now, (&mut *requests, &mut **control), way, progress, failed)
         })
     }
 
     /// Waits behind a stretch as long as a hold is in force. Returns at once if none is.
     fn rests(&mut self) -> Result<Next, Failure> {
-        while self.requests.flush.is_none() && (self.requests.holds || interrupt::is_asked()) {
+        loop {
+            self.switches()?;
+            let holds = self.requests.holds || interrupt::is_asked();
+            if self.requests.flush.is_some() || !holds {
+                return Ok(Next::GoesOn);
+            }
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 self.settles()?;
                 self.requests.rests_at(&self.board.status().positions);
@@ -114,7 +120,6 @@ impl Server<'_> {
             }
             std::thread::sleep(REST);
         }
-        Ok(Next::GoesOn)
     }
 
     /// Brings P of all axes to its start value, where plans begin.
@@ -132,6 +137,10 @@ impl Server<'_> {
             self.requests.rests_at(&self.board.status().positions);
             return;
         };
+        if let Some(why) = end.refused {
+            self.refuses(&why);
+            return;
+        }
         self.requests.batch_ends(end.place);
         if let Some(error) = end.error {
             let why = error.to_string();
@@ -148,6 +157,26 @@ impl Server<'_> {
     }
 }
 
+impl Requests {
+    /// The way of the batch from these positions on, with the outputs where it begins, and these
+    /// overrides if any scale it.
+    fn way(
+        &self,
+        machine: &Machine,
+        positions: &Positions,
+        (outputs, overrides): (&RowOutputs, Option<OverrideSetting>),
+    ) -> Result<Way, JobError> {
+        let steps = self.place.zero.iter().zip(positions);
+        let start: Vec<i64> = steps.map(|(zero, &at)| zero + i64::from(at)).collect();
+        let (hold, pace) = (Hold::new(machine)?, Pace::new(machine, &start)?);
+        let way = Stretches::new(self.growing.rows(), &start, hold, pace, machine.queue);
+        let way = way.with_outputs(outputs.clone());
+        let mut way = way.for_holds(machine.cuts, machine.timebase.tick_ns());
+        overrides.into_iter().for_each(|overrides| way.set_overrides(overrides));
+        Ok(RefCell::new(way))
+    }
+}
+
 /// When what was looked at last.
 struct Looks {
     next: Instant,
@@ -157,20 +186,19 @@ struct Looks {
 }
 
 impl Looks {
-    fn new() -> Self {
-        let now = Instant::now();
+    fn new(now: Instant) -> Self {
         Self { next: now, line: now, hold: now, overrides: now }
     }
 
-    /// What is wanted of a stretch that runs.
+    /// What is wanted of a stretch that runs, at this time.
     fn look(
         &mut self,
+        now: Instant,
         (requests, control): (&mut Requests, &mut Control),
         way: &Way,
         progress: &Progress<'_>,
         failed: &mut Option<Failure>,
     ) -> Wish {
-        let now = Instant::now();
         if now < self.next {
             return Wish::GoOn;
         }
@@ -188,6 +216,7 @@ impl Looks {
             let places: Vec<i64> = zero.map(|(zero, at)| zero + i64::from(at)).collect();
             let block = way.borrow().block_at(&places);
             requests.line = block.map(|block| block.line);
+            requests.accessories.of_stretch(way.borrow().switched());
             control.reached(block);
         }
         let wanted = control.program().map(|program| program.overrides());
@@ -203,6 +232,21 @@ impl Looks {
                     }
                 }
                 None => way.set_overrides(wanted),
+            }
+        }
+        let coolant = requests.accessories.take_coolant();
+        if !coolant.is_none() {
+            let mut way = way.borrow_mut();
+            let keep = match progress.queues {
+                Some(queues) => way.switch_in(coolant, queues),
+                None => {
+                    way.switch(coolant);
+                    None
+                }
+            };
+            requests.accessories.of_stretch(way.switched());
+            if let Some(keep) = keep {
+                return Wish::Cut { keep };
             }
         }
         let holds = requests.holds || requests.flush.is_some() || interrupt::is_asked();
@@ -221,3 +265,6 @@ impl Looks {
         }
     }
 }
+
+#[cfg(test)]
+mod first_changes;

@@ -1,10 +1,13 @@
 //! What the connections want: real-time characters act at once, lines are taken in their order.
 
+use super::accessories::Coolant;
 use super::clients::Heard;
 use super::requests::{Flush, Requests, Todo};
 use crate::arguments::WhenGone;
 use crate::control::{Control, ProgramControl};
-use carrystep_grbl::{Dialect, ErrorCode, OverrideStep, Overrides, Realtime, WELCOME, message};
+use carrystep_grbl::{
+    Dialect, ErrorCode, OverrideStep, Overrides, Realtime, State, WELCOME, message,
+};
 use carrystep_link::Status;
 use carrystep_runner::OverrideSetting;
 use std::io;
@@ -82,6 +85,10 @@ impl Requests {
     }
 
     fn resume(&mut self, control: &mut Control) {
+        // As with Grbl, not before the machine rests, and not while the door is open.
+        if self.door && (!self.accessories.is_parked() || self.pins.door) {
+            return;
+        }
         (self.holds, self.door) = (false, false);
         control.program().into_iter().for_each(ProgramControl::moves);
     }
@@ -105,9 +112,29 @@ impl Requests {
                 }
             }
             Realtime::Override(step) => self.overriding(step, control),
-            // What these change belongs to the outputs of a program that is not read ahead.
-            Realtime::SpindleStop | Realtime::Flood | Realtime::Mist => {}
+            Realtime::SpindleStop => {
+                if matches!(self.state(), State::Hold { .. }) {
+                    self.accessories.toggle_spindle();
+                }
+            }
+            Realtime::Flood => self.toggle(Coolant::Flood),
+            Realtime::Mist => self.toggle(Coolant::Mist),
             Realtime::Hold | Realtime::Resume | Realtime::Door | Realtime::JogCancel => {}
+        }
+    }
+
+    /// Switches a coolant, as a line with M7, M8 or M9 does: the modes follow. Machines without an
+    /// output for it ignore this.
+    fn toggle(&mut self, coolant: Coolant) {
+        let may = matches!(self.state(), State::Idle | State::Run | State::Hold { .. });
+        let Some(was_on) = self.accessories.is_on(coolant).filter(|_| may) else { return };
+        self.accessories.toggle(coolant);
+        let modes = self.lines.interpreter().modes();
+        let flood = if coolant == Coolant::Flood { !was_on } else { modes.flood };
+        let mist = if coolant == Coolant::Mist { !was_on } else { modes.mist };
+        for (line, _) in [("M9", true), ("M8", flood), ("M7", mist)].iter().filter(|line| line.1) {
+            // The outputs are switched already. It cannot be refused.
+            let _ = self.lines.execute(line);
         }
     }
 

@@ -1,5 +1,6 @@
 //! What status reports say of a machine.
 
+use super::accessories::Coolant;
 use super::requests::{Motion, Requests};
 use super::terms;
 use carrystep_gcode::Turn;
@@ -43,7 +44,13 @@ impl Requests {
         let modes = lines.modes();
         let of_axes = |at: &Point| terms::of_axes(letters, |letter| at[letter]);
         let line = self.line.filter(|_| self.motion == Motion::Moves && !self.jogs);
-        let turns = modes.spindle != Turn::Off && !self.checks;
+        let spindle = match self.accessories.has_spindle() {
+            true => self.accessories.turns(),
+            false if modes.spindle == Turn::Off => None,
+            false => Some(modes.spindle == Turn::Counterclockwise),
+        };
+        let spindle = spindle.filter(|_| !self.checks);
+        let is_on = |coolant, of_lines| self.accessories.is_on(coolant).unwrap_or(of_lines);
         Seen {
             state: self.state(),
             machine: of_axes(&self.at(&self.positions)),
@@ -52,13 +59,13 @@ impl Requests {
             bytes: self.input.free(),
             line: line.and_then(|line| self.number(line)),
             feed: self.speed.2,
-            rpm: if turns { modes.rpm } else { 0.0 },
+            rpm: if spindle.is_some() { modes.rpm } else { 0.0 },
             pins: self.pins,
             overrides: self.overrides,
             accessories: Accessories {
-                spindle: turns.then_some(modes.spindle == Turn::Counterclockwise),
-                flood: modes.flood,
-                mist: modes.mist,
+                spindle,
+                flood: is_on(Coolant::Flood, modes.flood),
+                mist: is_on(Coolant::Mist, modes.mist),
             },
         }
     }

@@ -8,14 +8,17 @@
 //!                             -> todo: home, probe, unlock, sleep        at rest
 //! ```
 
+use super::accessories::Accessories;
 use super::clients::Clients;
 use super::terms;
 use crate::arguments::WhenGone;
 use crate::drive::{Place, point_at};
 use carrystep_gcode::Offsets;
-use carrystep_grbl::{Alarm, Dialect, Input, Overrides, Pins, Probed, State, WELCOME, message};
+use carrystep_grbl::{
+    Alarm, Dialect, Door, Input, Overrides, Pins, Probed, State, WELCOME, message,
+};
 use carrystep_program::{Lines, PlannedLine, Point, ProbeLine};
-use carrystep_runner::Growing;
+use carrystep_runner::{Growing, MotionGuard};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -73,6 +76,8 @@ pub struct Requests {
     pub growing: Growing,
     pub place: Place,
     pub overrides: Overrides,
+    /// What is wanted of spindle and coolant.
+    pub accessories: Accessories,
     pub when_gone: WhenGone,
     /// Whether the work offsets are kept.
     pub keeps: bool,
@@ -84,6 +89,8 @@ pub struct Requests {
     /// Whether a hold was asked for, and whether it was by the safety door.
     pub holds: bool,
     pub door: bool,
+    /// The state in which the machine waits for the spindle behind a hold.
+    pub restores: Option<State>,
     /// Whether what is planned are jogs.
     pub jogs: bool,
     pub flush: Option<Flush>,
@@ -100,6 +107,8 @@ pub struct Requests {
     pub probed: Probed,
     pub motion: Motion,
     pub pins: Pins,
+    /// What refuses lines of the next batch.
+    pub guard: Option<MotionGuard>,
     /// Where the next batch begins: the coordinates of the axes.
     pub from: Vec<f64>,
     /// The direction in which each axis was last seen moving.
@@ -131,6 +140,7 @@ impl Requests {
             growing: Growing::default(),
             place,
             overrides: Overrides::NONE,
+            accessories: Accessories::default(),
             when_gone,
             keeps: true,
             alarm: false,
@@ -139,6 +149,7 @@ impl Requests {
             homes: false,
             holds: false,
             door: false,
+            restores: None,
             jogs: false,
             flush: None,
             stops: false,
@@ -149,6 +160,7 @@ impl Requests {
             probed,
             motion: Motion::Rests,
             pins: Pins::default(),
+            guard: None,
             from,
             ways: [0; 8],
             rests: true,
@@ -164,6 +176,34 @@ impl Requests {
         self.motion == Motion::Moves || self.growing.is_planned() || self.growing.waits()
     }
 
+    /// Whether the next lines are to be planned now.
+    pub fn may_plan(&self) -> bool {
+        let is_locked = self.alarm || self.holds || self.sleeps;
+        !is_locked && self.growing.waits() && !self.growing.is_planned()
+    }
+
+    /// Whether a batch can begin; begins to plan one if lines wait.
+    pub fn may_move(&mut self) -> bool {
+        if self.alarm || self.holds || self.sleeps {
+            return false;
+        }
+        if self.may_plan() {
+            let guard = self.guard.take();
+            match self.lines.planner(&self.from) {
+                Ok(planner) => self.growing.begin_guarded(planner, self.from.clone(), guard),
+                Err(fault) => {
+                    self.alarms(Alarm::SoftLimit, &fault.to_string());
+                    self.flush = Some(Flush::Gone);
+                }
+            }
+        }
+        let ready = self.growing.is_ready();
+        if ready {
+            self.motion = Motion::Moves;
+        }
+        ready
+    }
+
     /// Whether overrides scale what moves. A jog has a feed of its own, and so has a probe move.
     pub const fn scales(&self) -> bool {
         !self.jogs && self.probing.is_none()
@@ -177,11 +217,21 @@ impl Requests {
             Self { alarm: true, .. } => State::Alarm,
             Self { homes: true, .. } => State::Home,
             Self { checks: true, .. } => State::Check,
-            Self { door: true, .. } => State::Door { rests },
+            Self { door: true, .. } => State::Door(self.door_state()),
+            Self { restores: Some(state), holds: false, .. } => *state,
             Self { holds: true, .. } => State::Hold { rests },
             _ if self.is_busy() && self.jogs => State::Jog,
             _ if self.is_busy() => State::Run,
             _ => State::Idle,
+        }
+    }
+
+    /// What the safety door has come to.
+    const fn door_state(&self) -> Door {
+        match (self.accessories.is_parked(), self.pins.door) {
+            (false, _) => Door::Stops,
+            (true, true) => Door::IsOpen,
+            (true, false) => Door::IsClosed,
         }
     }
 
@@ -222,6 +272,7 @@ impl Requests {
         self.lines.restart(at, Offsets { parameters, ..Offsets::default() });
         self.begins();
         (self.holds, self.door, self.checks, self.flush) = (false, false, false, None);
+        self.accessories.reset();
         self.dialect.reporter.restart();
         self.clients.tell(WELCOME);
         if self.alarm {
@@ -239,6 +290,7 @@ impl Requests {
     pub fn alarms(&mut self, alarm: Alarm, why: &str) {
         (self.alarm, self.holds, self.door, self.homes) = (true, false, false, false);
         self.why = Some(why.to_owned());
+        self.accessories.forget();
         self.input.clear();
         self.clients.tell(&Dialect::alarm(alarm));
         self.clients.tell(&message(why));

@@ -1,6 +1,6 @@
 //! A board that senders drive: what is done at rest, and when a batch of lines begins.
 
-use super::requests::{Flush, Motion, Requests, Todo};
+use super::requests::{Flush, Requests, Todo};
 use crate::connection::{self, ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
@@ -64,11 +64,13 @@ impl Server<'_> {
             if self.look()? == Next::Stopped || interrupt::is_asked() {
                 return Ok(());
             }
+            self.switches()?;
+            self.reads_limits()?;
             let next = if self.board.status().answer.fault && !self.requests.alarm {
                 self.fault()?
             } else if let Some(flush) = self.requests.flush {
                 self.flushed(flush)?
-            } else if self.may_move() {
+            } else if self.requests.may_move() {
                 self.batch()?
             } else if let Some(todo) = self.requests.todo.filter(|_| !self.requests.is_busy()) {
                 self.does(todo)?;
@@ -123,28 +125,6 @@ impl Server<'_> {
         }
     }
 
-    /// Whether a batch can begin; begins to plan one if lines wait.
-    fn may_move(&mut self) -> bool {
-        let requests = &mut self.requests;
-        if requests.alarm || requests.holds || requests.sleeps {
-            return false;
-        }
-        if requests.growing.waits() && !requests.growing.is_planned() {
-            match requests.lines.planner(&requests.from) {
-                Ok(planner) => requests.growing.begin(planner, requests.from.clone()),
-                Err(fault) => {
-                    requests.alarms(Alarm::SoftLimit, &fault.to_string());
-                    requests.flush = Some(Flush::Gone);
-                }
-            }
-        }
-        let ready = requests.growing.is_ready();
-        if ready {
-            requests.motion = Motion::Moves;
-        }
-        ready
-    }
-
     /// All that was planned is dropped; the axes rest with P at its start value.
     pub fn flushed(&mut self, flush: Flush) -> Result<Next, Failure> {
         self.requests.rests_at(&self.board.status().positions);
@@ -195,7 +175,11 @@ impl Server<'_> {
         let read = self.board.read_status();
         let status = read.map_err(|error| self.lost(&error))?;
         let answer = status.answer;
-        if memory::freezes(answer.cause, self.machine.guard.limit_freezes) {
+        let freezes = memory::freezes(answer.cause, self.machine.guard.limit_freezes);
+        if freezes || self.machine.outputs.off_at_ramps {
+            self.requests.accessories.safe();
+        }
+        if freezes {
             self.memory.forget_places();
         }
         let cause = found::cause(&answer);

@@ -88,6 +88,10 @@ mod serve_characters;
 mod serve_connections;
 #[cfg(unix)]
 mod serve_holds;
+#[cfg(unix)]
+mod serve_limits;
+#[cfg(target_os = "linux")]
+mod serve_outputs;
 #[cfg(target_os = "linux")]
 mod serve_probes;
 mod serve_soak;

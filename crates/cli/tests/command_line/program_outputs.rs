@@ -16,7 +16,7 @@ fn folder(program: &str) -> Folder {
 }
 
 /// The changes of the outputs in a VCD: number, level, and the place of x and y in mm.
-fn changes(vcd: &str) -> Vec<(usize, bool, [f64; 2])> {
+pub fn changes(vcd: &str) -> Vec<(usize, bool, [f64; 2])> {
     let mut signals = BTreeMap::new();
     let (mut scope, mut at, mut found) = ("", [0.0; 2], Vec::new());
     let mut begun = false;

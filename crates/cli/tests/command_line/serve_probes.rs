@@ -1,7 +1,9 @@
 //! Probe moves of senders: what is reported, where the machine rests, and what locks it.
 
+use crate::command::Folder;
 use crate::probes::folder;
 use crate::sender::{Sender, Served, is_answer, place};
+use crate::stops::stop;
 use crate::virtual_boards::Board;
 
 /// A plate below z, at -2 mm.
@@ -13,11 +15,40 @@ const PLATE_MM: f64 = -2.0;
 const LATE: f64 = 0.02;
 
 fn begins(options: &str) -> (Board, Served, Sender) {
-    let folder = folder("");
-    let board = Board::new(&folder, options);
-    let served = Served::with(&folder, &format!("--port {}", board.port));
-    let sender = Sender::tcp(&served);
+    let (_, board, served, sender) = begins_in(folder(""), options);
     (board, served, sender)
+}
+
+fn begins_in(folder: Folder, options: &str) -> (Folder, Board, Served, Sender) {
+    let board = Board::new(&folder, options);
+    let (served, sender) = serves(&folder, &board);
+    (folder, board, served, sender)
+}
+
+/// Serves a board that runs already.
+fn serves(folder: &Folder, board: &Board) -> (Served, Sender) {
+    let served = Served::with(folder, &format!("--port {}", board.port));
+    let sender = Sender::tcp(&served);
+    (served, sender)
+}
+
+/// Begins a slow probe move, and waits until it moves.
+fn begins_to_probe(sender: &mut Sender) {
+    sender.simple("G21 G91");
+    sender.send("G38.2 Z-5 F50\n");
+    while place(&sender.report())[2] > -0.1 {}
+}
+
+/// A probe move behind another one that was ended finds the plate.
+#[track_caller]
+fn probes_again(sender: &mut Sender) {
+    let above = sender.place()[2];
+    assert!(above < -0.1 && above > PLATE_MM, "{above}");
+    sender.simple("G21 G91\nG0 Z0.1");
+    assert!((sender.place()[2] - above - 0.1).abs() < 0.003);
+    let (at, tripped) = probes(sender, "G38.2 Z-5 F100");
+    assert!(tripped);
+    is_at_the_plate(at[2]);
 }
 
 /// The place of a `[PRB:x,y,z:1]`, and whether the probe has tripped.
@@ -148,4 +179,46 @@ fn held_probe_move_still_trips_and_a_reset_ends_it() {
     sender.done("$C");
     sender.done("G38.2 Z-1 F100");
     is_at_the_plate(place(&sender.report())[2]);
+}
+
+/// Ctrl-C brings a probe move to rest above the plate. The place is kept, and the probe ends nothing
+/// any more.
+#[test]
+fn interrupted_probe_move_rests_and_the_next_command_probes() {
+    let (folder, board, served, mut sender) = begins_in(folder(""), PLATE);
+    begins_to_probe(&mut sender);
+    let (status, said) = served.interrupt();
+    assert!(status == 0 && said.contains("the positions are valid"), "{said}");
+    let (served, mut sender) = serves(&folder, &board);
+    probes_again(&mut sender);
+    assert_eq!(served.interrupt().0, 0);
+}
+
+#[test]
+fn stopped_probe_move_ramps_down_and_the_next_command_probes() {
+    let (folder, board, served, mut sender) = begins_in(folder(""), PLATE);
+    begins_to_probe(&mut sender);
+    let ran = stop(&folder, &board.port, "");
+    assert!(ran.stdout.contains("`carrystep serve` (process"), "{}{}", ran.stdout, ran.stderr);
+    sender.until(|line| line == "ALARM:3");
+    assert_eq!(served.end().0, 0);
+    let (served, mut sender) = serves(&folder, &board);
+    probes_again(&mut sender);
+    assert_eq!(served.interrupt().0, 0);
+}
+
+/// The e-stop freezes a probe move. The command goes on, and when the machine is unlocked, the next
+/// move probes.
+#[test]
+fn e_stop_in_a_probe_move_is_an_alarm_and_the_next_move_probes() {
+    let (_folder, mut board, served, mut sender) = begins_in(folder(""), PLATE);
+    begins_to_probe(&mut sender);
+    board.press("estop 1");
+    sender.until(|line| line == "ALARM:3");
+    assert!(sender.next().unwrap().contains("e-stop"));
+    assert_eq!(sender.ask("$X").last().unwrap(), "error:8");
+    board.press("estop 0");
+    while sender.ask("$X").last().unwrap() != "ok" {}
+    probes_again(&mut sender);
+    assert_eq!(served.interrupt().0, 0);
 }

@@ -55,6 +55,8 @@ fn mistakes_have_the_numbers_of_grbl_and_change_nothing() {
         ("hello", 2),
         ("5X1", 1),
         ("$Z", 3),
+        ("$N0=G21", 3),
+        ("$I=mine", 3),
     ] {
         let said = sender.ask(line);
         assert_eq!(said.last().unwrap(), &format!("error:{code}"), "{line}: {said:?}");

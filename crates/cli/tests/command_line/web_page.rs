@@ -228,3 +228,45 @@ fn page_without_the_token_says_so_and_stops_what_another_drives() {
     assert_eq!(served.interrupt().0, 0);
     page.waits(&is_state("no connection"));
 }
+
+/// Presses a button of the jogs.
+fn jogs(page: &mut Browser, way: &str, size: &str, feed: &str) {
+    let button = format!("document.querySelector('[data-jog=\"{way}\"]')");
+    page.waits(&format!("!{button}.disabled"));
+    page.value(&format!("document.getElementById('size').value = '{size}'"));
+    page.value(&format!("document.getElementById('jogfeed').value = '{feed}'"));
+    page.value(&format!("{button}.click()"));
+}
+
+#[test]
+fn page_jogs_by_steps_and_shows_the_height() {
+    let folder = folder();
+    let served = Served::new(&folder, "--web 0");
+    let mut page = Browser::open(&served.web);
+    page.waits(&is_state("Idle"));
+    let shows = |axes: &str| format!("document.getElementById('axes').textContent === '{axes}'");
+    jogs(&mut page, "X+", "1", "600");
+    page.waits(&shows("X1.0001.000Y0.0000.000Z0.0000.000"));
+    jogs(&mut page, "Y-", "10", "2000");
+    page.waits(&shows("X1.0001.000Y-10.000-10.000Z0.0000.000"));
+    jogs(&mut page, "Z-", "0.1", "300");
+    page.waits(&shows("X1.0001.000Y-10.000-10.000Z-0.100-0.100"));
+    assert_eq!(page.text("height"), "-0.100 mm");
+    assert_eq!(page.value("document.documentElement.scrollWidth"), 360);
+    jogs(&mut page, "X+", "1", "0");
+    assert_eq!(page.text("said"), "The feed of a jog is a number above 0.");
+    // Hold cancels a jog, and the page then drives no longer.
+    jogs(&mut page, "X+", "10", "10");
+    page.waits(&is_state("Jog"));
+    page.presses("hold");
+    page.waits(&is_state("Idle"));
+    let mut sender = Sender::tcp(&served);
+    let at = sender.place();
+    assert!(at[0] >= 1.0 && at[0] < 11.0 && at[1..] == [-10.0, -0.1], "{at:?}");
+    page.waits("document.getElementById('right').textContent.startsWith('Another sender drives.')");
+    assert_eq!(page.value("document.querySelectorAll('[data-jog]:enabled').length"), 0);
+    // A jog changes no mode.
+    assert!(sender.ask("$G")[0].contains(" G21 G90 "));
+    assert_eq!(page.console, Vec::<Value>::new());
+    assert_eq!(served.interrupt().0, 0);
+}

@@ -254,3 +254,51 @@ fn rows_that_break_off_have_no_last_one() {
     all.begin();
     assert_eq!(taken(&mut all, 0), [(5, 1, false), (6, 1, false)]);
 }
+
+/// The changes of outputs of the segments that axis 0 takes, of which each has its ticks.
+fn switched(from: &mut impl SegmentSource, most: usize) -> Vec<(u32, OutputChange)> {
+    let mut all = Vec::new();
+    while let Some(segment) = (all.len() < most).then(|| from.segment(0)).flatten() {
+        all.push((segment.ticks, from.outputs()));
+    }
+    all
+}
+
+/// An output that is switched beside the program stays so when the rows are cut off and read again,
+/// and whether the board grants the cut or refuses it; a later mark of the program goes first.
+#[test]
+fn switch_comes_once_with_the_next_row_over_cuts() {
+    let on = OutputChange { mask: 2, levels: 2, duty: None };
+    let other = OutputChange { mask: 3, levels: 1, duty: None };
+    let marks = [other.word().into()];
+    let rows = (0..20).map(|k| row(10_000 + k, 0, if k == 15 { &marks } else { &[] }));
+    let rows = whole(rows.collect());
+    for refuses in [false, true] {
+        let mut all = stretches(&rows);
+        all.begin();
+        assert_eq!(switched(&mut all, 8).len(), 8);
+        let queues = |sent, begun, cuts| Queues { sent, begun, cuts };
+        // 20000 ticks behind the first row are kept: rows 1 and 2.
+        assert_eq!(all.switch_in(on, queues(8, 1, 0)), Some(3));
+        let found = switched(&mut all, 2);
+        assert_eq!(found, [(10_003, on), (10_004, OutputChange::NONE)]);
+        assert_eq!(all.switched(), on);
+        let next = if refuses {
+            all.cut_refused();
+            // All 8 rows are still there, and the change comes behind them.
+            assert_eq!(all.switched(), on);
+            8
+        } else {
+            // Another cut drops the row with the change.
+            assert_eq!(all.set_overrides_in(OverrideSetting::NONE, queues(5, 1, 1)), Some(3));
+            3
+        };
+        let found = switched(&mut all, 20);
+        assert_eq!(found[0], (10_000 + next, on), "{refuses}");
+        let rest: Vec<_> = found[1..].iter().filter(|(_, change)| !change.is_none()).collect();
+        assert_eq!(rest, [&(10_015, other)], "{refuses}");
+        assert_eq!(all.switched(), on.then(other));
+        all.switch(on);
+        assert_eq!((all.take_switch(), all.take_switch()), (on, OutputChange::NONE));
+    }
+}
