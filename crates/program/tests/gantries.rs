@@ -124,7 +124,7 @@ fn overrides_change_the_speed_of_a_gantry_as_that_of_one_motor() {
         let mut pace = Pace::new(file.machine(), &start).unwrap();
         let mut track = Track::new(&start);
         let mut planned = rows.into_iter();
-        pace.set(Overrides { feed: 1.7, rapid: 0.5 }, None);
+        pace.set(Overrides { feed: 0.5, rapid: 0.5 }, None);
         let mut paced = Vec::new();
         while let Some(next) = pace.next(&mut track, &mut || planned.next()) {
             paced.push(next.row);
@@ -292,7 +292,7 @@ const REFUSED: [(&str, &str, (usize, usize), &str); 12] = [
         (25, 118),
         "most_apart: the letter z has one motor",
     ),
-    ("speed_limit = 90", "speed_limit = 90\nletter = 3", (18, 1), "duplicate"),
+    ("speed_limit = 90", "speed_limit = 90\nletter = 3", (20, 1), "duplicate"),
 ];
 
 #[test]

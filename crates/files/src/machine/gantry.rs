@@ -5,7 +5,6 @@
 //! times and the same travel. In homing each finds a switch of its own, and all rest at one place.
 
 use super::Axis;
-use super::home::Home;
 use crate::error::{InputError, SourceText, quoted};
 use carrystep_core::build::{PinTimes, PinTiming, Timebase};
 use carrystep_core::engine::LimitWiring;
@@ -210,8 +209,9 @@ pub(super) fn home(
                 "each motor stops at its own switch: wire them so that limits is \"pair\" or \"each\"",
             ));
         }
-        let way = |home: &Home| (home.toward, home.seek, home.slow, home.move_off);
-        if way(leader) != way(own) {
+        if (leader.toward, leader.seek, leader.slow, leader.move_off)
+            != (own.toward, own.seek, own.slow, own.move_off)
+        {
             let message = format!("{names} of the letter {letter} home in different ways");
             return Err(at(motor, message)
                 .help("give both the same toward, seek_speed, slow_speed and move_off"));
