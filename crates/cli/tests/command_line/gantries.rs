@@ -43,7 +43,8 @@ driver = "a4988"
 home = { toward = "min", seek_speed = 20, slow_speed = 2, move_off = 3, pull_off = 0.5, position = 0.5, most_apart = 5 }
 "#;
 
-const JOB: &str = "G21 G90 G64 P0.02 F1500\nG1 X4 Y2\nG3 X2 Y9 I-2\nG0 Y1\nG1 X0 Y1 F900\nM2\n";
+const JOB: &str =
+    "G21 G90 G64 P0.02 F1500\nG1 X4 Y2\nG3 X2 Y4 I-2\nG1 Y9\nG0 Y1\nG1 X0 Y1 F900\nM2\n";
 
 fn folder() -> Folder {
     let folder = Folder::new();
