@@ -64,6 +64,8 @@ pub struct PathChecker<'a> {
     /// Pulses by distance.
     counts: Vec<u64>,
     lost: Option<(Lost, u64)>,
+    /// The first time at which two motors of a letter were more than a step apart, and what to say.
+    racked: Option<(String, u64)>,
     outputs: Option<OutputPlaces<'a>>,
     /// The end of the capture, or the last change before it, ps.
     end_ps: u64,
@@ -94,6 +96,7 @@ impl<'a> PathChecker<'a> {
             worst: None,
             counts: vec![0; STRETCHES + 1],
             lost: None,
+            racked: None,
             outputs: None,
             end_ps: 0,
             times: None,
@@ -114,10 +117,32 @@ impl<'a> PathChecker<'a> {
         self
     }
 
-    /// Puts the tool where the position of an axis says.
+    /// Puts the tool where the position of an axis says. Of several motors of a letter, the first
+    /// one says it.
     fn stand(&mut self, axis: usize) {
         let PathAxis { letter, step, start_steps, .. } = self.setup.axes[axis];
+        if self.setup.axes[..axis].iter().any(|before| before.letter == letter) {
+            return;
+        }
         self.place[letter] = (start_steps + self.positions[axis]) as f64 * step;
+    }
+
+    /// Looks whether the motors of the letter that this motor moves are together. Their edges are at
+    /// one time, and one after the other in the capture.
+    fn is_square(&mut self, axis: usize, ps: u64) {
+        let motor = &self.setup.axes[axis];
+        let place = |axis: usize| self.setup.axes[axis].start_steps + self.positions[axis];
+        let mut others = (0..axis).chain(axis + 1..self.positions.len());
+        let racked = others.find(|&other| {
+            self.setup.axes[other].letter == motor.letter && place(other).abs_diff(place(axis)) > 1
+        });
+        if let (Some(other), None) = (racked, &self.racked) {
+            let [first, second] =
+                [axis.min(other), axis.max(other)].map(|axis| self.setup.axes[axis].name);
+            let apart = place(other).abs_diff(place(axis));
+            let motors = format!("{first} and {second} move one letter and are {apart} steps");
+            self.racked = Some((motors, ps));
+        }
     }
 
     fn follow(&mut self, ps: u64) {
@@ -179,6 +204,9 @@ impl<'a> PathChecker<'a> {
         } else if !self.follow.is_at_the_end() {
             let line = self.follow.line().unwrap_or(0);
             failures.push(format!("the pulses end before the path does, near line {line}"));
+        }
+        if let Some((motors, ps)) = &self.racked {
+            failures.push(format!("the motors {motors} apart at {:.6} s", self.seconds(*ps)));
         }
         if let Some(outputs) = self.outputs.as_mut().filter(|_| self.lost.is_none()) {
             outputs.end(self.end_ps, &self.follow);
@@ -271,6 +299,7 @@ impl PinSink for PathChecker<'_> {
             let first = self.times.map_or(change.ps, |[first, _]| first);
             self.times = Some([first, change.ps]);
             self.stand(axis);
+            self.is_square(axis, change.ps);
             self.follow(change.ps);
         }
         self.end_ps = change.ps;

@@ -74,7 +74,7 @@ impl EntryFigures {
         let entry = file.entry()?;
         let Entry { block, place, modes, height, feed, dwell, .. } = entry;
         let places = |place: &[f64; 6]| {
-            let letters = file.letters().of_axes().iter();
+            let letters = file.letters().all().iter();
             let axis = |&letter: &usize| AxisPlace {
                 axis: AXIS_LETTERS[letter].to_string(),
                 at: place[letter],

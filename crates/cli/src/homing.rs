@@ -16,18 +16,14 @@ use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
 pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     let mut wanted = 0_u8;
     for name in names {
-        let number = machine.axis_index(name).ok_or_else(|| {
-            Failure::input(format!(
-                "no axis is called '{name}': the axes are {}",
-                machine.axis_names()
-            ))
-        })?;
+        let number =
+            machine.letter_index(name).ok_or_else(|| Failure::input(machine.no_letter(name)))?;
         if machine.axes[number].home.is_none() {
             return Err(Failure::input(format!(
                 "axis '{name}' has no home table in the machine file: home = {{ toward = \"min\", ... }}, as in docs/homing.md"
             )));
         }
-        wanted |= 1 << number;
+        wanted |= machine.with_its_letter(number);
     }
     let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
     let wanted = if names.is_empty() { u8::MAX } else { wanted };
@@ -48,10 +44,19 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 /// The homing of the machine in the driver's form.
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
-    for (place, axis) in axes.iter_mut().zip(&machine.axes) {
+    for (number, (place, axis)) in axes.iter_mut().zip(&machine.axes).enumerate() {
         *place = axis.home.map(
             |AxisHome {
-                 toward, start, accel, seek, slow, move_off, max_travel, pull_off, ..
+                 toward,
+                 start,
+                 accel,
+                 seek,
+                 slow,
+                 move_off,
+                 max_travel,
+                 pull_off,
+                 most_apart,
+                 ..
              }| {
                 AxisHoming {
                     toward_max: toward == End::Max,
@@ -62,6 +67,8 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
                     move_off,
                     max_travel,
                     pull_off,
+                    beside: machine.with_its_letter(number) & !(1 << number),
+                    most_apart,
                 }
             },
         );
@@ -148,6 +155,13 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
             "the slow approach of {} did not find the limit again: the switch did not open within move_off, or it does not \
              close at the same place; look at it, or take a greater move_off",
             names()
+        ),
+        HomingFault::Apart => format!(
+            "{} moved further than the other motor of its letter, over most_apart ({}): the switch of one of them does not \
+             close or open where it should, and going on would rack what they move; look at the switches and at their wiring, \
+             and bring both ends to the same distance from them by hand, with the drivers off",
+            names(),
+            of(|home| home.most_apart)
         ),
         HomingFault::TooLong(error) => format!("{}: {error}", names()),
     }

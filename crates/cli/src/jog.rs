@@ -46,7 +46,7 @@ impl JogWish {
         let length =
             self.distances.iter().map(|(_, distance)| distance.powi(2)).sum::<f64>().sqrt();
         let seconds = |(name, distance): &(String, f64)| {
-            let axis = &machine.axes[machine.axis_index(name)?];
+            let axis = &machine.axes[machine.letter_index(name)?];
             let scale = decimal::to_f64(&axis.steps_per_unit);
             let accel = decimal::to_f64(&axis.accel_limit) / scale;
             let distance = distance.abs();
@@ -76,7 +76,8 @@ impl JogWish {
     fn nothing_to_do(&self, file: &MoveFile) -> Option<Failure> {
         let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
         let (name, distance) = self.distances.first()?;
-        let (number, axis) = (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == *name)?;
+        let (number, axis) =
+            (0..).zip(&file.machine.axes).find(|(_, axis)| axis.letter == *name)?;
         let part = first.rounding.get(number).copied().unwrap_or_default().abs();
         let step = 1.0 / decimal::to_f64(&axis.steps_per_unit);
         Some(Failure::input(format!(

@@ -41,10 +41,8 @@ impl ProbeWish {
                  [machine.inputs], and build its gateware again",
             ));
         }
-        machine.axis_index(&self.axis).ok_or_else(|| {
-            let (name, axes) = (&self.axis, machine.axis_names());
-            Failure::input(format!("no axis is called '{name}': the axes are {axes}"))
-        })
+        let axis = machine.letter_index(&self.axis);
+        axis.ok_or_else(|| Failure::input(machine.no_letter(&self.axis)))
     }
 
     /// The move to its end.

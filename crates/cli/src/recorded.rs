@@ -41,10 +41,11 @@ pub struct MoveRecorder {
 impl MoveRecorder {
     /// A recorder for the moves of this machine, which begin at zero.
     pub fn new(machine: &Machine, detail: Detail) -> Self {
-        let axes = machine.axes.iter().map(|axis| {
+        let axes = machine.axes.iter().enumerate().map(|(number, axis)| {
             let linear = axis.unit.name == machine.axes[0].unit.name;
             let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
-            setup(axis, 0.0, linear, jerk)
+            let counts = machine.leader(number) == number;
+            AxisSetup { counts, ..setup(axis, 0.0, linear, jerk) }
         });
         let tick_seconds = machine.timebase.tick_seconds();
         Self { recorder: Recorder::new(axes.collect(), tick_seconds, false, detail), moves: 0 }
@@ -109,14 +110,16 @@ impl Iterator for RecordedRows {
 /// A recorder for the rows of a program.
 fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
     let machine = file.machine();
-    let axes = machine.axes.iter().zip(file.letters().of_axes()).map(|(axis, &letter)| {
+    let axes = machine.axes.iter().zip(file.letters().of_axes()).enumerate();
+    let axes = axes.map(|(number, (axis, &letter))| {
         let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
         let jerk = jerk.unwrap_or_else(|| decimal::to_f64(&axis.accel_limit) / JERK_TIME);
         let step = file.letters().step()[letter];
         let start = (file.settings().start[letter] / step).round() * step;
         let unit = carrystep_program::unit(letter);
         let linear = unit == "mm";
-        AxisSetup { unit: unit.to_owned(), ..setup(axis, start, linear, Some(jerk)) }
+        let counts = machine.leader(number) == number;
+        AxisSetup { unit: unit.to_owned(), counts, ..setup(axis, start, linear, Some(jerk)) }
     });
     Recorder::new(axes.collect(), machine.timebase.tick_seconds(), true, detail)
 }
@@ -139,6 +142,7 @@ fn setup(axis: &Axis, start: f64, linear: bool, jerk: Option<f64>) -> AxisSetup 
         start,
         limits: [limit(&axis.speed_limit), limit(&axis.accel_limit), jerk.map(|jerk| jerk / steps)],
         linear,
+        counts: true,
     }
 }
 

@@ -148,7 +148,7 @@ impl OffsetWish {
     pub fn check(&self, machine: &Machine, letters: &Letters) -> Result<(), Failure> {
         let strange = self.values.iter().find(|(letter, _)| letters.axis(*letter).is_none());
         strange.map_or(Ok(()), |&(letter, _)| {
-            let (name, axes) = (AXIS_LETTERS[letter], machine.axis_names());
+            let (name, axes) = (AXIS_LETTERS[letter], machine.letter_names());
             Err(Failure::input(format!("the machine has no axis {name}: the axes are {axes}")))
         })
     }

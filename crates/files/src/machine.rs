@@ -25,6 +25,7 @@ use thiserror::Error;
 use toml::Spanned;
 
 mod axis;
+mod gantry;
 mod guard;
 mod home;
 mod inputs;
@@ -73,11 +74,14 @@ pub struct Machine {
 )]
 pub struct TooManyAxes(pub usize);
 
-/// One axis. Its speeds and accelerations are exact products of the file's numbers.
+/// One motor. Its speeds and accelerations are exact products of the file's numbers. All motors of
+/// a letter have the same limits, times of the driver and travel.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// Name in move files and waveforms.
+    /// Name in waveforms and messages.
     pub name: String,
+    /// The letter that it moves, in move files and programs: its name if the file gives none.
+    pub letter: String,
     /// Steps per unit of length. A quotient that is not a finite decimal is rounded up at its 60th
     /// decimal.
     pub steps_per_unit: BigDecimal,
@@ -175,6 +179,47 @@ impl Machine {
         self.axes.iter().position(|axis| axis.name == name)
     }
 
+    /// The first motor of the letter of this name, from 0.
+    pub fn letter_index(&self, letter: &str) -> Option<usize> {
+        self.axes.iter().position(|axis| axis.letter == letter)
+    }
+
+    /// The first motor that moves the same letter as this motor.
+    pub fn leader(&self, motor: usize) -> usize {
+        let letter = &self.axes[motor].letter;
+        self.letter_index(letter).unwrap_or(motor)
+    }
+
+    /// All motors that move the same letter as this motor, one bit each.
+    pub fn with_its_letter(&self, motor: usize) -> u8 {
+        let letter = &self.axes[motor].letter;
+        let same = self.axes.iter().enumerate().filter(|(_, axis)| axis.letter == *letter);
+        same.fold(0, |mask, (number, _)| mask | 1 << number)
+    }
+
+    /// Whether a letter has several motors.
+    pub fn has_gantry(&self) -> bool {
+        (0..self.axes.len()).any(|motor| self.leader(motor) != motor)
+    }
+
+    /// The names of all letters, separated by commas, for messages.
+    pub fn letter_names(&self) -> String {
+        let leads = |&(motor, _): &(usize, &Axis)| self.leader(motor) == motor;
+        let letters = self.axes.iter().enumerate().filter(leads);
+        letters.map(|(_, axis)| axis.letter.as_str()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The message for a name that is no letter of the machine: which names there are, or of which
+    /// letter the motor of this name is one.
+    pub fn no_letter(&self, name: &str) -> String {
+        match self.axis_index(name).map(|motor| &self.axes[motor].letter) {
+            Some(letter) => format!(
+                "'{name}' is a motor of the letter {letter}: name {letter}, which moves all of its motors"
+            ),
+            None => format!("no axis is called '{name}': the axes are {}", self.letter_names()),
+        }
+    }
+
     /// The names of all axes, separated by commas, for messages.
     pub fn axis_names(&self) -> String {
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
@@ -233,10 +278,12 @@ impl RawMachine {
         }
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
         let mut places: Vec<RawPlace> = Vec::with_capacity(raw.len());
+        let mut motors = Vec::with_capacity(raw.len());
         for axis in raw {
             let (name_span, table) = (axis.as_ref().name.span(), axis.span());
             let mut axis = axis.into_inner();
             places.push(axis.place());
+            motors.push(axis.motor(table.clone()));
             let axis = axis.check(source, table, &timebase);
             let axis = axis.map_err(|error| with_proposal(error, chosen_tick.as_ref()))?;
             if axes.iter().any(|other| other.name == axis.name) {
@@ -249,6 +296,7 @@ impl RawMachine {
             }
             axes.push(axis);
         }
+        gantry::unite(source, &timebase, &mut axes, &motors)?;
         let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
         let inputs = self.inputs.check(source, &names, self.guard.limits())?;
         let stop = axes.iter().map(|axis| axis.stop).collect();

@@ -254,13 +254,9 @@ impl Targets {
             fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
         let before = self.steps.clone();
         for (name, distance) in &to {
-            let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
-                let meant =
-                    did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.name));
-                let message = format!("the machine has no axis {:?}{meant}", quoted(name.as_ref()));
-                InputError::at(source, name.span(), message)
-                    .help(format!("its axes are {}", machine.axis_names()))
-            })?;
+            let axis = machine
+                .letter_index(name.as_ref())
+                .ok_or_else(|| no_letter(source, machine, name))?;
             if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
                 let message =
                     format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
@@ -279,6 +275,12 @@ impl Targets {
                     .help(format!("the sum of all moves must stay within +-{most} of the start"))
             })?;
         }
+        // The other motors of a letter make the same steps.
+        for motor in 0..self.steps.len() {
+            let leader = machine.leader(motor);
+            self.steps[motor] = self.steps[leader];
+            self.exact[motor] = self.exact[leader].clone();
+        }
         let rounding = self.exact.iter().zip(&machine.axes).zip(&self.steps);
         let rounding = rounding.map(|((target, axis), &steps)| {
             let left = decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)));
@@ -296,6 +298,17 @@ impl Targets {
             place: MovePlace { text: source.text.clone(), lines_before: 0, span },
         })
     }
+}
+
+/// The error for a distance of something that is no letter of the machine.
+fn no_letter(source: &SourceText, machine: &Machine, name: &Spanned<String>) -> InputError {
+    if machine.axis_index(name.as_ref()).is_some() {
+        return InputError::at(source, name.span(), machine.no_letter(name.as_ref()));
+    }
+    let meant = did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.letter));
+    let message = format!("the machine has no axis {:?}{meant}", quoted(name.as_ref()));
+    InputError::at(source, name.span(), message)
+        .help(format!("its axes are {}", machine.letter_names()))
 }
 
 /// Checks a duration: greater than zero, and short enough to be counted in clocks.

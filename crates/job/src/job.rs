@@ -89,8 +89,9 @@ pub(crate) struct Job<const N: usize> {
 }
 
 impl<const N: usize> Job<N> {
+    /// A job of a machine with one axis for each letter, which stands for so many motors in all.
     pub fn new(
-        machine: &Machine,
+        (machine, motors): (&Machine, usize),
         kinematics: &dyn Kinematics,
         linear: usize,
         start: &[f64],
@@ -99,7 +100,7 @@ impl<const N: usize> Job<N> {
         let tick_seconds = machine.timebase.tick_seconds();
         let (mut limits, exact) = of_machine(machine)?;
         let baud = if machine.spi { u32::MAX } else { machine.baud };
-        let shortest = shortest(machine.axes.len(), baud);
+        let shortest = shortest(motors, baud);
         let rhythm = Rhythm::new(&limits, tick_seconds, shortest);
         // From steps to units of the letters.
         for (motor, limit) in limits.iter_mut().enumerate() {

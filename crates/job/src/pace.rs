@@ -100,7 +100,8 @@ pub struct Paced {
 #[derive(Debug, Clone)]
 pub struct Pace {
     keep: Keep,
-    /// Of each motor, mm/s for a speed of one unit per tick; `None` for rotary ones.
+    /// Of each motor, mm/s for a speed of one unit per tick; 0 for all but the first motor of a
+    /// letter; `None` for rotary ones.
     linear: Vec<Option<f64>>,
     width: usize,
     window: u64,
@@ -120,10 +121,12 @@ impl Pace {
     pub fn new(machine: &Machine, start_steps: &[i64]) -> Result<Self, JobError> {
         let keep = Keep::new(machine)?;
         let tick_seconds = machine.timebase.tick_seconds();
-        let linear = machine.axes.iter().map(|axis| {
+        let linear = machine.axes.iter().enumerate().map(|(motor, axis)| {
             let steps = axis.steps_per_unit.to_f64().filter(|steps| *steps > 0.0)?;
-            let is_linear = matches!(&*axis.name, "x" | "y" | "z");
-            is_linear.then_some(1.0 / (STEP * steps * tick_seconds))
+            let is_linear = matches!(&*axis.letter, "x" | "y" | "z");
+            // The speed of a letter is that of its first motor.
+            let counts = f64::from(u8::from(machine.leader(motor) == motor));
+            is_linear.then_some(counts / (STEP * steps * tick_seconds))
         });
         let row = SHORTEST / tick_seconds;
         let times = |of: fn(&carrystep_plan::exact::ExactLimits) -> f64| {

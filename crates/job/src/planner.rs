@@ -15,12 +15,17 @@ use carrystep_files::Machine;
 #[derive(Debug)]
 pub struct Planner {
     job: Box<dyn Jobs>,
+    /// For each motor, the number of its letter's segment in the rows of the job.
+    letters: Vec<usize>,
+    /// For each letter, its first motor.
+    leaders: Vec<usize>,
     ended: bool,
 }
 
 impl Planner {
-    /// A planner for a machine whose letters are at these places, mm or degrees. The first `linear`
-    /// letters (at most three) are linear, the others rotary. The start is rounded to whole steps.
+    /// A planner for a machine whose letters are at these places, mm or degrees. Letters are in the
+    /// order of their first motors. The first `linear` letters (at most three) are linear, the others
+    /// rotary. The start is rounded to whole steps. All motors of a letter get the same segments.
     ///
     /// # Errors
     /// [`JobError::Axes`], [`JobError::SlowLine`], [`JobError::Coordinates`] and
@@ -31,7 +36,19 @@ impl Planner {
         linear: usize,
         start: &[f64],
     ) -> Result<Self, JobError> {
-        let job: Box<dyn Jobs> = match machine.axes.len() {
+        let motors = machine.axes.len();
+        let leads: Vec<usize> = (0..motors).map(|motor| machine.leader(motor)).collect();
+        let leaders: Vec<usize> = (0..motors).filter(|&motor| leads[motor] == motor).collect();
+        let letter = |leader: &usize| leaders.iter().position(|known| known == leader);
+        let letters: Option<Vec<usize>> = leads.iter().map(letter).collect();
+        let letters = letters.ok_or(JobError::Axes(motors))?;
+        // The other motors of a letter have the limits of the first one.
+        let mut planned = machine.clone();
+        planned.axes = leaders.iter().map(|&motor| machine.axes[motor].clone()).collect();
+        check_line(machine)?;
+        // What the line has to carry is the segments of all motors.
+        let machine = (&planned, motors);
+        let job: Box<dyn Jobs> = match leaders.len() {
             1 => Box::new(Job::<1>::new(machine, kinematics, linear, start)?),
             2 => Box::new(Job::<2>::new(machine, kinematics, linear, start)?),
             3 => Box::new(Job::<3>::new(machine, kinematics, linear, start)?),
@@ -40,8 +57,7 @@ impl Planner {
             6 => Box::new(Job::<6>::new(machine, kinematics, linear, start)?),
             other => return Err(JobError::Axes(other)),
         };
-        check_line(machine)?;
-        Ok(Self { job, ended: false })
+        Ok(Self { job, letters, leaders, ended: false })
     }
 
     /// Stores the next item of the path. Take rows until there is none before the next item, so
@@ -82,11 +98,24 @@ impl Planner {
     /// # Errors
     /// [`JobError::Broken`]. No row comes after an error.
     pub fn next_row(&mut self) -> Result<Option<Row>, JobError> {
-        let row = self.job.next_row();
-        if row.is_err() {
-            self.ended = true;
+        match self.job.next_row() {
+            Ok(row) => Ok(row.map(|row| self.of_motors(row))),
+            Err(JobError::Broken { line, axis, rule }) => {
+                self.ended = true;
+                let axis = self.leaders.get(axis).copied().unwrap_or(axis);
+                Err(JobError::Broken { line, axis, rule })
+            }
+            Err(error) => {
+                self.ended = true;
+                Err(error)
+            }
         }
-        row
+    }
+
+    /// The row with the segments of all motors.
+    fn of_motors(&self, row: Row) -> Row {
+        let segments = self.letters.iter().map(|&letter| row.segments[letter]).collect();
+        Row { segments, ..row }
     }
 }
 

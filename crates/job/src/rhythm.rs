@@ -38,7 +38,7 @@ fn least_baud(axes: usize) -> u32 {
     (axes as f64 * bytes as f64 * 10.0 / LONGEST / MOST_OF_THE_LINE).ceil() as u32
 }
 
-/// Checks that the line of a machine can carry a job in time.
+/// Checks that the line of a machine can carry a job of all of its motors in time.
 ///
 /// # Errors
 /// [`JobError::SlowLine`].

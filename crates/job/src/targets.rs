@@ -18,6 +18,7 @@ pub(crate) struct Targets<const N: usize> {
     /// Letters for motors, in units.
     inverse: [[f64; N]; N],
     exact: Vec<BigDecimal>,
+    /// The letter of each motor.
     names: Vec<String>,
     travel: Vec<Option<[i64; 2]>>,
 }
@@ -41,7 +42,7 @@ impl<const N: usize> Targets<N> {
             coefficients,
             inverse,
             exact: machine.axes.iter().map(|axis| axis.steps_per_unit.clone()).collect(),
-            names: machine.axes.iter().map(|axis| axis.name.clone()).collect(),
+            names: machine.axes.iter().map(|axis| axis.letter.clone()).collect(),
             travel: machine.axes.iter().map(|axis| axis.travel).collect(),
         })
     }

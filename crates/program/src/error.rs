@@ -272,7 +272,7 @@ impl Fault {
     pub(crate) fn of_planner(machine: &carrystep_files::Machine, error: JobError) -> Self {
         match &error {
             JobError::Travel { axis, steps, low, high, .. } => {
-                let known = machine.axes.iter().find(|known| known.name == *axis);
+                let known = machine.axes.iter().find(|known| known.letter == *axis);
                 let steps_per_unit = known.map_or(1.0, |axis| axis.unit.steps);
                 let [place, low, high] =
                     [steps, low, high].map(|&steps| digits(steps as f64 / steps_per_unit));

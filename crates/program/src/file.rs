@@ -134,7 +134,7 @@ impl ProgramFile {
                 if at == 0.0 {
                     continue;
                 }
-                let axes = self.machine.axis_names();
+                let axes = self.machine.letter_names();
                 return Err(InputError::new(format!(
                     "the start gives {name}: the axes are {axes}"
                 )));

@@ -82,7 +82,7 @@ impl Items {
     fn element(&self, one: &ProgrammedMove) -> Element {
         let arc = one.arc.and_then(|arc| {
             let [first, second, _] = arc.plane.axes();
-            let plane = [self.letters.axis(first)?, self.letters.axis(second)?];
+            let plane = [self.letters.number(first)?, self.letters.number(second)?];
             Some(Arc { plane, centre: arc.centre, angle: arc.sweep })
         });
         let to = self.letters.coordinates(&one.to);

@@ -1,4 +1,4 @@
-//! Which axis of the machine is which letter of a program.
+//! Which motors of the machine are which letter of a program.
 
 use crate::error::Fault;
 use crate::letter::{LINEAR, letter_of, unit};
@@ -6,12 +6,14 @@ use carrystep_core::StartPhase;
 use carrystep_files::{Machine, decimal};
 use carrystep_gcode::{AXES, Point};
 
-/// The letters of a machine's axes.
+/// The letters of a machine's motors.
 #[derive(Debug, Clone)]
 pub struct Letters {
-    /// The letter of each axis in the order of the machine file, as an index of a [`Point`].
+    /// The letter of each motor in the order of the machine file, as an index of a [`Point`].
     of_axis: Vec<usize>,
-    /// The axis of each letter.
+    /// The letters in the order of their first motors.
+    planned: Vec<usize>,
+    /// The first motor of each letter.
     axis_of: [Option<usize>; AXES],
     /// One step of each letter, mm or degrees; 0 for letters without an axis.
     step: Point,
@@ -28,9 +30,14 @@ impl Letters {
         if machine.phase != StartPhase::Half {
             return Err(Fault::Phase);
         }
-        let mut letters = Self { of_axis: Vec::new(), axis_of: [None; AXES], step: [0.0; AXES] };
+        let mut letters = Self {
+            of_axis: Vec::new(),
+            planned: Vec::new(),
+            axis_of: [None; AXES],
+            step: [0.0; AXES],
+        };
         for (number, axis) in machine.axes.iter().enumerate() {
-            let letter = letter_of(&axis.name);
+            let letter = letter_of(&axis.letter);
             let letter = letter.ok_or_else(|| Fault::AxisName(axis.name.clone()))?;
             let wanted = unit(letter);
             let unit = axis.unit.name.as_str();
@@ -38,24 +45,49 @@ impl Letters {
             if unit != wanted && unit != "units" {
                 return Err(Fault::Unit { axis: axis.name.clone(), unit: unit.into(), wanted });
             }
-            if letter < LINEAR && letters.of_axis.iter().any(|&before| before >= LINEAR) {
+            letters.of_axis.push(letter);
+            if letters.axis_of[letter].is_some() {
+                continue;
+            }
+            if letter < LINEAR && letters.planned.iter().any(|&before| before >= LINEAR) {
                 return Err(Fault::Order(axis.name.clone()));
             }
-            letters.of_axis.push(letter);
+            letters.planned.push(letter);
             letters.axis_of[letter] = Some(number);
             letters.step[letter] = 1.0 / decimal::to_f64(&axis.steps_per_unit);
         }
         Ok(letters)
     }
 
-    /// The letter of each axis, in the order of the machine file, as an index of a [`Point`].
+    /// The letter of each motor, in the order of the machine file, as an index of a [`Point`].
     pub fn of_axes(&self) -> &[usize] {
         &self.of_axis
     }
 
-    /// The axis of a letter, if the machine has one.
+    /// The letters in the order of their first motors, each once.
+    pub fn all(&self) -> &[usize] {
+        &self.planned
+    }
+
+    /// The first motor of a letter, if the machine has one.
     pub fn axis(&self, letter: usize) -> Option<usize> {
         self.axis_of.get(letter).copied().flatten()
+    }
+
+    /// The number of a letter among those of the machine.
+    pub(crate) fn number(&self, letter: usize) -> Option<usize> {
+        self.planned.iter().position(|&known| known == letter)
+    }
+
+    /// The place at which the motors are so many steps from machine zero. All motors of a letter are
+    /// at one place: the first one says which.
+    pub fn place(&self, steps: &[f64]) -> Point {
+        let mut at = Point::default();
+        for &letter in &self.planned {
+            let motor = self.axis(letter).and_then(|motor| steps.get(motor));
+            at[letter] = motor.copied().unwrap_or_default() * self.step[letter];
+        }
+        at
     }
 
     /// One step of each letter, mm or degrees; 0 for letters without an axis.
@@ -63,14 +95,14 @@ impl Letters {
         &self.step
     }
 
-    /// Number of axes that are in mm; they come first.
+    /// Number of letters that are in mm; they come first.
     pub(crate) fn linear(&self) -> usize {
-        self.of_axis.iter().filter(|&&letter| letter < LINEAR).count()
+        self.planned.iter().filter(|&&letter| letter < LINEAR).count()
     }
 
-    /// The coordinates of the machine's axes, in the order of the machine file.
+    /// The coordinates of the machine's letters, in the order of their first motors.
     pub(crate) fn coordinates(&self, place: &Point) -> Vec<f64> {
-        self.of_axis.iter().map(|&letter| place[letter]).collect()
+        self.planned.iter().map(|&letter| place[letter]).collect()
     }
 
     /// The finest step of the axes in mm, and of those in degrees, if there are any.

@@ -194,8 +194,8 @@ impl Lines {
         self.items.end
     }
 
-    /// A planner for the items that come from this place on: the coordinates of the axes in the
-    /// order of the machine file.
+    /// A planner for the items that come from this place on: the coordinates of the
+    /// letters in the order of their first motors.
     ///
     /// # Errors
     /// The place is beyond the range of the machine's steps.
@@ -203,7 +203,7 @@ impl Lines {
         planner(&self.machine, &self.letters, from)
     }
 
-    /// The coordinates of the axes at a machine place, in the order of the machine file.
+    /// The coordinates of the letters at a machine place, in the order of their first motors.
     pub fn coordinates(&self, at: &Point) -> Vec<f64> {
         self.letters.coordinates(at)
     }

@@ -28,7 +28,8 @@ const WEIGHTS: [f64; 5] = [7.0 / 90.0, 32.0 / 90.0, 12.0 / 90.0, 32.0 / 90.0, 7.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
     is_linear: bool,
-    /// mm/s or degrees/s for a speed of one unit per tick.
+    /// mm/s or degrees/s for a speed of one unit per tick; 0 for all but the first motor of a
+    /// letter.
     speed: f64,
 }
 
@@ -47,11 +48,15 @@ impl RowOutputs {
     /// The outputs of a machine's programs, all off.
     pub fn new(machine: &Machine, letters: &Letters) -> Self {
         let tick_seconds = machine.timebase.tick_seconds();
-        let axis = |&letter: &usize| Axis {
+        let axis = |(motor, &letter): (usize, &usize)| Axis {
             is_linear: letter < LINEAR,
-            speed: letters.step()[letter] / STEP / tick_seconds,
+            speed: match letters.axis(letter) {
+                Some(first) if first == motor => letters.step()[letter] / STEP / tick_seconds,
+                _ => 0.0,
+            },
         };
-        let axes = machine.output_uses.laser.then(|| letters.of_axes().iter().map(axis).collect());
+        let motors = letters.of_axes().iter().enumerate();
+        let axes = machine.output_uses.laser.then(|| motors.map(axis).collect());
         Self { axes, ..Self::default() }
     }
 

@@ -19,4 +19,7 @@ pub struct AxisSetup {
     /// Whether the feed counts its speed: true for the axes that move the tool along a line in mm.
     /// Where none of them moves, the feed counts the others.
     pub linear: bool,
+    /// Whether it counts in the speed along the path: false for all but the first motor of a letter.
+    #[serde(skip)]
+    pub counts: bool,
 }

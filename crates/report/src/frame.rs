@@ -100,13 +100,13 @@ impl Frames {
             ends_at_rest &= v[i][2].abs() <= STILL * speed.unwrap_or(f64::INFINITY);
             self.distance[i] += travel(segment, ticks.into());
             place.push(axis.start + self.distance[i] as f64 / STEP / axis.steps_per_unit);
-            if axis.linear {
+            if axis.linear && axis.counts {
                 let seconds = f64::from(ticks) * self.tick_seconds;
                 bow += (most * seconds * seconds / 8.0).powi(2);
             }
         }
         let linear = (0..count).any(|i| self.axes[i].linear && v[i] != [0.0; 3]);
-        let counts = |i: &usize| self.axes[*i].linear == linear;
+        let counts = |i: &usize| self.axes[*i].counts && self.axes[*i].linear == linear;
         let norm = |of: &dyn Fn(usize) -> f64| {
             (0..count).filter(counts).map(|i| of(i) * of(i)).sum::<f64>().sqrt()
         };

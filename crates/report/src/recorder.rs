@@ -57,8 +57,8 @@ impl Recorder {
         let count = axes.len();
         let causes = Bound::all(count).count();
         // The path is drawn over axes of one unit, because others cannot be compared with it.
-        let over: Vec<usize> =
-            (0..count).filter(|&axis| axes[axis].unit == axes[0].unit).take(3).collect();
+        let drawn = |&axis: &usize| axes[axis].counts && axes[axis].unit == axes[0].unit;
+        let over: Vec<usize> = (0..count).filter(drawn).take(3).collect();
         let mut start = [0.0; 3];
         for (place, &axis) in start.iter_mut().zip(&over) {
             *place = axes[axis].start;

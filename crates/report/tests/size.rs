@@ -23,6 +23,7 @@ fn page(rows: u64) -> Vec<u8> {
         start: 0.0,
         limits: [Some(100.0), Some(1000.0), Some(250_000.0)],
         linear: name < 'd',
+        counts: true,
     };
     let mut recorder =
         Recorder::new("abcdef".chars().map(axis).collect(), 1e-6, true, Detail::Drawing);

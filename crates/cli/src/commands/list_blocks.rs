@@ -54,7 +54,7 @@ fn print_line(
     file: &ProgramFile,
     TimedBlock { block, begins_s, at }: &TimedBlock,
 ) -> Result<(), Failure> {
-    let letters = file.letters().of_axes().iter();
+    let letters = file.letters().all().iter();
     let at = letters.map(|&letter| (AXIS_LETTERS[letter].to_string(), at[letter])).collect();
     output::print_json_line(&ListedBlock {
         number: block.number,

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::memory::BoardMemory;
 use carrystep_files::unit::digits;
-use carrystep_files::{Axis, Machine, decimal};
+use carrystep_files::{Axis, Machine};
 use carrystep_program::{AXIS_LETTERS, Letters, Point, Settings};
 use std::collections::BTreeMap;
 
@@ -36,7 +36,8 @@ impl Place {
         let mut place =
             Self { start: Settings::default().start, soft: Vec::new(), zero: Vec::new() };
         let mut lost = Vec::new();
-        for (number, (axis, &letter)) in machine.axes.iter().zip(letters.of_axes()).enumerate() {
+        let mut motors = Vec::new();
+        for (number, axis) in machine.axes.iter().enumerate() {
             let position = i64::from(positions.get(number).copied().unwrap_or_default());
             let homed = memory.offset(number).filter(|_| !unhomed && axis.home.is_some());
             let steps = match homed {
@@ -52,9 +53,12 @@ impl Place {
             }
             place.soft.push(homed.is_some() && axis.travel.is_some());
             place.zero.push(steps.saturating_sub(position));
-            place.start[letter] = steps as f64 / decimal::to_f64(&axis.steps_per_unit);
+            motors.push(steps);
         }
         if lost.is_empty() {
+            is_square(machine, &motors)?;
+            let motors: Vec<f64> = motors.iter().map(|&steps| steps as f64).collect();
+            place.start = letters.place(&motors);
             return Ok(place);
         }
         let (names, are) = (lost.join(", "), if lost.len() == 1 { "is" } else { "are" });
@@ -83,16 +87,33 @@ impl Place {
 /// The machine place, mm and degrees, at which the position registers have these values. `zero` is
 /// the machine place of their zeros in steps.
 pub fn point_at(letters: &Letters, zero: &[i64], positions: &[f64]) -> Point {
-    let mut at = Point::default();
-    for (&letter, (&zero, position)) in letters.of_axes().iter().zip(zero.iter().zip(positions)) {
-        at[letter] = (zero as f64 + position) * letters.step()[letter];
-    }
-    at
+    let steps = zero.iter().zip(positions).map(|(&zero, position)| zero as f64 + position);
+    letters.place(&steps.collect::<Vec<_>>())
 }
 
 /// The coordinates of a place by the letters of the machine's axes.
 pub fn named_point(letters: &Letters, at: &Point) -> BTreeMap<char, f64> {
-    letters.of_axes().iter().map(|&letter| (AXIS_LETTERS[letter], at[letter])).collect()
+    letters.all().iter().map(|&letter| (AXIS_LETTERS[letter], at[letter])).collect()
+}
+
+/// Refuses to move a letter whose motors are not at one place, so that what they move is not square.
+fn is_square(machine: &Machine, motors: &[i64]) -> Result<(), Failure> {
+    for (motor, (axis, &steps)) in machine.axes.iter().zip(motors).enumerate() {
+        let leader = machine.leader(motor);
+        let off = steps - motors[leader];
+        if off == 0 {
+            continue;
+        }
+        let letter = &axis.letter;
+        let (first, off) = (&machine.axes[leader].name, axis.unit.both(off as f64, 0));
+        return Err(Failure::input(format!(
+            "the motors of {letter} are not at one place: {} is {off} from {first}. `carrystep home \
+             {letter}` brings both to one place; on a letter without a home table, align them by hand \
+             and configure the board again",
+            axis.name
+        )));
+    }
+    Ok(())
 }
 
 /// Refuses a program that would begin beyond the travel of an axis.

@@ -146,7 +146,7 @@ impl<'a> PlannedProgram<'a> {
 fn began_at(file: &ProgramFile) -> String {
     let start = file.entry().map_or(file.settings().start, |entry| entry.program_start());
     let axis = |&letter: &usize| format!("{}={}", AXIS_LETTERS[letter], start[letter]);
-    file.letters().of_axes().iter().map(axis).collect::<Vec<_>>().join(",")
+    file.letters().all().iter().map(axis).collect::<Vec<_>>().join(",")
 }
 
 /// What looks at the rows of a program before anything is sent.

@@ -151,13 +151,13 @@ impl Probing {
         settle(board, file.machine())?;
         let positions = board.read_status()?.positions;
         let letters = file.letters();
-        let (mut rests, mut at) = (self.target, self.target);
-        for (number, (&letter, zero)) in letters.of_axes().iter().zip(zero).enumerate() {
-            let step = letters.step()[letter];
-            rests[letter] = (zero + i64::from(positions[number])) as f64 * step;
-            at[letter] = (*zero as f64 + exact_position(&states[number])) * step;
-        }
-        let place = letters.of_axes().iter();
+        let steps = |of: &dyn Fn(usize) -> f64| {
+            let steps = zero.iter().enumerate().map(|(motor, &zero)| zero as f64 + of(motor));
+            letters.place(&steps.collect::<Vec<_>>())
+        };
+        let rests = steps(&|motor| f64::from(positions[motor]));
+        let at = steps(&|motor| exact_position(&states[motor]));
+        let place = letters.all().iter();
         let place = place.map(|&letter| format!("{} {:.4}", AXIS_LETTERS[letter], at[letter]));
         let place = place.collect::<Vec<_>>().join(", ");
         let number = self.line;

@@ -28,12 +28,14 @@ fn per_minute(machine: &Machine, axis: &Axis, speed: u64) -> f64 {
 
 /// The settings of a machine, of which `soft` says for each axis whether its travel is a bound.
 pub fn settings(machine: &Machine, letters: &Letters, soft: &[bool]) -> MachineSettings {
-    let axes = machine.axes.iter().zip(letters.of_axes()).map(|(axis, &letter)| {
+    let first = letters.all().iter().filter_map(|&letter| Some((letter, letters.axis(letter)?)));
+    let axes = first.map(|(letter, motor)| {
+        let axis = &machine.axes[motor];
         let steps = axis.unit.steps;
         let travel = axis.travel.map_or(0.0, |[low, high]| (high - low) as f64 / steps);
         AxisSettings {
             letter,
-            name: axis.name.clone(),
+            name: axis.letter.clone(),
             steps_per_unit: decimal::to_f64(&axis.steps_per_unit),
             rate: decimal::to_f64(&axis.speed_limit) / steps * 60.0,
             acceleration: decimal::to_f64(&axis.accel_limit) / steps,
@@ -69,7 +71,7 @@ pub fn settings(machine: &Machine, letters: &Letters, soft: &[bool]) -> MachineS
 /// Values of X, Y, Z and of the letters behind them up to the last one that the machine has; 0 for
 /// letters without an axis.
 pub fn of_axes(letters: &Letters, value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let last = letters.of_axes().iter().copied().max().unwrap_or_default().max(Z);
+    let last = letters.all().iter().copied().max().unwrap_or_default().max(Z);
     let known = |letter: usize| letters.axis(letter).map_or(0.0, |_| value(letter));
     (0..=last).map(known).collect()
 }

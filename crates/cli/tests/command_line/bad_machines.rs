@@ -20,7 +20,7 @@ fn unknown_and_missing_keys_are_refused() {
         (
             "start_speed = 200",
             "^colour = 3",
-            "unknown field `colour`, expected one of `name`, `steps_per_unit`",
+            "unknown field `colour`, expected one of `name`, `letter`, `steps_per_unit`",
         ),
         ("start_speed = 200", "start_speed = 200\n^start_speed = 1", "duplicate key"),
         ("[[machine.axis]]\nname = \"x\"\n", "^[[machine.axis]]\n", "missing field `name`"),

@@ -32,6 +32,7 @@ mod empty_programs;
 mod engine;
 #[cfg(target_os = "linux")]
 mod from_block;
+mod gantries;
 #[cfg(unix)]
 mod homed_after_stops;
 #[cfg(unix)]

@@ -1,5 +1,6 @@
 //! `[[machine.axis]]`: units, limits and driver of an axis, each checked against the timebase.
 
+use super::gantry::RawMotor;
 use super::home::{RawHome, RawPlace};
 use super::{Axis, stop};
 use crate::decimal;
@@ -18,6 +19,7 @@ use toml::Spanned;
 #[serde(deny_unknown_fields, expecting = "a [[machine.axis]] table")]
 pub(super) struct RawAxis {
     pub(super) name: Spanned<String>,
+    letter: Option<Spanned<String>>,
     pub(super) steps_per_unit: Option<Spanned<f64>>,
     pub(super) unit: Option<Spanned<String>>,
     pub(super) lead: Option<Spanned<f64>>,
@@ -48,6 +50,11 @@ impl RawAxis {
     /// Removes the entries that can only be checked when the guard is known.
     pub(super) fn place(&mut self) -> RawPlace {
         RawPlace { travel: self.travel.take(), home: self.home.take() }
+    }
+
+    /// Removes what says of which letter it is a motor. `table` is the place of its table in the file.
+    pub(super) fn motor(&mut self, table: Range<usize>) -> RawMotor {
+        RawMotor { letter: self.letter.take(), name: self.name.span(), table }
     }
 
     /// Checks the axis. `table` is the place of its table in the file.
@@ -91,6 +98,7 @@ impl RawAxis {
             Some(value) => stop::units(source, value, &steps_per_unit, &unit, timebase)?,
         };
         let axis = Axis {
+            letter: name.clone(),
             name,
             steps_per_unit,
             unit,
@@ -193,7 +201,7 @@ fn not_too_slow(
 impl Axis {
     /// Checks the speed limit: below half a step per tick, and with a step period that the driver's
     /// width and gap allow.
-    fn check_speed(
+    pub(super) fn check_speed(
         &self,
         source: &SourceText,
         span: Range<usize>,

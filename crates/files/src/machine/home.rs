@@ -4,7 +4,7 @@
 //! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the
 //! nearest step.
 
-use super::{Axis, stop};
+use super::{Axis, gantry, stop};
 use crate::decimal;
 use crate::error::{InputError, SourceText};
 use crate::number::{exact, positive};
@@ -62,6 +62,18 @@ pub struct Home {
     pub pull_off: u32,
     /// Machine coordinate of the place where the switch closes, steps.
     pub position: i64,
+    /// How far a motor may move further than the others of its letter in homing, steps.
+    pub most_apart: u32,
+}
+
+impl Home {
+    /// Machine coordinate at which the axis rests after homing, steps.
+    pub fn rests(&self) -> i64 {
+        match self.toward {
+            End::Min => self.position + i64::from(self.pull_off),
+            End::Max => self.position - i64::from(self.pull_off),
+        }
+    }
 }
 
 /// The `home = { ... }` table as it is written.
@@ -78,6 +90,7 @@ pub(super) struct RawHome {
     max_travel: Option<Spanned<f64>>,
     pull_off: Spanned<f64>,
     position: Spanned<f64>,
+    most_apart: Option<Spanned<f64>>,
 }
 
 /// The entries of an axis' table that depend on the guard.
@@ -95,8 +108,18 @@ pub(super) fn check(
     places: Vec<RawPlace>,
     order: Option<RawOrder>,
 ) -> Result<Vec<Vec<usize>>, InputError> {
-    for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
-        axis.travel = travel.map(|travel| travel::of(source, axis, &travel)).transpose()?;
+    let span = |place: &RawPlace| place.travel.as_ref().map(Spanned::span);
+    let spans: Vec<_> = places.iter().map(span).collect();
+    for (axis, RawPlace { travel, .. }) in axes.iter_mut().zip(&places) {
+        axis.travel = travel.as_ref().map(|travel| travel::of(source, axis, travel)).transpose()?;
+    }
+    gantry::share_travel(source, axes, &spans)?;
+    let span = |place: &RawPlace| {
+        let home = place.home.as_ref()?;
+        Some((home.span(), home.as_ref().most_apart.as_ref().map(Spanned::span)))
+    };
+    let homes: Vec<_> = places.iter().map(span).collect();
+    for (axis, RawPlace { home, .. }) in axes.iter_mut().zip(places) {
         let Some(home) = home else { continue };
         if guard.limits == LimitWiring::None {
             let message = format!(
@@ -110,6 +133,7 @@ pub(super) fn check(
         let checked = Checked { source, timebase, guard, axis: &*axis, span };
         axis.home = Some(checked.home(&home.into_inner())?);
     }
+    gantry::home(source, axes, &homes, guard.limits)?;
     match order {
         Some(order) => order::of(source, axes, order),
         None => Ok(order::usual(axes)),
@@ -179,6 +203,10 @@ impl Checked<'_> {
             max_travel,
             pull_off,
             position,
+            most_apart: match &raw.most_apart {
+                Some(value) => self.distance(value, "most_apart")?,
+                None => move_off,
+            },
         })
     }
 

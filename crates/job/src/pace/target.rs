@@ -38,7 +38,8 @@ pub(super) const TRIES: usize = PARTS.len();
 #[derive(Debug, Clone)]
 pub(super) struct Rules {
     pub limits: Vec<ExactLimits>,
-    /// Of each motor, mm/s for a speed of one unit per tick; `None` for rotary ones.
+    /// Of each motor, mm/s for a speed of one unit per tick; 0 for all but the first motor of a
+    /// letter; `None` for rotary ones.
     pub linear: Vec<Option<f64>>,
     /// Factors of the feed and of rapid moves.
     pub feed: f64,

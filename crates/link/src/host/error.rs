@@ -121,6 +121,9 @@ pub enum HomingFault {
     /// The slow approach did not meet the limit that the search had met.
     #[error("the slow approach did not find the limit again")]
     NotAgain,
+    /// A motor has moved further than the other motors of its letter, by more than it may.
+    #[error("a motor moved too far alone")]
+    Apart,
     /// A move needs too many ticks.
     #[error(transparent)]
     TooLong(TooLong),

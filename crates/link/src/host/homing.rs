@@ -93,8 +93,28 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Err(ProgramError::Axis { axis, axes: self.axes() }.into());
         }
         let mut edges = [0; AXES];
-        match self.find_all(homing, &mut edges, &mut watch)? {
+        let begun = self.read_status()?.positions;
+        // The axes that have moved too far alone, which stops all of them. The positions of several
+        // axes at one time are those of a snapshot.
+        let mut apart = 0;
+        let looks = homing.has_letters_of_several();
+        let mut watch = |moving: u8, stage: HomingStage, progress: &Progress<'_>| {
+            if let Some(snapshot) = progress.snapshot {
+                apart |= homing.apart(&begun, &snapshot.axes.map(|axis| axis.commanded()));
+            }
+            match watch(moving, stage, progress) {
+                _ if apart != 0 => Wish::Stop,
+                Wish::GoOn if looks => Wish::Snapshot,
+                wish => wish,
+            }
+        };
+        let found = self.find_all(homing, &mut edges, &mut watch)?;
+        match found {
             Some(()) => Ok(Homed::At(edges)),
+            None if apart != 0 => {
+                self.clear()?;
+                Err(HostError::Homing { axes: apart, why: HomingFault::Apart })
+            }
             None => Ok(Homed::Stopped),
         }
     }
@@ -124,7 +144,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let groups = homing.groups.iter().flat_map(|group| ends(group & homing.known()));
         for group in groups.filter(|&group| group != 0) {
             if !one {
-                let closed = self.closed(homing, group)?;
+                // The motors of a letter move off together.
+                let closed = homing.with_their_letters(self.closed(homing, group)?);
                 if closed != 0 && self.move_off(homing, closed, watch)?.is_none() {
                     return Ok(None);
                 }

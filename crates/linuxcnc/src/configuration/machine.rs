@@ -51,6 +51,10 @@ impl Configuration {
         let mut joints: Vec<Joint> = Vec::with_capacity(machine.axes.len());
         let mut notes = Vec::new();
         for (number, axis) in machine.axes.iter().enumerate() {
+            if machine.leader(number) != number {
+                let (letter, axis) = (axis.letter.clone(), axis.name.clone());
+                return Err(MachineRefused::Gantry { letter, axis });
+            }
             let letter = letter(axis)?;
             if joints.iter().any(|joint| joint.letter == letter) {
                 return Err(MachineRefused::Twice { letter });
@@ -129,7 +133,7 @@ fn latch(guard: &Guard, fits: impl Fn(&Latch) -> bool) -> Option<u8> {
 }
 
 fn letter(axis: &Axis) -> Result<char, MachineRefused> {
-    let mut characters = axis.name.chars().map(|character| character.to_ascii_uppercase());
+    let mut characters = axis.letter.chars().map(|character| character.to_ascii_uppercase());
     match (characters.next(), characters.next()) {
         (Some(letter), None) if LETTERS.contains(letter) => Ok(letter),
         _ => Err(MachineRefused::Name { axis: axis.name.clone() }),

@@ -27,6 +27,17 @@ pub enum MachineRefused {
         /// The letter.
         letter: char,
     },
+    /// Several motors move one letter.
+    #[error(
+        "the letter {letter} has several motors, '{axis}' for one: the configuration that is written has a joint for \
+         each letter. Run programs of this machine with `carrystep run`"
+    )]
+    Gantry {
+        /// The letter.
+        letter: String,
+        /// The second motor.
+        axis: String,
+    },
     /// An axis has another unit than LinuxCNC.
     #[error(
         "axis '{axis}' is in {unit}: LinuxCNC has it in {wanted}. Give lead or steps_per_unit in that unit"

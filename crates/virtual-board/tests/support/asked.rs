@@ -20,7 +20,7 @@ impl Owned {
 /// The parameters of homing of a machine.
 pub fn homing_of(machine: &Machine) -> Owned {
     let mut axes = [None; 8];
-    for (place, axis) in axes.iter_mut().zip(&machine.axes) {
+    for (number, (place, axis)) in axes.iter_mut().zip(&machine.axes).enumerate() {
         *place = axis.home.map(|home| AxisHoming {
             toward_max: home.toward == End::Max,
             start: home.start,
@@ -30,6 +30,8 @@ pub fn homing_of(machine: &Machine) -> Owned {
             move_off: home.move_off,
             max_travel: home.max_travel,
             pull_off: home.pull_off,
+            beside: machine.with_its_letter(number) & !(1 << number),
+            most_apart: home.most_apart,
         });
     }
     let wiring = match machine.guard.limits {

@@ -260,6 +260,16 @@ impl<B: Make> Bench<B> {
         (world.slice / (world.ms * 4 / 1000)) as u32
     }
 
+    /// Puts the switch of an axis at this position, and that of its other end as far away as before.
+    #[allow(dead_code)]
+    pub fn put_edge(&self, axis: usize, position: i32) {
+        let mut world = self.0.borrow_mut();
+        let one = &mut world.axes[axis];
+        one.far += position - one.edge;
+        one.edge = position;
+        world.press();
+    }
+
     /// Removes the switch of an axis.
     pub fn remove(&self, axis: usize) {
         self.0.borrow_mut().axes[axis].there = false;

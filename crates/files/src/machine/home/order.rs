@@ -21,8 +21,9 @@ pub(super) fn of(
         let mut group = Vec::new();
         for name in names {
             let at = |message: String| InputError::at(source, name.span(), message);
-            let Some(axis) = axes.iter().position(|axis| axis.name == *name.as_ref()) else {
-                let known: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+            let Some(axis) = axes.iter().position(|axis| axis.letter == *name.as_ref()) else {
+                let mut known: Vec<&str> = axes.iter().map(|axis| axis.letter.as_str()).collect();
+                known.dedup();
                 let message = format!("home_order names '{}', which is no axis", name.as_ref());
                 return Err(at(message).help(format!("the axes are {}", known.join(", "))));
             };
@@ -32,10 +33,15 @@ pub(super) fn of(
                     name.as_ref()
                 )));
             }
-            if std::mem::replace(&mut seen[axis], true) {
+            if seen[axis] {
                 return Err(at(format!("home_order names axis '{}' twice", name.as_ref())));
             }
-            group.push(axis);
+            // All motors of a letter home together.
+            let motors = (axis..axes.len()).filter(|&motor| axes[motor].letter == *name.as_ref());
+            for motor in motors {
+                seen[motor] = true;
+                group.push(motor);
+            }
         }
         if !group.is_empty() {
             groups.push(group);
@@ -43,7 +49,8 @@ pub(super) fn of(
     }
     if let Some((axis, _)) = axes.iter().zip(seen).find(|(axis, seen)| axis.home.is_some() && !seen)
     {
-        let message = format!("home_order leaves out axis '{}', which has a home table", axis.name);
+        let message =
+            format!("home_order leaves out axis '{}', which has a home table", axis.letter);
         return Err(InputError::at(source, span, message).help("name every axis that homes"));
     }
     Ok(groups)
@@ -54,6 +61,6 @@ pub(super) fn of(
 pub(super) fn usual(axes: &[Axis]) -> Vec<Vec<usize>> {
     let homes = (0..axes.len()).filter(|&axis| axes[axis].home.is_some());
     let (first, rest): (Vec<usize>, Vec<usize>) =
-        homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));
+        homes.partition(|&axis| axes[axis].letter.eq_ignore_ascii_case("z"));
     [first, rest].into_iter().filter(|group| !group.is_empty()).collect()
 }

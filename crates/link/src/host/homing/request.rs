@@ -48,6 +48,11 @@ pub struct AxisHoming {
     pub max_travel: u32,
     /// Distance from the switch at which the axis rests at the end, steps.
     pub pull_off: u32,
+    /// Mask of the other axes that move the same letter, as the motors of a gantry do; 0 if it moves
+    /// its letter alone.
+    pub beside: u8,
+    /// How far the axis may move further than these, from the beginning of homing on, steps.
+    pub most_apart: u32,
 }
 
 /// Homing parameters of a machine.
@@ -146,6 +151,38 @@ impl Homing<'_> {
     /// Number of ticks after which a level is certainly accepted.
     pub(super) fn settle(&self) -> u32 {
         self.debounce.saturating_add(2).saturating_mul(self.round)
+    }
+
+    /// Of these axes and of those that move their letters with them, those that home.
+    pub(super) fn with_their_letters(&self, axes: u8) -> u8 {
+        let beside = each(axes).filter_map(|axis| self.axis(axis)).map(|axis| axis.beside);
+        beside.fold(axes, |mask, beside| mask | beside) & self.known()
+    }
+
+    /// Whether a letter has several axes that home.
+    pub(super) fn has_letters_of_several(&self) -> bool {
+        each(self.mask()).any(|axis| self.axis(axis).is_some_and(|axis| axis.beside != 0))
+    }
+
+    /// The axes that have moved further than others of their letters, from these positions to
+    /// those, by more than they may.
+    pub(super) fn apart(&self, from: &[i32; AXES], to: &[i32; AXES]) -> u8 {
+        let way = |axis: u8| {
+            let axis = usize::from(axis);
+            let place = |positions: &[i32; AXES]| positions.get(axis).copied().unwrap_or(0);
+            i64::from(place(to).wrapping_sub(place(from)))
+        };
+        let is_apart = |axis: &u8| {
+            self.axis(*axis).is_some_and(|one| {
+                let own = way(*axis);
+                each(one.beside).any(|other| {
+                    let other = way(other);
+                    let further = own.unsigned_abs() >= other.unsigned_abs();
+                    further && (own - other).unsigned_abs() > u64::from(one.most_apart)
+                })
+            })
+        };
+        each(self.known()).filter(is_apart).fold(0, |mask, axis| mask | 1 << axis)
     }
 
     pub(super) fn axis(&self, axis: u8) -> Option<&AxisHoming> {
