@@ -157,7 +157,9 @@ pub fn linuxcnc(folder: &Path, machine: &Machine, port: &str, what: &str, progra
     let own = run.path();
     fs::set_permissions(own, Permissions::from_mode(0o777)).unwrap();
     for (name, text) in configuration(machine, port, what.starts_with("home")).files() {
-        fs::write(own.join(name), text).unwrap();
+        // `comp-g1.ngc` has a tool of one inch.
+        let tools = if name.ends_with(".tbl") { "T4 P4 D25.4\n" } else { "" };
+        fs::write(own.join(name), text + tools).unwrap();
     }
     fs::write(own.join("sampler.hal"), SAMPLER).unwrap();
     fs::write(own.join("ui.py"), include_str!("ui.py")).unwrap();
