@@ -43,7 +43,7 @@ fn begins_to_probe(sender: &mut Sender) {
 #[track_caller]
 fn probes_again(sender: &mut Sender) {
     let above = sender.place()[2];
-    assert!(above < -0.1 && above > PLATE_MM, "{above}");
+    assert!(above <= -0.1 && above > PLATE_MM, "{above}");
     sender.simple("G21 G91\nG0 Z0.1");
     assert!((sender.place()[2] - above - 0.1).abs() < 0.003);
     let (at, tripped) = probes(sender, "G38.2 Z-5 F100");
