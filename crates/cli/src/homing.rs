@@ -45,33 +45,18 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (number, (place, axis)) in axes.iter_mut().zip(&machine.axes).enumerate() {
-        *place = axis.home.map(
-            |AxisHome {
-                 toward,
-                 start,
-                 accel,
-                 seek,
-                 slow,
-                 move_off,
-                 max_travel,
-                 pull_off,
-                 most_apart,
-                 ..
-             }| {
-                AxisHoming {
-                    toward_max: toward == End::Max,
-                    start,
-                    accel,
-                    seek,
-                    slow,
-                    move_off,
-                    max_travel,
-                    pull_off,
-                    beside: machine.with_its_letter(number) & !(1 << number),
-                    most_apart,
-                }
-            },
-        );
+        *place = axis.home.map(|home: AxisHome| AxisHoming {
+            toward_max: home.toward == End::Max,
+            start: home.start,
+            accel: home.accel,
+            seek: home.seek,
+            slow: home.slow,
+            move_off: home.move_off,
+            max_travel: home.max_travel,
+            pull_off: home.pull_off,
+            beside: machine.with_its_letter(number) & !(1 << number),
+            most_apart: home.most_apart,
+        });
     }
     let wiring = match machine.guard.limits {
         LimitWiring::Each => Wiring::Each,
@@ -157,9 +142,10 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
             names()
         ),
         HomingFault::Apart => format!(
-            "{} moved further than the other motor of its letter, over most_apart ({}): the switch of one of them does not \
-             close or open where it should, and going on would rack what they move; look at the switches and at their wiring, \
-             and bring both ends to the same distance from them by hand, with the drivers off",
+            "{} moved further than the other motor of its letter, over most_apart ({}): the switch of \
+             one of them does not close or open where it should, and going on would rack what they \
+             move; look at the switches and at their wiring, and bring both ends to the same distance \
+             from them by hand, with the drivers off",
             names(),
             of(|home| home.most_apart)
         ),

@@ -85,13 +85,14 @@ impl ClosedLimits {
         let [further, away] = ways(direction);
         Err(Failure::input(if is_known {
             format!(
-                "the limit switch of axis {axis} is closed, and the axis would move further {further}: jog it {away} \
-                 until the switch is open, or home it; --into-limit moves it {further} all the same"
+                "the limit switch of axis {axis} is closed, and the axis would move further \
+                 {further}: jog it {away} until the switch is open, or home it; --into-limit moves it \
+                 {further} all the same"
             )
         } else {
             format!(
-                "the limit switch of axis {axis} is closed, and it is not known at which end: home the axis, or move it \
-                 away from the switch with --into-limit"
+                "the limit switch of axis {axis} is closed, and it is not known at which end: home \
+                 the axis, or move it away from the switch with --into-limit"
             )
         }))
     }

@@ -197,16 +197,22 @@ impl Machine {
         same.fold(0, |mask, (number, _)| mask | 1 << number)
     }
 
-    /// Whether a letter has several motors.
-    pub fn has_gantry(&self) -> bool {
-        (0..self.axes.len()).any(|motor| self.leader(motor) != motor)
+    /// The first motor of each letter, in the order of the file.
+    pub fn leaders(&self) -> Vec<usize> {
+        (0..self.axes.len()).filter(|&motor| self.leader(motor) == motor).collect()
+    }
+
+    /// For each motor, the place of its letter in [`Self::leaders`].
+    pub fn letter_numbers(&self) -> Vec<usize> {
+        let leaders = self.leaders();
+        let number = |motor| leaders.iter().position(|&leader| leader == self.leader(motor));
+        (0..self.axes.len()).filter_map(number).collect()
     }
 
     /// The names of all letters, separated by commas, for messages.
     pub fn letter_names(&self) -> String {
-        let leads = |&(motor, _): &(usize, &Axis)| self.leader(motor) == motor;
-        let letters = self.axes.iter().enumerate().filter(leads);
-        letters.map(|(_, axis)| axis.letter.as_str()).collect::<Vec<_>>().join(", ")
+        let letter = |motor: usize| self.axes[motor].letter.as_str();
+        self.leaders().into_iter().map(letter).collect::<Vec<_>>().join(", ")
     }
 
     /// The message for a name that is no letter of the machine: which names there are, or of which

@@ -37,11 +37,7 @@ impl Planner {
         start: &[f64],
     ) -> Result<Self, JobError> {
         let motors = machine.axes.len();
-        let leads: Vec<usize> = (0..motors).map(|motor| machine.leader(motor)).collect();
-        let leaders: Vec<usize> = (0..motors).filter(|&motor| leads[motor] == motor).collect();
-        let letter = |leader: &usize| leaders.iter().position(|known| known == leader);
-        let letters: Option<Vec<usize>> = leads.iter().map(letter).collect();
-        let letters = letters.ok_or(JobError::Axes(motors))?;
+        let (leaders, letters) = (machine.leaders(), machine.letter_numbers());
         // The other motors of a letter have the limits of the first one.
         let mut planned = machine.clone();
         planned.axes = leaders.iter().map(|&motor| machine.axes[motor].clone()).collect();

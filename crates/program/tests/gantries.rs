@@ -246,7 +246,8 @@ fn motors_of_a_letter_have_the_least_limits_and_the_longest_times() {
     }
     assert_eq!((first.stop, first.pins), (second.stop, second.pins));
     assert_eq!(machine.home_order, [[0, 1]]);
-    assert_eq!((machine.leader(1), machine.with_its_letter(0), machine.has_gantry()), (0, 3, true));
+    assert_eq!((machine.leader(1), machine.with_its_letter(0)), (0, 3));
+    assert_eq!((machine.leaders(), machine.letter_numbers()), (vec![0], vec![0, 0]));
 }
 
 /// What is changed in the file, the line and column of the mistake, and a part of the message.

@@ -36,8 +36,8 @@ const GATHERING: Duration = Duration::from_millis(250);
 /// Time between two looks at the clock.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// What refuses motion: it is given the direction, 1, -1 or 0, in which each axis moves for the first
-/// time in a batch, and returns why an axis must not.
+/// What refuses motion: it is given the direction, 1, -1 or 0, in which each letter moves for the
+/// first time in a batch, in the order of their first motors, and returns why one must not.
 pub type MotionGuard = Box<dyn Fn(&[i8]) -> Result<(), String> + Send>;
 
 /// How a batch has ended.
@@ -201,7 +201,7 @@ struct Work {
     /// Why the batch ends.
     at: Option<LineBreak>,
     guard: Option<MotionGuard>,
-    /// The axes that have moved in the batch.
+    /// The letters that have moved in the batch.
     moved: Vec<bool>,
 }
 
@@ -250,7 +250,7 @@ impl Work {
         }
     }
 
-    /// Asks the guard for the axes that the next item moves and that have not moved before.
+    /// Asks the guard for the letters that the next item moves and that have not moved before.
     fn guarded(&mut self, item: &Item) -> Result<(), String> {
         let (Some(guard), Item::Move(element)) = (&self.guard, item) else { return Ok(()) };
         let directions = directions(&self.place, element);

@@ -21,10 +21,12 @@ use crate::reading::{NextRow, Reading};
 use crate::settling::settling;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::{Hold, Pace, Paced, Track};
-use carrystep_link::{Queues, SegmentSource};
+use carrystep_link::SegmentSource;
 use carrystep_plan::exact::travel;
 use carrystep_program::{Row, RowOutputs, SyncPoint, sync_points};
 use std::fmt;
+
+mod cuts;
 
 /// The time that a cut keeps behind the rows that have begun to run, ns.
 const KEPT_NS: u64 = 20_000_000;
@@ -195,30 +197,6 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         ahead.into_iter().rev().for_each(|next| self.now.ahead.push_front(next));
     }
 
-    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
-    /// stretch behind which the board has to cut its queues: the hold follows these. `None` if
-    /// nothing has to be cut; whether there is a hold now, [`Self::is_held`] says.
-    pub fn hold_in(&mut self, queues: Queues) -> Option<u32> {
-        self.decide(queues);
-        if self.uncut.is_some() {
-            return None;
-        }
-        let Some(keep) = self.cut(queues) else {
-            self.hold();
-            return None;
-        };
-        let before = self.now.clone();
-        if self.now.rewind(keep) {
-            self.hold();
-        }
-        if self.is_held() {
-            (self.uncut, self.granted) = (Some((before, self.overrides)), queues.cuts);
-            return Some(keep);
-        }
-        self.now = before;
-        None
-    }
-
     /// The overrides of the rows that are read from now on.
     pub const fn overrides(&self) -> OverrideSetting {
         self.overrides
@@ -253,44 +231,12 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
         }
     }
 
-    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
-    /// stretch behind which the board has to cut its queues. `None` if nothing has to be cut. If the
-    /// board refuses the cut, the overrides are those of before.
-    pub fn set_overrides_in(&mut self, overrides: OverrideSetting, queues: Queues) -> Option<u32> {
-        self.decide(queues);
-        if self.uncut.is_some() {
-            return None;
-        }
-        let before = (self.now.clone(), self.overrides);
-        let keep = self.cut(queues).filter(|&keep| self.now.rewind(keep));
-        self.set_overrides(overrides);
-        if keep.is_some() {
-            (self.uncut, self.granted) = (Some(before), queues.cuts);
-        }
-        keep
-    }
-
     /// Changes outputs with the next row that is read, before what the program says of that row.
     pub fn switch(&mut self, change: OutputChange) {
         let before = self.uncut.as_mut().map(|(before, _)| before);
         for now in [Some(&mut self.now), before].into_iter().flatten() {
             now.pending = now.pending.then(change);
         }
-    }
-
-    /// The same as soon as the queues of the board allow it. Returns the number of rows of the
-    /// stretch behind which the board has to cut its queues. `None` if nothing has to be cut. If the
-    /// board refuses the cut, the outputs change later.
-    pub fn switch_in(&mut self, change: OutputChange, queues: Queues) -> Option<u32> {
-        self.decide(queues);
-        self.switch(change);
-        let keep = self.cut(queues)?;
-        let before = (self.now.clone(), self.overrides);
-        if !self.now.rewind(keep) {
-            return None;
-        }
-        (self.uncut, self.granted) = (Some(before), queues.cuts);
-        Some(keep)
     }
 
     /// Takes back what [`Self::switch`] has not brought to a row.
@@ -302,21 +248,6 @@ impl<I: Iterator<Item = Row>> Stretches<I> {
     /// with the next row, as one.
     pub const fn switched(&self) -> OutputChange {
         self.now.switched.then(self.now.pending)
-    }
-
-    /// The number of rows of the stretch that a cut keeps; `None` if it would drop none. A host that
-    /// was late for a cut keeps more with the next one.
-    fn cut(&self, queues: Queues) -> Option<u32> {
-        let kept = self.kept?.checked_shl(self.refused)?;
-        let may = !self.is_held() && self.uncut.is_none() && queues.begun > 0;
-        self.now.behind(queues.begun, kept).filter(|&keep| may && keep < queues.sent)
-    }
-
-    /// Notes that a cut was granted.
-    fn decide(&mut self, queues: Queues) {
-        if queues.cuts > self.granted && self.uncut.is_some() {
-            (self.uncut, self.refused) = (None, 0);
-        }
     }
 
     /// What brings P of each axis to its start value where the program waits: the segments of each

@@ -43,7 +43,8 @@ fn gantry(limits: &str, toward: &str) -> Machine {
              slow_speed = 8, pull_off = 1, position = 0 }\n";
     machine(&format!(
         "[machine]\nclock_hz = 8_000_000\ntick_ns = 8000\nhome_order = [[\"x\", \"y\"]]\n[machine.guard]\n\
-         watchdog_ms = 60\nenable_ms = 1\ndebounce_us = 400\nlimits = \"{limits}\"\n[machine.link]\nbaud = 500_000\n{}{x}{}",
+         watchdog_ms = 60\nenable_ms = 1\ndebounce_us = 400\nlimits = \"{limits}\"\n[machine.link]\n\
+         baud = 500_000\n{}{x}{}",
         motor("y", 0),
         motor("y2", 1)
     ))

@@ -27,9 +27,11 @@ impl Server<'_> {
             }
         }
         self.requests.guard = (closed.low | closed.high != 0).then(|| {
-            let axes = self.axes.to_vec();
+            let (axes, letters) = (self.axes.to_vec(), self.machine.letter_numbers());
             let guard: MotionGuard = Box::new(move |directions| {
-                let blocked = closed.blocked(wiring, directions, &met);
+                // Each motor of a letter moves as the letter does.
+                let motors: Vec<i8> = letters.iter().map(|&letter| directions[letter]).collect();
+                let blocked = closed.blocked(wiring, &motors, &met);
                 blocked.map_or(Ok(()), |blocked| Err(why(blocked, &axes)))
             });
             guard
@@ -42,13 +44,13 @@ fn why(Blocked { axis, direction, is_known }: Blocked, axes: &[String]) -> Strin
     let (axis, [further, away]) = (&axes[axis], ways(direction));
     if is_known {
         format!(
-            "the limit switch of axis {axis} is closed, and the line would move it further {further}: unlock, and move it \
-             {away}"
+            "the limit switch of axis {axis} is closed, and the line would move it further {further}: \
+             unlock, and move it {away}"
         )
     } else {
         format!(
-            "the limit switch of axis {axis} is closed, and it is not known at which end: home it, or move it away with \
-             carrystep jog --into-limit"
+            "the limit switch of axis {axis} is closed, and it is not known at which end: home it, or \
+             move it away with carrystep jog --into-limit"
         )
     }
 }

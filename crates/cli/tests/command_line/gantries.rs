@@ -2,6 +2,7 @@
 //! `simulate` and of a board, homing, and what is refused.
 
 use crate::command::{Folder, Ran};
+use crate::sender::{Sender, Served};
 use crate::virtual_boards::{Board, passed};
 use std::collections::BTreeMap;
 
@@ -152,6 +153,59 @@ fn gantry_homes_square_twice_jogs_and_runs() {
     passed(&on(&folder, &board, "run job.ngc"));
     let status = on(&folder, &board, "status").stdout;
     assert_eq!(status.matches("homed: at 1.0000 of the machine").count(), 2, "{status}");
+    board.end();
+}
+
+/// z comes behind the second motor of y, so the number of its motor is not that of its letter.
+const Z: &str = r#"
+[[machine.axis]]
+name = "z"
+steps_per_unit = 80
+speed_limit = 50
+accel_limit = 1000
+driver = "tmc2209"
+"#;
+
+/// The positions of the motors, steps.
+fn positions(folder: &Folder, board: &Board) -> Vec<i64> {
+    let told = on(folder, board, "status --json").stdout;
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let axes = told["axes"].as_array().unwrap().iter();
+    axes.map(|axis| axis["position"].as_i64().unwrap()).collect()
+}
+
+#[test]
+fn sender_homes_and_moves_both_motors_and_no_axis_into_its_closed_switch() {
+    let folder = folder();
+    folder.write("machine.toml", (MACHINE.to_owned() + Z).replace("\"pair\"", "\"each\""));
+    let board = Board::new(&folder, "--min y=-200 --min y2=-40 --min z=-160 --fast");
+    let served = Served::with(&folder, &format!("--port {}", board.port));
+    let mut sender = Sender::tcp(&served);
+    for _ in 0..2 {
+        sender.done("$H");
+        assert_eq!(sender.place(), [0.0, 1.0, 0.0]);
+    }
+    let before = positions(&folder, &board);
+    sender.simple("G21 G91\nG1 X1 Y3 F900");
+    assert_eq!(sender.place(), [1.0, 4.0, 0.0]);
+    let moved = |after: Vec<i64>| before.iter().zip(after).map(|(a, b)| b - a).collect::<Vec<_>>();
+    assert_eq!(moved(positions(&folder, &board)), [80, 240, 240, 0]);
+
+    sender.send("G0 Z-4\n");
+    sender.until(|line| line == "ALARM:1");
+    sender.done("$X");
+    let at = sender.place();
+    assert!(at[2] < -2.0, "{at:?}");
+    sender.send("G0 Z-1\n");
+    sender.until(|line| line == "ALARM:1");
+    let said = sender.next().unwrap();
+    assert!(said.contains("the limit switch of axis z is closed"), "{said}");
+    sender.done("$X");
+    assert_eq!(sender.place(), at);
+    sender.simple("G0 Z4 Y-1");
+    assert_eq!(sender.place()[..2], [1.0, 3.0]);
+    assert_eq!(moved(positions(&folder, &board))[1..3], [160, 160]);
+    assert_eq!(served.interrupt().0, 0);
     board.end();
 }
 

@@ -29,8 +29,8 @@ pub enum MachineRefused {
     },
     /// Several motors move one letter.
     #[error(
-        "the letter {letter} has several motors, '{axis}' for one: the configuration that is written has a joint for \
-         each letter. Run programs of this machine with `carrystep run`"
+        "the letter {letter} has several motors, '{axis}' for one: the configuration that is written \
+         has a joint for each letter. Run programs of this machine with `carrystep run`"
     )]
     Gantry {
         /// The letter.
