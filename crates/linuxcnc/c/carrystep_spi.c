@@ -1,6 +1,6 @@
 /* An SPI by Linux' spidev, mode 0. See carrystep_line.h.
  *
- * A transfer moves bytes in both directions at once, and the board speaks only while this computer
+ * A transfer moves bytes in both directions at once, and the board sends only while this computer
  * clocks: so a transfer that sends requests is followed by others that fetch the answers. END
  * stands where a side has nothing to say. Chip select rises between transfers, at any byte of a
  * frame. */

@@ -164,3 +164,36 @@ fn second_program_is_refused_while_one_runs_waits_or_is_held() {
     nothing();
     assert!(board.end().contains("\nx at 0\ny at 0\nz at 0\n"));
 }
+
+/// Nothing is changed: the program ends where it would have ended.
+#[test]
+fn hold_and_resume_without_anything_to_hold_or_resume_are_refused() {
+    let folder = folder(&LONG.replace("[6]", "[2]"));
+    let board = Board::new(&folder, "--fast");
+    resume(&folder, &board).refuses("no program waits at");
+    hold(&folder, &board).refuses("no program moves at");
+    let mut child = begins(&folder, &board);
+    moving(&folder, &mut child, &board.port);
+    resume(&folder, &board).refuses("no program waits at");
+    assert_eq!(done(child)["passed"], true);
+    assert_eq!(positions(&status(&folder, &board)), [0, 0, 0]);
+    resume(&folder, &board).refuses("no program waits at");
+}
+
+/// Seven segments of 4 ms are 28 ms, 31 of them 124 ms.
+#[test]
+fn horizon_under_100_ms_is_warned_of() {
+    let folder = folder("G21 G90 F3000\nG1 X1\nM2\n");
+    let board = Board::new(&folder, "--fast");
+    let ran = run(&folder, &board, "");
+    passed(&ran);
+    let warning = "the queues of the board hold 28 ms of motion";
+    assert!(ran.stderr.contains(warning), "{}", ran.stderr);
+    board.end();
+    folder
+        .write("machine.toml", MACHINE.replacen("[machine]\n", "[machine]\nqueue_depth = 31\n", 1));
+    let board = Board::new(&folder, "--fast");
+    let ran = run(&folder, &board, "");
+    passed(&ran);
+    assert!(!ran.stderr.contains("the queues of the board hold"), "{}", ran.stderr);
+}
