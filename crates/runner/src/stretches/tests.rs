@@ -3,6 +3,7 @@
 use super::*;
 use crate::settling::HALF_STEP;
 use carrystep_files::{Machine, SourceText};
+use carrystep_link::Queues;
 use carrystep_program::Switch;
 
 const PAUSE: u64 = 1 << 63 | 9;
