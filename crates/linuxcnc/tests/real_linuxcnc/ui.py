@@ -14,12 +14,17 @@ import linuxcnc
 command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 result = {"errors": [], "steps": []}
 
+# LinuxCNC sends errors and other messages, such as those of (debug, ...), on one channel.
+ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
+
 
 def look():
     stat.poll()
     message = errors.poll()
     while message:
-        result["errors"].append(message[1].strip())
+        kind, text = message
+        if kind in ERRORS:
+            result["errors"].append(text.strip())
         message = errors.poll()
 
 
