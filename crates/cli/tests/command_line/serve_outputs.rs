@@ -24,6 +24,17 @@ fn begins(mist: bool) -> (Folder, Board, Served, Sender) {
     (folder, board, served, sender)
 }
 
+/// The machine of these tests with a spindle and an interlock.
+fn with_interlock() -> (Folder, Board, Served, Sender) {
+    let folder = Folder::new();
+    let inputs = "[machine.inputs]\ninterlock = \"high\"\n\n[machine.outputs]\n";
+    folder.write("machine.toml", MACHINE.replace("[machine.outputs]\n", inputs));
+    let board = Board::new(&folder, "--fast");
+    let served = Served::with(&folder, &format!("--port {}", board.port));
+    let sender = Sender::tcp(&served);
+    (folder, board, served, sender)
+}
+
 /// The outputs of the board with their levels, in the order of their changes, and the place of x.
 fn switched(folder: &Folder, board: Board, served: Served) -> Vec<(usize, bool, f64)> {
     assert_eq!(served.interrupt().0, 0);
@@ -180,4 +191,25 @@ fn safety_door_switches_off_and_on_again() {
     let pair = |level| [(0, level), (1, level)];
     assert_eq!(levels, [pair(true), pair(false), pair(true), pair(false)].concat(), "{found:?}");
     assert!(found[2..6].iter().all(|change| (change.2 - rests).abs() < 0.013), "{found:?}");
+}
+
+#[test]
+fn open_interlock_keeps_the_machine_behind_its_safety_door() {
+    let (_folder, mut board, served, mut sender) = with_interlock();
+    sender.simple("G21 G91 M3 S1000\nG1 X4 F100");
+    moves(&mut sender, 0.5);
+    sender.send(DOOR);
+    let rests = place(&sender.state("Door:0"));
+    board.press("interlock 1");
+    sender.state("Door:1");
+    sender.send("~");
+    for _ in 0..10 {
+        assert_eq!(place(&sender.state("Door:1")), rests);
+    }
+    board.press("interlock 0");
+    sender.state("Door:0");
+    sender.send("~");
+    assert_eq!(sender.place(), [4.0, 0.0, 0.0]);
+    shows(&mut sender, "S");
+    assert_eq!(served.interrupt().0, 0);
 }
