@@ -194,22 +194,24 @@ fn safety_door_switches_off_and_on_again() {
 }
 
 #[test]
-fn open_interlock_keeps_the_machine_behind_its_safety_door() {
+fn interlock_that_opens_behind_the_safety_door_is_an_alarm_and_places_stay_true() {
     let (_folder, mut board, served, mut sender) = with_interlock();
     sender.simple("G21 G91 M3 S1000\nG1 X4 F100");
     moves(&mut sender, 0.5);
     sender.send(DOOR);
     let rests = place(&sender.state("Door:0"));
     board.press("interlock 1");
-    sender.state("Door:1");
+    sender.until(|line| line == "ALARM:3");
+    sender.until(|line| line == "[MSG:stopped by the machine: interlock]");
     sender.send("~");
-    for _ in 0..10 {
-        assert_eq!(place(&sender.state("Door:1")), rests);
-    }
+    assert_eq!(place(&sender.state("Alarm")), rests);
+    assert_eq!(sender.ask("$X").last().unwrap(), "error:8");
     board.press("interlock 0");
-    sender.state("Door:0");
-    sender.send("~");
-    assert_eq!(sender.place(), [4.0, 0.0, 0.0]);
-    shows(&mut sender, "S");
+    while sender.ask("$X").last().unwrap() != "ok" {}
+    assert_eq!(sender.place(), rests);
+    // What was left of the line is dropped.
+    sender.done("G90 G0 X2");
+    assert_eq!(sender.place(), [2.0, 0.0, 0.0]);
     assert_eq!(served.interrupt().0, 0);
+    assert!(board.end().contains("\nx at 160\n"));
 }
