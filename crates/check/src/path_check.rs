@@ -1,8 +1,9 @@
 //! The checker of jobs: rebuilds the tool from the pulses alone and compares it with the programmed
 //! path. It knows nothing of the plan.
 //!
-//! Each rising edge of STEP moves one letter of the tool by one step. After each of them, the tool
-//! must be within the tolerance and one step of each axis of the programmed path, in its order
+//! Each rising edge of STEP moves the tool by one step of one motor: along its letter, or, on crossed
+//! belts, along a diagonal of x and y. After each of them, the tool must be within the tolerance and
+//! one step of each motor of the programmed path, in its order
 //! (`path_follow.rs`). At the end, all counts must be exact. The pins must keep the times of their
 //! drivers, and no pulse may come before the start or after the end of the job. Outputs must change
 //! where the program changes them (`output_places.rs`).
@@ -28,8 +29,9 @@ pub struct PathAxis<'a> {
     pub name: &'a str,
     /// The letter that it moves: 0 to 2 for x, y, z, 3 to 5 for a, b, c.
     pub letter: usize,
-    /// One step, mm or degrees.
-    pub step: f64,
+    /// How far one step moves the tool: x, y, z in mm, a, b, c in degrees. The motors of one machine
+    /// move it at right angles to each other. Of several motors of a letter, the first one counts.
+    pub moves: [f64; LETTERS],
     /// Machine place at the beginning, steps.
     pub start_steps: i64,
     /// Steps forward minus steps backward that the program requires.
@@ -58,6 +60,8 @@ pub struct PathChecker<'a> {
     setup: PathSetup<'a>,
     follow: PathFollow<'a>,
     place: Place,
+    /// For each letter, the motors that move it and by how much with a step.
+    motors: [Vec<(usize, f64)>; LETTERS],
     positions: Vec<i64>,
     watches: Vec<PinWatch>,
     worst: Option<(Off, u64)>,
@@ -82,14 +86,23 @@ impl fmt::Debug for PathChecker<'_> {
 impl<'a> PathChecker<'a> {
     /// A checker that has not seen any change. `legs` is the programmed path.
     pub fn new(setup: PathSetup<'a>, legs: Box<dyn Iterator<Item = PathLeg> + Send + 'a>) -> Self {
-        let mut step = [0.0; LETTERS];
-        for axis in &setup.axes {
-            step[axis.letter] = axis.step;
-        }
-        let follow = PathFollow::new(legs, setup.start, step);
         let count = setup.axes.len();
+        let counts = |axis: &usize| {
+            let letter = setup.axes[*axis].letter;
+            !setup.axes[..*axis].iter().any(|before| before.letter == letter)
+        };
+        let motors: [Vec<_>; LETTERS] = std::array::from_fn(|letter| {
+            let moves = |axis: usize| (axis, setup.axes[axis].moves[letter]);
+            (0..count).filter(counts).map(moves).filter(|(_, moves)| *moves != 0.0).collect()
+        });
+        // Over motors at right angles, the squares of their steps add up to those of the letters.
+        let step: Place = std::array::from_fn(|letter| {
+            motors[letter].iter().fold(0.0, |sum: f64, (_, moves)| sum.hypot(*moves))
+        });
+        let follow = PathFollow::new(legs, setup.start, step);
         let mut this = Self {
             place: setup.start,
+            motors,
             positions: vec![0; count],
             watches: vec![PinWatch::default(); count],
             follow,
@@ -102,8 +115,8 @@ impl<'a> PathChecker<'a> {
             times: None,
             setup,
         };
-        for axis in 0..count {
-            this.stand(axis);
+        for letter in 0..LETTERS {
+            this.stand(letter);
         }
         this.follow(this.setup.origin_ps);
         this
@@ -117,14 +130,13 @@ impl<'a> PathChecker<'a> {
         self
     }
 
-    /// Puts the tool where the position of an axis says. Of several motors of a letter, the first
-    /// one says it.
-    fn stand(&mut self, axis: usize) {
-        let PathAxis { letter, step, start_steps, .. } = self.setup.axes[axis];
-        if self.setup.axes[..axis].iter().any(|before| before.letter == letter) {
-            return;
-        }
-        self.place[letter] = (start_steps + self.positions[axis]) as f64 * step;
+    /// Puts a letter of the tool where the positions of its motors say.
+    fn stand(&mut self, letter: usize) {
+        let [first, others @ ..] = &self.motors[letter][..] else { return };
+        let part = |(axis, moves): &(usize, f64)| {
+            (self.setup.axes[*axis].start_steps + self.positions[*axis]) as f64 * moves
+        };
+        self.place[letter] = others.iter().fold(part(first), |sum, other| sum + part(other));
     }
 
     /// Looks whether the motors of the letter that this motor moves are together. Their edges are at
@@ -298,7 +310,11 @@ impl PinSink for PathChecker<'_> {
             self.positions[axis] += if watch.backward() { -1 } else { 1 };
             let first = self.times.map_or(change.ps, |[first, _]| first);
             self.times = Some([first, change.ps]);
-            self.stand(axis);
+            for letter in 0..LETTERS {
+                if self.setup.axes[axis].moves[letter] != 0.0 {
+                    self.stand(letter);
+                }
+            }
             self.is_square(axis, change.ps);
             self.follow(change.ps);
         }

@@ -12,7 +12,7 @@
 //!                       near
 //! ```
 //!
-//! Near is the tolerance and one step of each axis. Far is one tolerance more, because a tool that
+//! Near is the tolerance and one step of each motor. Far is one tolerance more, because a tool that
 //! stays near both sides of an acute corner cuts its tip by up to that.
 
 use crate::path_leg::{LETTERS, LINEAR, Leg, PathLeg, Place, Reach};
@@ -65,7 +65,7 @@ pub(crate) struct PathFollow<'a> {
     window: VecDeque<Leg>,
     /// Number of the first leg of the window.
     first: u64,
-    /// One step of each letter.
+    /// One step of each letter: of the motors that move it, the root of the sum of squares.
     step: Place,
     reached: Vec<Span>,
     next: Vec<Span>,

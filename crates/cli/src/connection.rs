@@ -47,6 +47,9 @@ pub struct Connection {
     pub axes: Vec<String>,
     /// Steps per unit of each axis; empty if no machine file is known.
     pub steps_per_unit: Vec<f64>,
+    /// For each axis the registers that count in its letter's place, as the memory of the board keeps
+    /// them; empty if no machine file is known.
+    pub registers: Vec<Vec<i8>>,
     /// Whether a limit freezes the axes of this gateware; `None` if no machine file is known.
     pub limit_freezes: Option<bool>,
     /// The port's name.
@@ -116,6 +119,7 @@ pub fn to_peer(
         board,
         axes,
         steps_per_unit: Vec::new(),
+        registers: Vec::new(),
         limit_freezes: None,
         port: peer.port.name.clone(),
         control,
@@ -135,9 +139,14 @@ fn machines(
     // The float is only displayed; no decision depends on it.
     let steps = |axis: &Axis| decimal::to_f64(&axis.steps_per_unit);
     let steps_per_unit = machine.axes.iter().map(steps).collect();
+    let of_axis = |axis: usize| match machine.is_crossed(axis) {
+        true => (0..machine.axes.len()).map(|motor| machine.coefficient(motor, axis)).collect(),
+        false => Vec::new(),
+    };
+    let registers = (0..machine.axes.len()).map(of_axis).collect();
     let limit_freezes = Some(machine.guard.limit_freezes);
     let port = port.name.clone();
-    Ok(known(Connection { board, axes, steps_per_unit, limit_freezes, port, control }))
+    Ok(known(Connection { board, axes, steps_per_unit, registers, limit_freezes, port, control }))
 }
 
 /// Passes the constants of the board to the control.

@@ -2,6 +2,7 @@
 //! board, stops on request and reports the outcome. All checks that refuse a run come before the
 //! first segment is sent.
 
+use crate::belt_ways::EITHER;
 use crate::connection::{self, Connection};
 use crate::failure::Failure;
 use crate::found;
@@ -68,7 +69,7 @@ pub fn drive(
     let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
-    let (mut ways, seconds) = (Ways::default(), plan.seconds);
+    let (mut ways, seconds) = (Ways::new(plan.machine), plan.seconds);
     let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
     let drives = memory.drives(&mut board);
     if let (Err(error), true, None) = (&drives, itinerary.keeps(), itinerary.program()) {
@@ -126,9 +127,14 @@ pub fn drive(
     }
     if cause == Some(Cause::Limit) {
         let met = |(number, _): &(usize, &i8)| end.answer.culprits >> number & 1 == 1;
-        for (number, &first) in plan.first.iter().enumerate().filter(met) {
+        let crossed = |number: usize| plan.machine.is_crossed(number);
+        let own = plan.first.iter().enumerate().filter(met);
+        for (number, &first) in own.filter(|(number, _)| !crossed(*number)) {
             let direction = if ways.last[number] == 0 { first } else { ways.last[number] };
             memory.set_limit(number, Some(direction));
+        }
+        for (axis, way) in ways.belts.met(end.answer.culprits) {
+            memory.set_limit(axis, Some(way));
         }
     }
     // If the file cannot be written, the old one no longer matches the board and is ignored.
@@ -142,7 +148,17 @@ pub fn drive(
     };
     let is_culprit =
         |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
-    let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
+    // Both motors of crossed belts meet the limit of a letter.
+    let letters = match cause {
+        Some(Cause::Limit) => ways.belts.met(end.answer.culprits),
+        _ => Vec::new(),
+    };
+    let is_letter = |number: usize| letters.iter().any(|(axis, _)| *axis == number);
+    let motors = axes.iter().enumerate().filter(is_culprit);
+    let motors = motors.filter(|(number, _)| !is_letter(*number)).map(culprit);
+    let moved = letters.iter().filter(|(_, way)| *way != EITHER);
+    let moved = moved.map(|&(axis, direction)| Culprit { axis: axes[axis].clone(), direction });
+    let culprits = motors.chain(moved).collect();
     itinerary.whole()?;
     if let (Some(driven), Some(program)) = (&mut plan.program, control.program()) {
         driven.overrides = program.overrides().into();

@@ -23,6 +23,7 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
                 "axis '{name}' has no home table in the machine file: home = {{ toward = \"min\", ... }}, as in docs/homing.md"
             )));
         }
+        // A letter of crossed belts has one axis, whose switch is that of both motors.
         wanted |= machine.with_its_letter(number);
     }
     let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
@@ -45,6 +46,7 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (number, (place, axis)) in axes.iter_mut().zip(&machine.axes).enumerate() {
+        let [forward, backward] = machine.homing_motors(number);
         *place = axis.home.map(|home: AxisHome| AxisHoming {
             toward_max: home.toward == End::Max,
             start: home.start,
@@ -54,6 +56,8 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
             move_off: home.move_off,
             max_travel: home.max_travel,
             pull_off: home.pull_off,
+            forward,
+            backward,
             beside: machine.with_its_letter(number) & !(1 << number),
             most_apart: home.most_apart,
         });
@@ -75,10 +79,11 @@ pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &BoardMemo
         return 0;
     }
     let clear = |number: usize, home: &AxisHome| {
-        let Some(offset) = memory.offset(number) else { return false };
-        let away = i64::from(status.positions[number]) + offset - home.position;
+        let Some(place) = memory.place(number, &status.positions) else { return false };
+        let away = place - home.position as f64;
         let away = if home.toward == End::Max { -away } else { away };
-        away >= i64::from(home.pull_off) && memory.limit(number).is_none()
+        // Half a step is rounding.
+        away + 0.5 >= f64::from(home.pull_off) && memory.limit(number).is_none()
     };
     let unclear = |(number, axis): (usize, &Axis)| {
         let home = axis.home.as_ref()?;
@@ -93,13 +98,15 @@ pub fn forget(memory: &mut BoardMemory, machine: &Machine, mask: u8) {
     axes.for_each(|number| memory.set_offset(number, None));
 }
 
-/// Notes the machine coordinates of axes that have homed. `places` are the positions of all axes at
-/// which the limits closed, steps.
+/// Notes the machine coordinates of axes that have homed. `places` are the places of all letters at
+/// which the limits closed, steps, on crossed belts half steps.
 pub fn note(memory: &mut BoardMemory, machine: &Machine, mask: u8, places: &[i32]) {
     let homes = machine.axes.iter().zip(places).enumerate();
     for (number, (axis, place)) in homes.filter(|(number, _)| mask >> number & 1 == 1) {
         if let Some(home) = axis.home {
-            memory.set_offset(number, Some(home.position - i64::from(*place)));
+            let parts = if machine.is_crossed(number) { 2 } else { 1 };
+            memory.set_offset(number, Some(parts * home.position - i64::from(*place)));
+            memory.fit_offset(number);
             memory.set_limit(number, None);
         }
     }

@@ -45,8 +45,14 @@ impl JogWish {
     fn seconds_at(&self, machine: &Machine, feed: f64) -> f64 {
         let length =
             self.distances.iter().map(|(_, distance)| distance.powi(2)).sum::<f64>().sqrt();
-        let seconds = |(name, distance): &(String, f64)| {
-            let axis = &machine.axes[machine.letter_index(name)?];
+        let mut letters = vec![0.0; machine.axes.len()];
+        for (name, distance) in &self.distances {
+            let axis = machine.letter_index(name);
+            axis.into_iter().for_each(|axis| letters[axis] += distance);
+        }
+        // Motors of crossed belts go further than the tool, and have the same steps per unit.
+        let motors = machine.motor_steps(&letters);
+        let seconds = |(axis, distance): (&Axis, &f64)| {
             let scale = decimal::to_f64(&axis.steps_per_unit);
             let accel = decimal::to_f64(&axis.accel_limit) / scale;
             let distance = distance.abs();
@@ -54,7 +60,7 @@ impl JogWish {
             let speed = (feed / 60.0 * distance / length).min((distance * accel).sqrt());
             (speed > 0.0).then(|| distance / speed + speed / accel)
         };
-        self.distances.iter().filter_map(seconds).fold(0.0, f64::max)
+        machine.axes.iter().zip(&motors).filter_map(seconds).fold(0.0, f64::max)
     }
 
     fn timed(&self, machine: &Machine, time: Option<f64>) -> Result<MoveFile, Failure> {
@@ -74,11 +80,10 @@ impl JogWish {
 
     /// The failure for a jog of less than half a step, which states the size of a step.
     fn nothing_to_do(&self, file: &MoveFile) -> Option<Failure> {
-        let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
+        file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
         let (name, distance) = self.distances.first()?;
-        let (number, axis) =
-            (0..).zip(&file.machine.axes).find(|(_, axis)| axis.letter == *name)?;
-        let part = first.rounding.get(number).copied().unwrap_or_default().abs();
+        let axis = &file.machine.axes[file.machine.letter_index(name)?];
+        let part = (distance * decimal::to_f64(&axis.steps_per_unit)).abs();
         let step = 1.0 / decimal::to_f64(&axis.steps_per_unit);
         Some(Failure::input(format!(
             "jog {name} {distance} is {part:.3} step, which rounds to no step at all: nothing would \
@@ -148,15 +153,19 @@ fn seconds(file: &MoveFile) -> f64 {
 }
 
 /// Refuses a jog beyond `travel`, except one that leads back toward it. `places` are the machine
-/// places of the axes in steps, of those whose machine zero is known.
-pub fn within_travel(file: &MoveFile, places: &[Option<i64>]) -> Result<(), Failure> {
-    for (number, axis) in file.machine.axes.iter().enumerate() {
+/// places of the axes' letters in steps, of those whose machine zero is known.
+pub fn within_travel(file: &MoveFile, places: &[Option<f64>]) -> Result<(), Failure> {
+    let machine = &file.machine;
+    let motor =
+        |number: usize| -> i64 { file.moves.iter().filter_map(|one| one.steps.get(number)).sum() };
+    let motors: Vec<f64> = (0..machine.axes.len()).map(|number| motor(number) as f64).collect();
+    for (number, axis) in machine.axes.iter().enumerate() {
         let Some((at, [low, high])) = places.get(number).copied().flatten().zip(axis.travel) else {
             continue;
         };
-        let by: i64 = file.moves.iter().filter_map(|one| one.steps.get(number)).sum();
-        let to = at.saturating_add(by);
-        let is_out = to > high && by > 0 || to < low && by < 0;
+        let by = machine.letter_steps(number, &motors);
+        let to = at + by;
+        let is_out = to > high as f64 && by > 0.0 || to < low as f64 && by < 0.0;
         if is_out {
             return Err(beyond(axis, to, [low, high]));
         }
@@ -164,10 +173,10 @@ pub fn within_travel(file: &MoveFile, places: &[Option<i64>]) -> Result<(), Fail
     Ok(())
 }
 
-fn beyond(axis: &Axis, to: i64, travel: [i64; 2]) -> Failure {
+fn beyond(axis: &Axis, to: f64, travel: [i64; 2]) -> Failure {
     let (name, unit) = (&axis.name, &axis.unit.name);
-    let shown = |steps: i64| digits(steps as f64 / axis.unit.steps);
-    let [low, high] = travel.map(shown);
+    let shown = |steps: f64| digits(steps / axis.unit.steps);
+    let [low, high] = travel.map(|steps| shown(steps as f64));
     let to = shown(to);
     Failure::input(format!(
         "{name} would go to {to} {unit}, beyond its travel of {low} to {high} {unit}"

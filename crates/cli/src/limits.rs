@@ -5,6 +5,7 @@
 //! cannot know at which end the axis stands. The command therefore reads the switches first, and
 //! remembers in which direction an axis has met its limit.
 
+use crate::belt_ways::EITHER;
 use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::failure::Failure;
 use carrystep_core::engine::LimitWiring;
@@ -34,9 +35,9 @@ impl ClosedLimits {
         (self.low | self.high) >> axis & 1 == 1
     }
 
-    /// The first axis that would move toward a closed switch in a motion that begins with these
+    /// The first axis whose letter would move toward a closed switch in a motion that begins with these
     /// directions, 1, -1 or 0 for each axis. `met` are the directions in which the axes have met
-    /// limits whose switches are still closed, as far as they are known.
+    /// limits whose switches are still closed, as far as they are known; [`EITHER`] is one or the other.
     pub fn blocked(
         self,
         wiring: LimitWiring,
@@ -58,8 +59,9 @@ impl ClosedLimits {
                 }
                 LimitWiring::Each | LimitWiring::One => met[axis],
             };
-            if toward.is_none_or(|toward| toward == direction) {
-                return Some(Blocked { axis, direction, is_known: toward.is_some() });
+            let is_known = toward.is_some_and(|toward| toward != EITHER);
+            if !is_known || toward == Some(direction) {
+                return Some(Blocked { axis, direction, is_known });
             }
         }
         None

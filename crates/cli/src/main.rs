@@ -2,6 +2,7 @@
 //! reports; the logic is in those crates.
 
 mod arguments;
+mod belt_ways;
 mod bitstream;
 mod capture;
 mod colour;

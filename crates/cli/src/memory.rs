@@ -118,7 +118,8 @@ impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
     /// discarded. No session may be open; an error of the line counts as a change.
     pub fn recall(connection: &mut Connection) -> Self {
-        let Connection { board, axes, steps_per_unit, limit_freezes, port, .. } = connection;
+        let Connection { board, axes, steps_per_unit, registers, limit_freezes, port, .. } =
+            connection;
         let build = format!("{:016x}", board.facts().build);
         let (port, path) = file_of(port, &build);
         let Status { answer, positions } = *board.status();
@@ -153,10 +154,13 @@ impl BoardMemory {
                 }
             }
         }
-        for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit.iter()) {
-            // A coordinate in steps is meaningless if the size of a step has changed.
-            if axis.steps_per_unit.to_bits() != steps.to_bits() {
-                *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
+        let known = steps_per_unit.iter().zip(registers.iter());
+        for (axis, (&steps, registers)) in record.axes.iter_mut().zip(known) {
+            // A coordinate in steps is meaningless if the size of a step has changed, or the motors
+            // that move the letter.
+            if axis.steps_per_unit.to_bits() != steps.to_bits() || axis.registers != *registers {
+                let registers = registers.clone();
+                *axis = AxisRecord { steps_per_unit: steps, registers, ..AxisRecord::default() };
             }
         }
         let limit_freezes = record.limit_freezes.unwrap_or(true);
@@ -200,16 +204,44 @@ impl BoardMemory {
         self.write(board)
     }
 
-    /// The machine coordinate of an axis' register zero, in steps; `None` if the axis is not homed.
-    pub fn offset(&self, axis: usize) -> Option<i64> {
-        self.record.axes.get(axis)?.offset
+    /// Whether an axis is homed.
+    pub fn is_homed(&self, axis: usize) -> bool {
+        self.record.axes.get(axis).is_some_and(|axis| axis.offset.is_some())
     }
 
-    /// The machine coordinate in units of the axis for a position of its register; `None` if the
-    /// axis is not homed.
-    pub fn coordinate(&self, axis: usize, position: i32) -> Option<f64> {
-        let AxisRecord { steps_per_unit, offset, .. } = self.record.axes.get(axis)?;
-        Some((i64::from(position) + (*offset)?) as f64 / steps_per_unit)
+    /// The machine place of an axis' letter in steps for these positions of all registers: on crossed
+    /// belts whole halves of a step. `None` if the axis is not homed.
+    pub fn place(&self, axis: usize, positions: &[i32]) -> Option<f64> {
+        let AxisRecord { registers, offset, .. } = self.record.axes.get(axis)?;
+        let offset = (*offset)?;
+        if registers.is_empty() {
+            return Some((i64::from(*positions.get(axis)?) + offset) as f64);
+        }
+        let parts = registers.iter().zip(positions);
+        let sum: i64 = parts.map(|(&way, &at)| i64::from(way) * i64::from(at)).sum();
+        Some((sum + offset) as f64 / 2.0)
+    }
+
+    /// The machine coordinate in units of the axis for these positions of all registers; `None` if
+    /// the axis is not homed.
+    pub fn coordinate(&self, axis: usize, positions: &[i32]) -> Option<f64> {
+        let AxisRecord { steps_per_unit, .. } = self.record.axes.get(axis)?;
+        Some(self.place(axis, positions)? / steps_per_unit)
+    }
+
+    /// Makes the offsets of letters with common registers fit: these are whole steps, so the sum of
+    /// both places in half steps is even. The offset of `axis` changes by half a step at most.
+    pub fn fit_offset(&mut self, axis: usize) {
+        let axes = &mut self.record.axes;
+        let Some(own) = axes.get(axis).filter(|own| !own.registers.is_empty()) else { return };
+        let common = |(number, other): (usize, &AxisRecord)| {
+            let shares = own.registers.iter().zip(&other.registers).any(|(a, b)| a * b != 0);
+            other.offset.filter(|_| number != axis && shares)
+        };
+        let other = axes.iter().enumerate().find_map(common);
+        if let (Some(other), Some(own)) = (other, &mut axes[axis].offset) {
+            *own += (*own + other).rem_euclid(2);
+        }
     }
 
     /// The direction, 1 or -1, in which an axis has met a limit whose switch is still closed.
@@ -222,7 +254,8 @@ impl BoardMemory {
         self.record.axes.iter().map(|axis| axis.limit).collect()
     }
 
-    /// Sets the machine coordinate of an axis' register zero, in steps; `None` means not homed.
+    /// Sets the machine coordinate of the zero of an axis' registers, in steps, on crossed belts in half
+    /// steps; `None` means not homed.
     pub fn set_offset(&mut self, axis: usize, offset: Option<i64>) {
         self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.offset = offset);
     }

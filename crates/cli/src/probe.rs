@@ -56,13 +56,13 @@ impl ProbeWish {
     }
 
     /// The move back behind the touch, if there is one: `touched`, `began` and `rests` are
-    /// positions of the axis in steps.
-    pub fn back(&self, axis: &Axis, (touched, began, rests): (f64, i32, i32)) -> Option<JogWish> {
+    /// places of the axis' letter in steps.
+    pub fn back(&self, axis: &Axis, [touched, began, rests]: [f64; 3]) -> Option<JogWish> {
         let scale = decimal::to_f64(&axis.steps_per_unit);
         let way = self.retract? * scale * self.distance.signum();
-        let (to, began) = (touched - way, f64::from(began));
+        let to = touched - way;
         let to = if self.distance > 0.0 { to.max(began) } else { to.min(began) };
-        let steps = (to - f64::from(rests)).round();
+        let steps = (to - rests).round();
         let distances = vec![(self.axis.clone(), steps / scale)];
         (steps != 0.0).then(|| JogWish { feed: None, distances, ..self.way() })
     }

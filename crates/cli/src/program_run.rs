@@ -234,11 +234,12 @@ pub fn run(
 /// What the checker compares the pulses with, but for the end of the job.
 pub fn setup(file: &ProgramFile, origin_ps: u64) -> PathSetup<'_> {
     let letters = file.letters();
-    let axes = file.machine().axes.iter().zip(letters.of_axes()).zip(file.start_steps());
-    let axes = axes.map(|((axis, &letter), start_steps)| PathAxis {
+    let of_axes = letters.of_axes().iter().zip(letters.moves());
+    let axes = file.machine().axes.iter().zip(of_axes).zip(file.start_steps());
+    let axes = axes.map(|((axis, (&letter, &moves)), start_steps)| PathAxis {
         name: &axis.name,
         letter,
-        step: letters.step()[letter],
+        moves,
         start_steps,
         steps: 0,
         pins_ns: axis.pins_ns,

@@ -3,6 +3,7 @@
 use crate::entry::EntryFigures;
 use crate::table::columns;
 use carrystep_core::Timebase;
+use carrystep_files::machine::Kinematics;
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Unit, decimal};
 use carrystep_program::{AxisSurvey, ProgramFile, Survey, unit};
@@ -30,6 +31,8 @@ pub struct ProgramFigures {
     pub runs: u64,
     /// Segments of each axis; all axes have segments of the same ticks.
     pub rows: u64,
+    /// How the motors follow from the letters: `cartesian` or `corexy`.
+    pub kinematics: &'static str,
     /// Whole ticks of the job, rests included; waiting for people is not.
     pub total_ticks: u64,
     /// The same in seconds.
@@ -88,11 +91,13 @@ pub struct ProgramAxis {
     pub end_steps: i64,
     /// P at the end minus P at the start, in 2^-64 step: exactly 0.
     pub residue: i128,
-    /// Least machine place at the ends of segments, in the axis' unit.
+    /// Least machine place at the ends of segments, in the axis' unit: that of its letter, where
+    /// crossed belts move two letters.
     pub least: f64,
-    /// Greatest machine place at the ends of segments.
+    /// Greatest machine place at the ends of segments, as the least one.
     pub greatest: f64,
-    /// Travel in the axis' unit, if the machine file gives one; no job leaves it.
+    /// Travel in the axis' unit, if the machine file gives one; no job leaves it. It is that of the
+    /// letter.
     pub travel: Option<[f64; 2]>,
     pub speed_steps_per_s: f64,
     pub speed_limit_steps_per_s: f64,
@@ -121,6 +126,7 @@ impl ProgramFigures {
             arcs: counts.arcs,
             runs: counts.runs,
             rows: *rows,
+            kinematics: machine.kinematics.name(),
             total_ticks: *ticks,
             total_s: *ticks as f64 * machine.timebase.tick_seconds(),
             tick_ns: machine.timebase.tick_ns(),
@@ -161,8 +167,7 @@ impl ProgramFigures {
 
 impl ProgramAxis {
     fn new(axis: &Axis, planned: &AxisSurvey, unit: &str, timebase: &Timebase) -> Self {
-        let place =
-            |units: i128| (planned.start_steps as f64 + units as f64 / STEP) / axis.unit.steps;
+        let place = |units: i128| units as f64 / STEP / axis.unit.steps;
         let acceleration = decimal::to_f64(&axis.accel_limit);
         let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
         Self {
@@ -242,6 +247,13 @@ impl fmt::Display for ProgramFigures {
             f,
             "greatest values, and the limits that they keep to; end in steps, residue in 2^-64 step"
         )?;
+        if self.kinematics == Kinematics::CoreXy.name() {
+            writeln!(
+                f,
+                "crossed belts: from and to are those of x and y; all else of their rows is of the motors, \
+                 which make x + y and x - y"
+            )?;
+        }
         if let Some(axes) = self.named(|axis| axis.jerk_limit_is_default) {
             writeln!(f, "no jerk_limit for {axes}: it is accel_limit / 4 ms")?;
         }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::OutputFile;
 use crate::program_table::JERK_TIME;
-use carrystep_files::{Axis, Machine, decimal};
+use carrystep_files::{Machine, decimal};
 use carrystep_plan::PlannedMove;
 use carrystep_program::{ProgramError, ProgramFile, Row, Survey, SurveyedRows};
 use carrystep_report::{
@@ -44,8 +44,7 @@ impl MoveRecorder {
         let axes = machine.axes.iter().enumerate().map(|(number, axis)| {
             let linear = axis.unit.name == machine.axes[0].unit.name;
             let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
-            let counts = machine.leader(number) == number;
-            AxisSetup { counts, ..setup(axis, 0.0, linear, jerk) }
+            AxisSetup { linear, ..setup(machine, number, 0.0, jerk) }
         });
         let tick_seconds = machine.timebase.tick_seconds();
         Self { recorder: Recorder::new(axes.collect(), tick_seconds, false, detail), moves: 0 }
@@ -110,16 +109,15 @@ impl Iterator for RecordedRows {
 /// A recorder for the rows of a program.
 fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
     let machine = file.machine();
+    let starts = file.steps(&file.settings().start);
     let axes = machine.axes.iter().zip(file.letters().of_axes()).enumerate();
     let axes = axes.map(|(number, (axis, &letter))| {
         let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
         let jerk = jerk.unwrap_or_else(|| decimal::to_f64(&axis.accel_limit) / JERK_TIME);
-        let step = file.letters().step()[letter];
-        let start = (file.settings().start[letter] / step).round() * step;
+        let start = starts[number] as f64 / axis.unit.steps;
         let unit = carrystep_program::unit(letter);
         let linear = unit == "mm";
-        let counts = machine.leader(number) == number;
-        AxisSetup { unit: unit.to_owned(), counts, ..setup(axis, start, linear, Some(jerk)) }
+        AxisSetup { unit: unit.to_owned(), linear, ..setup(machine, number, start, Some(jerk)) }
     });
     Recorder::new(axes.collect(), machine.timebase.tick_seconds(), true, detail)
 }
@@ -131,9 +129,17 @@ fn motion(row: &Row) -> Motion<'_> {
     Motion { ticks, segments, line, feed, given: false, off, corner }
 }
 
-/// An axis, with its jerk limit in steps/s^3.
-fn setup(axis: &Axis, start: f64, linear: bool, jerk: Option<f64>) -> AxisSetup {
+/// The axis of this number, with its jerk limit in steps/s^3.
+fn setup(machine: &Machine, number: usize, start: f64, jerk: Option<f64>) -> AxisSetup {
+    let axis = &machine.axes[number];
     let steps = axis.unit.steps;
+    let one = |motor: usize| {
+        let mut motors = vec![0.0; machine.axes.len()];
+        motors[motor] = 1.0;
+        (motor, machine.letter_steps(number, &motors))
+    };
+    let leads = machine.leader(number) == number;
+    let name = &axis.name;
     let limit = |limit| Some(decimal::to_f64(limit) / steps);
     AxisSetup {
         name: axis.name.clone(),
@@ -141,8 +147,13 @@ fn setup(axis: &Axis, start: f64, linear: bool, jerk: Option<f64>) -> AxisSetup 
         steps_per_unit: steps,
         start,
         limits: [limit(&axis.speed_limit), limit(&axis.accel_limit), jerk.map(|jerk| jerk / steps)],
-        linear,
-        counts: true,
+        linear: true,
+        counts: if leads { machine.step_of_tool(number) } else { 0.0 },
+        letter: machine.leaders().into_iter().map(one).filter(|(_, part)| *part != 0.0).collect(),
+        title: match machine.belt(number) {
+            Some(belt) => format!("motor {name}: {belt}"),
+            None => format!("axis {name}"),
+        },
     }
 }
 

@@ -29,7 +29,7 @@ enum End {
     Plate,
 }
 
-/// A limit switch or a plate at a position, in steps.
+/// A limit switch or a plate at a place of an axis' letter, in steps.
 #[derive(Debug, Clone, Copy)]
 struct Limit {
     axis: usize,
@@ -40,6 +40,7 @@ struct Limit {
 /// All switches of a board.
 #[derive(Debug)]
 pub struct SwitchPanel {
+    machine: Machine,
     limits: Vec<Limit>,
     axes: Vec<String>,
     /// The switches that the user has pressed.
@@ -100,6 +101,7 @@ impl SwitchPanel {
             }
         }
         Ok(Self {
+            machine: machine.clone(),
             limits,
             axes,
             hand: Switches::default(),
@@ -108,7 +110,8 @@ impl SwitchPanel {
         })
     }
 
-    /// Reads pending commands and returns the state of the inputs for these positions (steps).
+    /// Reads pending commands and returns the state of the inputs for these positions of the motors
+    /// (steps).
     pub fn look(&mut self, position: impl Fn(usize) -> i32) -> Look {
         let (mut ends, mut unknown) = (false, Vec::new());
         while let Ok(line) = self.lines.try_recv() {
@@ -120,12 +123,20 @@ impl SwitchPanel {
             }
         }
         let mut switches = self.hand;
+        let motors: Vec<f64> =
+            (0..self.axes.len()).map(|motor| f64::from(position(motor))).collect();
         for limit in &self.limits {
             let bit = 1 << limit.axis;
+            // Each motor of a gantry has a switch of its own.
+            let place = match self.machine.is_crossed(limit.axis) {
+                true => self.machine.letter_steps(limit.axis, &motors),
+                false => motors[limit.axis],
+            };
+            let steps = f64::from(limit.steps);
             match limit.end {
-                End::Min if position(limit.axis) <= limit.steps => switches.limit_min |= bit,
-                End::Max if position(limit.axis) >= limit.steps => switches.limit_max |= bit,
-                End::Plate if position(limit.axis) <= limit.steps => switches.touch_probe(true),
+                End::Min if place <= steps => switches.limit_min |= bit,
+                End::Max if place >= steps => switches.limit_max |= bit,
+                End::Plate if place <= steps => switches.touch_probe(true),
                 End::Min | End::Max | End::Plate => {}
             }
         }

@@ -29,6 +29,7 @@ mod gantry;
 mod guard;
 mod home;
 mod inputs;
+mod kinematics;
 mod link;
 mod outputs;
 mod queue;
@@ -36,6 +37,7 @@ mod stop;
 mod units;
 
 pub use home::{End, Home, overrun};
+pub use kinematics::Kinematics;
 
 /// A machine whose values have all been checked.
 #[derive(Debug, Clone)]
@@ -46,6 +48,8 @@ pub struct Machine {
     pub chosen_tick: Option<ChosenTick>,
     /// Phase of a step in which moves start.
     pub phase: StartPhase,
+    /// How the motors follow from the letters.
+    pub kinematics: Kinematics,
     /// The axes, one to eight.
     pub axes: Vec<Axis>,
     /// Settings of the engine's guard.
@@ -248,6 +252,7 @@ pub(crate) struct RawMachine {
     phases: Option<Spanned<u32>>,
     #[serde(default)]
     phase: StartPhase,
+    kinematics: Option<Spanned<Kinematics>>,
     #[serde(default)]
     guard: RawGuard,
     #[serde(default)]
@@ -303,18 +308,30 @@ impl RawMachine {
             axes.push(axis);
         }
         gantry::unite(source, &timebase, &mut axes, &motors)?;
+        let crossed = self.kinematics.filter(|named| *named.as_ref() == Kinematics::CoreXy);
+        let crossed = crossed.map(|named| named.span());
+        if let Some(place) = crossed.clone() {
+            let names: Vec<_> = motors.iter().map(|motor| motor.name.clone()).collect();
+            kinematics::cross(source, &timebase, &mut axes, place, &names)?;
+        }
         let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
         let inputs = self.inputs.check(source, &names, self.guard.limits())?;
         let stop = axes.iter().map(|axis| axis.stop).collect();
         let guard = self.guard.check(source, &timebase, inputs, stop)?;
+        let home = |place: &RawPlace| place.home.as_ref().map(Spanned::span);
+        let homes: Vec<_> = places.iter().map(home).collect();
         let home_order =
             home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
+        if let Some(place) = crossed.clone() {
+            kinematics::check_switches(source, &axes, guard.limits, place, &homes)?;
+        }
         let outputs = self.outputs.check(source)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
         Ok(Machine {
             timebase,
             chosen_tick,
             phase: self.phase,
+            kinematics: if crossed.is_some() { Kinematics::CoreXy } else { Kinematics::Cartesian },
             axes,
             guard,
             outputs,

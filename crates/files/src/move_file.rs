@@ -228,16 +228,19 @@ impl RawMoveFile {
 /// Where the axes stand after the moves that have been checked.
 #[derive(Debug)]
 pub(crate) struct Targets {
-    /// Exactly, in units of the axis.
+    /// The letters, exactly, in units of the axis: those of the first motor of each letter.
+    letters: Vec<BigDecimal>,
+    /// The motors, exactly, in units.
     exact: Vec<BigDecimal>,
-    /// Rounded to steps.
+    /// The motors, rounded to steps.
     steps: Vec<i64>,
 }
 
 impl Targets {
     pub(crate) fn new(machine: &Machine) -> Self {
         let axes = machine.axes.len();
-        Self { exact: vec![BigDecimal::zero(); axes], steps: vec![0; axes] }
+        let zero = vec![BigDecimal::zero(); axes];
+        Self { letters: zero.clone(), exact: zero, steps: vec![0; axes] }
     }
 
     /// Checks the next move.
@@ -263,23 +266,31 @@ impl Targets {
                 return Err(InputError::at(source, profile.span(), message)
                     .help("give the axis a jerk_limit in units/s^3, or take another profile"));
             }
-            self.exact[axis] += exact(source, distance, name.as_ref())?;
-            let target = &self.exact[axis] * &machine.axes[axis].steps_per_unit;
-            self.steps[axis] = register(&target).ok_or_else(|| {
-                let unit = &machine.axes[axis].unit;
-                let at = unit.both(decimal::to_f64(&target), 0);
-                let message =
-                    format!("axis '{}' would stand at {at}, beyond its register", name.as_ref());
-                let most = unit.at_most(i32::MAX.into(), 0);
-                InputError::at(source, distance.span(), message)
-                    .help(format!("the sum of all moves must stay within +-{most} of the start"))
-            })?;
+            self.letters[axis] += exact(source, distance, name.as_ref())?;
         }
-        // The other motors of a letter make the same steps.
-        for motor in 0..self.steps.len() {
-            let leader = machine.leader(motor);
-            self.steps[motor] = self.steps[leader];
-            self.exact[motor] = self.exact[leader].clone();
+        let leaders = machine.leaders();
+        for (name, distance) in &to {
+            let Some(letter) = machine.letter_index(name.as_ref()) else { continue };
+            // All motors of a letter, and both motors of crossed belts.
+            let moves = |motor: &usize| machine.coefficient(*motor, letter) != 0;
+            for motor in (0..self.steps.len()).filter(moves) {
+                let part = |&leader: &usize| {
+                    &self.letters[leader] * BigDecimal::from(machine.coefficient(motor, leader))
+                };
+                let turns: BigDecimal = leaders.iter().map(part).sum();
+                let axis = &machine.axes[motor];
+                let target = &turns * &axis.steps_per_unit;
+                self.exact[motor] = turns;
+                self.steps[motor] = register(&target).ok_or_else(|| {
+                    let at = axis.unit.both(decimal::to_f64(&target), 0);
+                    let message =
+                        format!("axis '{}' would stand at {at}, beyond its register", axis.name);
+                    let most = axis.unit.at_most(i32::MAX.into(), 0);
+                    InputError::at(source, distance.span(), message).help(format!(
+                        "the sum of all moves must stay within +-{most} of the start"
+                    ))
+                })?;
+            }
         }
         let rounding = self.exact.iter().zip(&machine.axes).zip(&self.steps);
         let rounding = rounding.map(|((target, axis), &steps)| {

@@ -5,7 +5,6 @@ use crate::confined::Confined;
 use crate::element::{Arc, Element, Item};
 use crate::emitted::{Emitted, Passed};
 use crate::error::JobError;
-use crate::kinematics::Kinematics;
 use crate::limits::{Motors, of_machine};
 use crate::marks::{Mark, Marks};
 use crate::piece::Piece;
@@ -92,11 +91,10 @@ impl<const N: usize> Job<N> {
     /// A job of a machine with one axis for each letter, which stands for so many motors in all.
     pub fn new(
         (machine, motors): (&Machine, usize),
-        kinematics: &dyn Kinematics,
         linear: usize,
         start: &[f64],
     ) -> Result<Self, JobError> {
-        let targets = Targets::new(machine, kinematics)?;
+        let targets = Targets::new(machine)?;
         let tick_seconds = machine.timebase.tick_seconds();
         let (mut limits, exact) = of_machine(machine)?;
         let baud = if machine.spi { u32::MAX } else { machine.baud };

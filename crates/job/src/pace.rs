@@ -100,8 +100,8 @@ pub struct Paced {
 #[derive(Debug, Clone)]
 pub struct Pace {
     keep: Keep,
-    /// Of each motor, mm/s for a speed of one unit per tick; 0 for all but the first motor of a
-    /// letter; `None` for rotary ones.
+    /// Of each motor, mm/s of the tool for a speed of one unit per tick; 0 for all but the first motor
+    /// of a letter; `None` for rotary ones.
     linear: Vec<Option<f64>>,
     width: usize,
     window: u64,
@@ -125,7 +125,8 @@ impl Pace {
             let steps = axis.steps_per_unit.to_f64().filter(|steps| *steps > 0.0)?;
             let is_linear = matches!(&*axis.letter, "x" | "y" | "z");
             // The speed of a letter is that of its first motor.
-            let counts = f64::from(u8::from(machine.leader(motor) == motor));
+            let leads = machine.leader(motor) == motor;
+            let counts = if leads { machine.step_of_tool(motor) } else { 0.0 };
             is_linear.then_some(counts / (STEP * steps * tick_seconds))
         });
         let row = SHORTEST / tick_seconds;

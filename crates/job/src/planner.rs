@@ -6,7 +6,6 @@
 use crate::element::{Element, Item};
 use crate::error::JobError;
 use crate::job::{Job, Jobs};
-use crate::kinematics::Kinematics;
 use crate::rhythm::check_line;
 use crate::row::Row;
 use carrystep_files::Machine;
@@ -30,12 +29,7 @@ impl Planner {
     /// # Errors
     /// [`JobError::Axes`], [`JobError::SlowLine`], [`JobError::Coordinates`] and
     /// [`JobError::Number`], all with line 0.
-    pub fn new(
-        machine: &Machine,
-        kinematics: &dyn Kinematics,
-        linear: usize,
-        start: &[f64],
-    ) -> Result<Self, JobError> {
+    pub fn new(machine: &Machine, linear: usize, start: &[f64]) -> Result<Self, JobError> {
         let motors = machine.axes.len();
         let (leaders, letters) = (machine.leaders(), machine.letter_numbers());
         // The other motors of a letter have the limits of the first one.
@@ -45,12 +39,12 @@ impl Planner {
         // What the line has to carry is the segments of all motors.
         let machine = (&planned, motors);
         let job: Box<dyn Jobs> = match leaders.len() {
-            1 => Box::new(Job::<1>::new(machine, kinematics, linear, start)?),
-            2 => Box::new(Job::<2>::new(machine, kinematics, linear, start)?),
-            3 => Box::new(Job::<3>::new(machine, kinematics, linear, start)?),
-            4 => Box::new(Job::<4>::new(machine, kinematics, linear, start)?),
-            5 => Box::new(Job::<5>::new(machine, kinematics, linear, start)?),
-            6 => Box::new(Job::<6>::new(machine, kinematics, linear, start)?),
+            1 => Box::new(Job::<1>::new(machine, linear, start)?),
+            2 => Box::new(Job::<2>::new(machine, linear, start)?),
+            3 => Box::new(Job::<3>::new(machine, linear, start)?),
+            4 => Box::new(Job::<4>::new(machine, linear, start)?),
+            5 => Box::new(Job::<5>::new(machine, linear, start)?),
+            6 => Box::new(Job::<6>::new(machine, linear, start)?),
             other => return Err(JobError::Axes(other)),
         };
         Ok(Self { job, letters, leaders, ended: false })

@@ -1,7 +1,6 @@
 //! Exact targets: letters to whole steps of the motors, and back.
 
 use crate::error::JobError;
-use crate::kinematics::Kinematics;
 use crate::vector::Point;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_files::Machine;
@@ -18,15 +17,16 @@ pub(crate) struct Targets<const N: usize> {
     /// Letters for motors, in units.
     inverse: [[f64; N]; N],
     exact: Vec<BigDecimal>,
-    /// The letter of each motor.
+    /// The letter of each motor, and the travel of that letter in steps of the motor.
     names: Vec<String>,
     travel: Vec<Option<[i64; 2]>>,
 }
 
 impl<const N: usize> Targets<N> {
-    pub fn new(machine: &Machine, kinematics: &dyn Kinematics) -> Result<Self, JobError> {
+    /// The targets of a machine with one axis for each letter.
+    pub fn new(machine: &Machine) -> Result<Self, JobError> {
         let coefficients: [[i32; N]; N] =
-            std::array::from_fn(|i| std::array::from_fn(|k| kinematics.coefficient(i, k)));
+            std::array::from_fn(|i| std::array::from_fn(|k| machine.coefficient(i, k).into()));
         let inverse = inverse(&coefficients.map(|row| row.map(f64::from)))
             .ok_or(JobError::Axes(machine.axes.len()))?;
         let mut steps_per_unit = [1.0; N];
@@ -79,7 +79,7 @@ impl<const N: usize> Targets<N> {
         std::array::from_fn(|k| (0..N).map(|i| self.inverse[k][i] * motors[i]).sum())
     }
 
-    /// Refuses a place beyond the register or beyond the travel of a motor.
+    /// Refuses a place beyond the register of a motor or beyond the travel of a letter.
     pub fn check(&self, letters: &Point<N>, line: u64) -> Result<(), JobError> {
         for (motor, coefficients) in self.coefficients.iter().enumerate() {
             let units: f64 = coefficients.iter().zip(letters).map(|(&c, x)| f64::from(c) * x).sum();
@@ -89,7 +89,7 @@ impl<const N: usize> Targets<N> {
                 return Err(JobError::Far { line, axis: axis() });
             }
             // Half a step is rounding.
-            let steps = steps.round() as i64;
+            let steps = (letters[motor] * self.steps_per_unit[motor]).round() as i64;
             if let Some([low, high]) = self.travel[motor]
                 && !(low..=high).contains(&steps)
             {

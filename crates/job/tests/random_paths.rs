@@ -5,9 +5,7 @@
 
 mod common;
 
-use carrystep_job::{
-    Arc, Cartesian, CoreXy, Element, Item, JobError, Kinematics, Planner, Tolerance, rows,
-};
+use carrystep_job::{Arc, Element, Item, JobError, Planner, Tolerance, rows};
 use common::follow::{deviation, within};
 use common::free_space::Programmed;
 use common::replay::Replay;
@@ -93,15 +91,31 @@ fn items(shapes: &[Shape], feed: f64, tolerance: f64) -> Vec<Item> {
     items
 }
 
-/// Plans the items and checks the rows; the letters follow from the motors by `letters`.
+/// The same machine with two crossed belts.
+fn crossed_text(speed: f64, acceleration: f64) -> String {
+    let crossed = "[machine]\nkinematics = \"corexy\"\nguard = { limits = \"none\" }\n";
+    machine_text(speed, acceleration, 0.0).replacen("[machine]\n", crossed, 1)
+}
+
+/// Sum and difference: the motors of crossed belts for places of the tool.
+fn motors_of_belts(place: &[f64]) -> Vec<f64> {
+    vec![place[0] + place[1], place[0] - place[1], place[2]]
+}
+
+fn letters_of_belts(motors: &[f64]) -> Vec<f64> {
+    vec![(motors[0] + motors[1]) / 2.0, (motors[0] - motors[1]) / 2.0, motors[2]]
+}
+
+/// Plans the items and checks the rows; the letters follow from the motors by `letters`, and the
+/// motors from the letters by `motors`.
 fn check(
     text: &str,
-    kinematics: &dyn Kinematics,
+    motors: impl Fn(&[f64]) -> Vec<f64>,
     letters: impl Fn(Vec<f64>) -> Vec<f64>,
     items: &[Item],
 ) {
     let machine = common::machine(text);
-    let planner = Planner::new(&machine, kinematics, 3, &[0.0; 3]).unwrap();
+    let planner = Planner::new(&machine, 3, &[0.0; 3]).unwrap();
     let mut replay = Replay::new(&machine);
     let (mut marks, mut all, mut last) = (Vec::new(), Vec::new(), false);
     for row in rows(planner, items.to_vec()) {
@@ -113,14 +127,9 @@ fn check(
         last = row.segments.iter().all(|s| s.last);
     }
     replay.assert_limits(&machine);
-    let turned: Vec<Vec<i32>> =
-        (0..3).map(|m| (0..3).map(|k| kinematics.coefficient(m, k)).collect()).collect();
     let landed = |place: &[f64]| {
-        let motors = turned.iter().zip([80.0, 80.0, 400.0]).map(|(row, steps): (_, f64)| {
-            let sum: f64 = row.iter().zip(place).map(|(c, x)| f64::from(*c) * x).sum();
-            (sum * steps).round() / steps
-        });
-        letters(motors.collect())
+        let whole = |(place, steps): (f64, f64)| (place * steps).round() / steps;
+        letters(motors(place).into_iter().zip([80.0, 80.0, 400.0]).map(whole).collect())
     };
     let path = Programmed::new(&[0.0; 3], items, 3, landed);
     if let Err(place) = within(&machine, &path, &all, 1.0, &letters) {
@@ -164,29 +173,34 @@ proptest! {
         acceleration in 100.0..5000.0_f64,
     ) {
         let items = items(&shapes, feed, tolerance);
-        check(&machine_text(speed, acceleration, 0.0), &Cartesian, |motors| motors, &items);
+        check(&machine_text(speed, acceleration, 0.0), <[f64]>::to_vec, |motors| motors, &items);
     }
 
     #[test]
     fn random_paths_keep_limits_and_land_on_crossed_belts(shapes in shapes(), feed in 1.0..150.0_f64) {
-        let letters = |m: Vec<f64>| vec![(m[0] + m[1]) / 2.0, (m[0] - m[1]) / 2.0, m[2]];
-        check(&machine_text(100.0, 1000.0, 0.0), &CoreXy, letters, &items(&shapes, feed, 0.01));
+        let items = items(&shapes, feed, 0.01);
+        check(&crossed_text(100.0, 1000.0), motors_of_belts, |motors| letters_of_belts(&motors), &items);
     }
 
     #[test]
     fn random_paths_keep_jerk_limits_and_land(shapes in shapes(), jerk in 4.0..6.5_f64) {
         let text = machine_text(100.0, 1000.0, 10_f64.powf(jerk));
-        check(&text, &Cartesian, |motors| motors, &items(&shapes, 100.0, 0.01));
+        check(&text, <[f64]>::to_vec, |motors| motors, &items(&shapes, 100.0, 0.01));
     }
 }
 
 #[test]
 fn a_smooth_path_is_planned_on_crossed_belts() {
-    let letters = |m: Vec<f64>| vec![(m[0] + m[1]) / 2.0, (m[0] - m[1]) / 2.0, m[2]];
     let to = |x: f64, y: f64| Shape::Line { size: 1.0, to: [x, y, 0.0] };
     let shapes =
         [to(20.0, 5.0), Shape::Mark, to(-3.0, 8.0), Shape::Rest { dwell: 0.02 }, to(1.0, 1.0)];
-    check(&machine_text(100.0, 1000.0, 0.0), &CoreXy, letters, &items(&shapes, 50.0, 0.01));
+    let items = items(&shapes, 50.0, 0.01);
+    check(
+        &crossed_text(100.0, 1000.0),
+        motors_of_belts,
+        |motors| letters_of_belts(&motors),
+        &items,
+    );
 }
 
 #[test]
@@ -201,7 +215,7 @@ fn bad_elements_are_refused_with_their_line() {
         block: 0,
     };
     let refused = |element: Element| {
-        let mut planner = Planner::new(&machine, &Cartesian, 3, &[0.0; 3]).unwrap();
+        let mut planner = Planner::new(&machine, 3, &[0.0; 3]).unwrap();
         planner.push(&Item::Move(element)).unwrap_err()
     };
     let arc = |centre, angle| Some(Arc { plane: [0, 1], centre, angle });
@@ -236,7 +250,7 @@ fn bad_elements_are_refused_with_their_line() {
         refused(Element { arc: arc([0.5, 0.0], 0.0), ..good.clone() }),
         JobError::Arc { line: 7 }
     ));
-    let mut planner = Planner::new(&machine, &Cartesian, 3, &[0.0; 3]).unwrap();
+    let mut planner = Planner::new(&machine, 3, &[0.0; 3]).unwrap();
     planner.finish().unwrap();
     assert_eq!(planner.push(&Item::Move(good)), Err(JobError::Ended));
     assert_eq!(planner.next_row(), Ok(None));

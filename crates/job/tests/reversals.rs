@@ -5,7 +5,7 @@
 
 mod common;
 
-use carrystep_job::{Cartesian, Element, Item, Planner, Row, Tolerance, rows};
+use carrystep_job::{Element, Item, Planner, Row, Tolerance, rows};
 
 /// DIR set-up and hold of the driver, ticks.
 const QUIET: i64 = 20;
@@ -17,7 +17,7 @@ const MACHINE: &str = "[machine]\nclock_hz = 80_000_000\ntick_ns = 1000\n\
 /// The rows of a way to `x` and back.
 fn planned(x: f64) -> Vec<Row> {
     let machine = common::machine(MACHINE);
-    let planner = Planner::new(&machine, &Cartesian, 1, &[0.0]).unwrap();
+    let planner = Planner::new(&machine, 1, &[0.0]).unwrap();
     let to = |x: f64| {
         Item::Move(Element {
             to: vec![x],

@@ -7,7 +7,7 @@ use crate::letters::Letters;
 use crate::row_outputs::RowOutputs;
 use bigdecimal::BigDecimal;
 use carrystep_files::unit::digits;
-use carrystep_files::{InputError, Machine, decimal};
+use carrystep_files::{Axis, InputError, Machine, decimal};
 use carrystep_gcode::{DEFAULT_BLOCKS, Offsets, Point};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -185,15 +185,19 @@ impl ProgramFile {
         self.entry.as_ref()
     }
 
-    /// The steps of each axis at a place, rounded half away from zero in exact decimals.
+    /// The steps of each motor at a place, rounded half away from zero in exact decimals.
     pub fn steps(&self, place: &Point) -> Vec<i64> {
-        let axes = self.machine.axes.iter().zip(self.letters.of_axes());
-        axes.map(|(axis, &letter)| {
-            let exact =
-                BigDecimal::try_from(place[letter]).unwrap_or_default() * &axis.steps_per_unit;
-            decimal::round_half_away(&exact).unwrap_or(i64::MAX)
-        })
-        .collect()
+        let steps = |(motor, axis): (usize, &Axis)| {
+            let part = |&letter: &usize| {
+                let leader = self.letters.axis(letter)?;
+                let coefficient = self.machine.coefficient(motor, leader);
+                let exact = BigDecimal::try_from(place[letter]).ok()?;
+                (coefficient != 0).then(|| exact * BigDecimal::from(coefficient))
+            };
+            let sum: BigDecimal = self.letters.all().iter().filter_map(part).sum();
+            decimal::round_half_away(&(sum * &axis.steps_per_unit)).unwrap_or(i64::MAX)
+        };
+        self.machine.axes.iter().enumerate().map(steps).collect()
     }
 
     /// The machine place where the program begins, or where it was resumed last.

@@ -15,6 +15,9 @@ pub struct Letters {
     planned: Vec<usize>,
     /// The first motor of each letter.
     axis_of: [Option<usize>; AXES],
+    /// How far a step of each motor moves the tool: x, y, z in mm, a, b, c in degrees. Of several
+    /// motors of a letter, the first one moves it, and the others move nothing.
+    moves: Vec<Point>,
     /// One step of each letter, mm or degrees; 0 for letters without an axis.
     step: Point,
 }
@@ -34,6 +37,7 @@ impl Letters {
             of_axis: Vec::new(),
             planned: Vec::new(),
             axis_of: [None; AXES],
+            moves: Vec::new(),
             step: [0.0; AXES],
         };
         for (number, axis) in machine.axes.iter().enumerate() {
@@ -54,9 +58,31 @@ impl Letters {
             }
             letters.planned.push(letter);
             letters.axis_of[letter] = Some(number);
-            letters.step[letter] = 1.0 / decimal::to_f64(&axis.steps_per_unit);
+        }
+        for motor in 0..machine.axes.len() {
+            letters.moves.push(letters.moves_of(machine, motor));
+        }
+        for (letter, step) in letters.step.iter_mut().enumerate() {
+            // Letters that share motors have a part of a step of each of them.
+            *step = letters.moves.iter().fold(0.0, |sum: f64, moves| sum.hypot(moves[letter]));
         }
         Ok(letters)
+    }
+
+    /// How far a step of a motor moves the tool.
+    fn moves_of(&self, machine: &Machine, motor: usize) -> Point {
+        let mut moves = Point::default();
+        if machine.leader(motor) != motor {
+            return moves;
+        }
+        let mut one = vec![0.0; machine.axes.len()];
+        one[motor] = 1.0;
+        for &letter in &self.planned {
+            let Some(axis) = self.axis(letter) else { continue };
+            let step = 1.0 / decimal::to_f64(&machine.axes[axis].steps_per_unit);
+            moves[letter] = machine.letter_steps(axis, &one) * step;
+        }
+        moves
     }
 
     /// The letter of each motor, in the order of the machine file, as an index of a [`Point`].
@@ -83,14 +109,22 @@ impl Letters {
     /// at one place: the first one says which.
     pub fn place(&self, steps: &[f64]) -> Point {
         let mut at = Point::default();
-        for &letter in &self.planned {
-            let motor = self.axis(letter).and_then(|motor| steps.get(motor));
-            at[letter] = motor.copied().unwrap_or_default() * self.step[letter];
+        for (moves, steps) in self.moves.iter().zip(steps) {
+            for &letter in &self.planned {
+                at[letter] += moves[letter] * steps;
+            }
         }
         at
     }
 
-    /// One step of each letter, mm or degrees; 0 for letters without an axis.
+    /// How far a step of each motor moves the tool, in the order of the machine file: x, y, z in mm,
+    /// a, b, c in degrees. Of several motors of a letter, all but the first one move nothing.
+    pub fn moves(&self) -> &[Point] {
+        &self.moves
+    }
+
+    /// One step of each letter, mm or degrees; 0 for letters without an axis. On crossed belts a step
+    /// of either motor moves the tool by so much, along a diagonal.
     pub fn step(&self) -> &Point {
         &self.step
     }

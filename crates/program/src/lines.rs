@@ -9,7 +9,7 @@ use crate::switch::Switch;
 use crate::translate::Translator;
 use carrystep_files::Machine;
 use carrystep_gcode::{GcodeError, LineInterpreter, Offsets, Options, Point, Step, Turn};
-use carrystep_job::{Cartesian, Item, JobError, Planner};
+use carrystep_job::{Item, JobError, Planner};
 use thiserror::Error;
 
 /// The name of the lines in errors.
@@ -242,5 +242,5 @@ impl Lines {
 }
 
 fn planner(machine: &Machine, letters: &Letters, from: &[f64]) -> Result<Planner, Fault> {
-    Planner::new(machine, &Cartesian, letters.linear(), from).map_err(Fault::Plan)
+    Planner::new(machine, letters.linear(), from).map_err(Fault::Plan)
 }

@@ -9,7 +9,7 @@ use crate::items::Items;
 use crate::switch::Switch;
 use carrystep_files::Machine;
 use carrystep_gcode::{Offsets, Point};
-use carrystep_job::{Cartesian, JobError, Planner, Row};
+use carrystep_job::{JobError, Planner, Row};
 use std::path::PathBuf;
 
 /// The rows of a program. After an error there are no more. A program without any row is an error,
@@ -48,7 +48,7 @@ impl Rows {
         let (machine, letters) = (file.machine().clone(), file.letters().clone());
         let start = letters.coordinates(file.begins());
         let skips = file.settings().resumed.last().map_or(0, |resumed| resumed.number);
-        let planner = Planner::new(&machine, &Cartesian, letters.linear(), &start)
+        let planner = Planner::new(&machine, letters.linear(), &start)
             .map_err(|error| ProgramError::of_planner(file.path(), &machine, error))?;
         Ok(Self {
             events: Events::new(file)?,

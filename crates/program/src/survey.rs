@@ -36,7 +36,7 @@ pub struct AxisSurvey {
     pub end_steps: i64,
     /// Distance of all segments, 2^-64 step.
     pub distance: i128,
-    /// Least and greatest distance from the start at the ends of rows, 2^-64 step.
+    /// Least and greatest machine place of the axis' letter at the ends of rows, 2^-64 step.
     pub extent: [i128; 2],
     /// Greatest speed, acceleration and jerk.
     pub peaks: Peaks,
@@ -56,8 +56,11 @@ impl AxisSurvey {
             start_speed: 0,
         });
         self.distance += travel(segment, segment.ticks.into());
-        let [least, most] = self.extent;
-        self.extent = [least.min(self.distance), most.max(self.distance)];
+    }
+
+    /// The machine place of the motor where the last row ends, 2^-64 step.
+    fn place(&self) -> i128 {
+        (i128::from(self.start_steps) << 64) + self.distance
     }
 
     /// Steps from the start to the end of the program.
@@ -79,6 +82,9 @@ pub struct SurveyedRows {
     ticks: u64,
     count: u64,
     axes: Vec<AxisSurvey>,
+    /// For each axis, the motors that its letter is a sum of, each with its sign: their mean is its
+    /// place.
+    letters: Vec<Vec<(usize, i128)>>,
 }
 
 impl SurveyedRows {
@@ -91,16 +97,35 @@ impl SurveyedRows {
             start_steps,
             end_steps: start_steps,
             distance: 0,
-            extent: [0, 0],
+            extent: [i128::MAX, i128::MIN],
             peaks: Peaks::default(),
         };
         let axes = file.start_steps().into_iter().map(axis).collect();
-        Ok(Self { rows: Rows::new(file)?, ticks: 0, count: 0, axes })
+        let machine = file.machine();
+        let letter = |axis: usize| {
+            let sign = |motor: usize| (motor, machine.coefficient(motor, axis).into());
+            machine.leaders().into_iter().map(sign).filter(|(_, sign)| *sign != 0).collect()
+        };
+        let letters = (0..machine.axes.len()).map(letter).collect();
+        let mut this = Self { rows: Rows::new(file)?, ticks: 0, count: 0, axes, letters };
+        this.reach();
+        Ok(this)
+    }
+
+    /// Notes the places of the letters.
+    fn reach(&mut self) {
+        for (axis, motors) in self.letters.iter().enumerate() {
+            let sum: i128 =
+                motors.iter().map(|&(motor, sign)| sign * self.axes[motor].place()).sum();
+            let place = sum / motors.len() as i128;
+            let [least, most] = self.axes[axis].extent;
+            self.axes[axis].extent = [least.min(place), most.max(place)];
+        }
     }
 
     /// The survey of the rows that have passed; after the last one, of the program.
     pub fn finish(self, file: &ProgramFile) -> Survey {
-        let Self { rows, ticks, count, mut axes } = self;
+        let Self { rows, ticks, count, mut axes, .. } = self;
         for (axis, end_steps) in axes.iter_mut().zip(file.steps(rows.end())) {
             axis.end_steps = end_steps;
         }
@@ -121,6 +146,7 @@ impl Iterator for SurveyedRows {
             for (axis, segment) in self.axes.iter_mut().zip(&row.segments) {
                 axis.add(segment);
             }
+            self.reach();
         }
         Some(row)
     }

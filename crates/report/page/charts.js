@@ -167,7 +167,7 @@ function setUpCharts() {
   strip(stripe);
   drawing.axes.forEach((axis, k) => {
     const trio = make("div", null, "trio");
-    box.append(make("h3", `axis ${axis.name}`), trio);
+    box.append(make("h3", axis.title), trio);
     const kinds = [
       ["speed", "speed", "/s"],
       ["acceleration", "acceleration", "/s\u00b2"],

@@ -19,7 +19,15 @@ pub struct AxisSetup {
     /// Whether the feed counts its speed: true for the axes that move the tool along a line in mm.
     /// Where none of them moves, the feed counts the others.
     pub linear: bool,
-    /// Whether it counts in the speed along the path: false for all but the first motor of a letter.
+    /// How far the tool moves with one unit of the axis, for the speed along the path: 1; 0 for all but
+    /// the first motor of a letter; the root of a half for the motors of crossed belts, which move the
+    /// tool along diagonals.
     #[serde(skip)]
-    pub counts: bool,
+    pub counts: f64,
+    /// The coordinate of its letter, which the path is drawn over: a sum of the places of axes, each
+    /// with its factor. It is that of the axis itself, except on crossed belts.
+    #[serde(skip)]
+    pub letter: Vec<(usize, f64)>,
+    /// What the curves of the axis are called.
+    pub title: String,
 }

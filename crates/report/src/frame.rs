@@ -100,19 +100,21 @@ impl Frames {
             ends_at_rest &= v[i][2].abs() <= STILL * speed.unwrap_or(f64::INFINITY);
             self.distance[i] += travel(segment, ticks.into());
             place.push(axis.start + self.distance[i] as f64 / STEP / axis.steps_per_unit);
-            if axis.linear && axis.counts {
+            if axis.linear {
                 let seconds = f64::from(ticks) * self.tick_seconds;
-                bow += (most * seconds * seconds / 8.0).powi(2);
+                bow += (axis.counts * most * seconds * seconds / 8.0).powi(2);
             }
         }
         let linear = (0..count).any(|i| self.axes[i].linear && v[i] != [0.0; 3]);
-        let counts = |i: &usize| self.axes[*i].counts && self.axes[*i].linear == linear;
+        let counts = |i: &usize| self.axes[*i].linear == linear;
+        let square = |i: usize| self.axes[i].counts * self.axes[i].counts;
         let norm = |of: &dyn Fn(usize) -> f64| {
-            (0..count).filter(counts).map(|i| of(i) * of(i)).sum::<f64>().sqrt()
+            (0..count).filter(counts).map(|i| square(i) * of(i) * of(i)).sum::<f64>().sqrt()
         };
         let speed = [0, 1, 2].map(|k| norm(&|i| v[i][k]));
         parts.feed = speed[1] / feed;
-        let along = (0..count).filter(counts).map(|i| v[i][1] * a[i]).sum::<f64>() / speed[1];
+        let along = (0..count).filter(counts).map(|i| square(i) * v[i][1] * a[i]).sum::<f64>();
+        let along = along / speed[1];
         let all = norm(&|i| a[i]);
         parts.turns = along.is_finite() && 2.0 * along * along <= all * all;
         let bound = bound(&parts);

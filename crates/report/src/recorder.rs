@@ -46,8 +46,8 @@ struct Sums {
     lines: LineTicks,
     distances: Vec<u64>,
     drawn: Option<(Charts, Trace)>,
-    /// The axes that the path is drawn over, in this order.
-    over: Vec<usize>,
+    /// The axes whose letters the path is drawn over, in this order, and these letters.
+    over: Vec<(usize, Vec<(usize, f64)>)>,
 }
 
 impl Recorder {
@@ -57,11 +57,13 @@ impl Recorder {
         let count = axes.len();
         let causes = Bound::all(count).count();
         // The path is drawn over axes of one unit, because others cannot be compared with it.
-        let drawn = |&axis: &usize| axes[axis].counts && axes[axis].unit == axes[0].unit;
+        let drawn = |&axis: &usize| axes[axis].counts > 0.0 && axes[axis].unit == axes[0].unit;
         let over: Vec<usize> = (0..count).filter(drawn).take(3).collect();
         let mut start = [0.0; 3];
-        for (place, &axis) in start.iter_mut().zip(&over) {
-            *place = axes[axis].start;
+        let over: Vec<(usize, Vec<(usize, f64)>)> =
+            over.into_iter().map(|axis| (axis, axes[axis].letter.clone())).collect();
+        for (place, (_, letter)) in start.iter_mut().zip(&over) {
+            *place = letter.iter().map(|&(axis, factor)| factor * axes[axis].start).sum();
         }
         let frames = Frames::new(axes, tick_seconds);
         let drawn = (detail == Detail::Drawing)
@@ -120,7 +122,8 @@ impl Recorder {
         let seconds = sums.distances.iter().map(|&ticks| ticks as f64 * tick_seconds);
         let time_use = TimeUse::new(frames.axes(), &sums.lines, tick_seconds, seconds.collect());
         let drawing = sums.drawn.map(|(charts, trace)| {
-            let (lines, over) = (&sums.lines, &sums.over[..]);
+            let over: Vec<usize> = sums.over.iter().map(|(axis, _)| *axis).collect();
+            let (lines, over) = (&sums.lines, &over[..]);
             Drawing::new(frames.axes(), tick_seconds, &Kept { charts, trace, lines, over })
         });
         (time_use, drawing)
@@ -139,8 +142,8 @@ impl Sums {
         let Some((charts, trace)) = &mut self.drawn else { return };
         charts.add(&frame.segments, frame.ticks, cause, frame.speed);
         let mut end = [0.0; 3];
-        for (place, &axis) in end.iter_mut().zip(&self.over) {
-            *place = frame.place[axis];
+        for (place, (_, letter)) in end.iter_mut().zip(&self.over) {
+            *place = letter.iter().map(|&(axis, factor)| factor * frame.place[axis]).sum();
         }
         let seconds = f64::from(frame.ticks) * self.tick_seconds;
         let [a, b, c] = frame.speed;

@@ -16,17 +16,23 @@ fn mixed(number: u64) -> u64 {
 
 /// The page of so many rows of six axes that go to and fro without any order.
 fn page(rows: u64) -> Vec<u8> {
-    let axis = |name: char| AxisSetup {
+    let axis = |(number, name): (usize, char)| AxisSetup {
         name: name.to_string(),
+        title: format!("axis {name}"),
+        letter: vec![(number, 1.0)],
         unit: "mm".into(),
         steps_per_unit: 80.0,
         start: 0.0,
         limits: [Some(100.0), Some(1000.0), Some(250_000.0)],
         linear: name < 'd',
-        counts: true,
+        counts: 1.0,
     };
-    let mut recorder =
-        Recorder::new("abcdef".chars().map(axis).collect(), 1e-6, true, Detail::Drawing);
+    let mut recorder = Recorder::new(
+        "abcdef".chars().enumerate().map(axis).collect(),
+        1e-6,
+        true,
+        Detail::Drawing,
+    );
     for number in 0..rows {
         let segments: Vec<Segment> = (0..6)
             .map(|axis| {

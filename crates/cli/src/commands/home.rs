@@ -37,7 +37,8 @@ pub struct HomeReport {
 struct AxisReport {
     axis: String,
     /// Position register before homing, in steps. `edge` is the position at which the slow approach
-    /// found the limit; `position` is the register after homing.
+    /// found the limit; `position` is the register after homing. On crossed belts these are half the
+    /// sum, for y half the difference, of both registers, rounded down.
     before: i32,
     edge: Option<i32>,
     position: i32,
@@ -126,6 +127,16 @@ fn drive(
         }),
     };
     line.finish_and_clear();
+    // On crossed belts, places of letters are in half steps.
+    let parts = |number: usize| if machine.is_crossed(number) { 2 } else { 1 };
+    let place = |number: usize, positions: &[i32]| {
+        let sum = |mask: u8| -> i64 {
+            let motors = positions.iter().enumerate();
+            motors.filter(|(motor, _)| mask >> motor & 1 == 1).map(|(_, &at)| i64::from(at)).sum()
+        };
+        let [forward, backward] = machine.homing_motors(number);
+        (sum(forward) - sum(backward)).div_euclid(parts(number)) as i32
+    };
     // From here until homing has succeeded, the axes to be homed have no machine coordinate.
     homing::forget(memory, machine, homing.mask());
     let mut edges = None;
@@ -180,10 +191,10 @@ fn drive(
             .filter(|number| homing.mask() >> number & 1 == 1)
             .map(|number| AxisReport {
                 axis: axes[number].clone(),
-                before: start.positions[number],
-                edge: edges.map(|edges| edges[number]),
-                position: end.positions[number],
-                machine: memory.coordinate(number, end.positions[number]),
+                before: place(number, &start.positions),
+                edge: edges.map(|edges| edges[number].div_euclid(parts(number) as i32)),
+                position: place(number, &end.positions),
+                machine: memory.coordinate(number, &end.positions),
                 unit: machine.axes[number].unit.name.clone(),
                 homed: edges.is_some(),
             })

@@ -58,10 +58,8 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
         return Ok(());
     }
     let check = |memory: &BoardMemory, positions: &[i32]| {
-        let place = |(number, &position): (usize, &i32)| {
-            memory.offset(number).map(|offset| i64::from(position) + offset)
-        };
-        let places: Vec<Option<i64>> = positions.iter().enumerate().map(place).collect();
+        let places: Vec<_> =
+            (0..positions.len()).map(|number| memory.place(number, positions)).collect();
         jog::within_travel(&file, &places)?;
         let Some(wish) = set else { return Ok(None) };
         let letters = letters()?;

@@ -55,7 +55,8 @@ pub fn run(arguments: &ServeArguments) -> Result<(), Failure> {
     let address = listener.as_ref().map(TcpListener::local_addr).transpose();
     let clients = Clients::new(pty, listener, web);
     let clients = clients.map_err(|error| Failure::Run(error.to_string()))?;
-    let mut requests = Requests::new((dialect, clients), lines, place, arguments.when_gone);
+    let mut requests =
+        Requests::new(&machine, (dialect, clients), lines, place, arguments.when_gone);
     requests.accessories = Accessories::new(&machine);
     (requests.alarm, requests.keeps) = (lost, !lost);
     requests.begins();

@@ -72,7 +72,7 @@ pub fn read_status(mut connection: Connection) -> Result<FoundBoard, Failure> {
     let mut found = FoundBoard::new(&status, &known, Some(&discarded));
     found.ticks = Some(ticks);
     for (number, axis) in found.axes.iter_mut().enumerate() {
-        axis.machine = memory.coordinate(number, axis.position);
+        axis.machine = memory.coordinate(number, &status.positions);
     }
     Ok(found)
 }

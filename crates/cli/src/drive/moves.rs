@@ -24,7 +24,8 @@ type See<'a> = dyn FnMut(&PlannedMove) -> Result<(), Failure> + 'a;
 pub struct Moves {
     survey: Survey,
     seconds: f64,
-    /// Direction of the first motion of each axis: 1, -1, or 0 if it does not move.
+    /// Direction of the first motion of each axis: 1, -1, or 0 if it does not move. On crossed belts it
+    /// is that of the axis' letter.
     first: Vec<i8>,
 }
 
@@ -56,12 +57,19 @@ impl Moves {
             Some(Supply::new(axes, machine.timebase.tick_ns(), machine.queue, machine.baud));
         // A move that cannot be made is told before a line that is too slow.
         let mut starved = None;
+        let belts = machine.clone();
+        let mut letters = vec![0; machine.axes.len()];
         let survey = survey(source, &mut |planned: &PlannedMove| {
             for command in planned.commands().iter().filter_map(Command::of) {
                 if let Some(Err(error)) = supply.as_mut().map(|supply| supply.add(&command)) {
                     starved = Some(error);
                     supply = None;
                 }
+            }
+            let steps: Vec<f64> = planned.axes.iter().map(|axis| axis.steps as f64).collect();
+            for (axis, way) in letters.iter_mut().enumerate().filter(|(_, way)| **way == 0) {
+                let steps = belts.letter_steps(axis, &steps);
+                *way = if steps == 0.0 { 0 } else { steps.signum() as i8 };
             }
             Ok(())
         })?;
@@ -72,7 +80,10 @@ impl Moves {
         let first = |totals: &AxisTotals| {
             totals.travel.first.as_ref().map_or(0, |leg| leg.forward().signum() as i8)
         };
-        let first = survey.totals().axes.iter().map(first).collect();
+        let first = survey.totals().axes.iter().map(first).enumerate();
+        let is_crossed = |axis: usize| survey.machine().is_crossed(axis);
+        let first =
+            first.map(|(axis, own)| if is_crossed(axis) { letters[axis] } else { own }).collect();
         let seconds = survey.totals().ticks as f64 * survey.build().timebase.tick_seconds();
         Ok(Self { survey, seconds, first })
     }

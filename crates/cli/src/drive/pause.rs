@@ -16,6 +16,7 @@ use crate::memory::{self, BoardMemory};
 use crate::pause::{PauseResult, PauseWish};
 use crate::probe::ProbeWish;
 use crate::work;
+use carrystep_files::Axis;
 use carrystep_link::{Ended, SegmentSource, Status, Wish};
 use carrystep_program::{Found, Offsets, Point, ProgramFile};
 
@@ -216,7 +217,8 @@ impl<'a> Pause<'a> {
             self.keep(board)?;
         }
         self.settle(board, control)?;
-        let began = board.status().positions[number];
+        let place = |motors: &[f64]| machine.letter_steps(number, motors);
+        let began = place(&board.status().positions.map(f64::from));
         let moves = (&planned, !wanted.away);
         let ways = &mut *self.ways;
         let touched = match touch(board, machine, moves, &mut |status| wish(control, ways, status))?
@@ -230,7 +232,8 @@ impl<'a> Pause<'a> {
         if let Some(offsets) = wanted.offsets(offsets, (machine, letters), at)? {
             self.set(board, offsets)?;
         }
-        let from = (touched[number], began, board.status().positions[number]);
+        let rests = place(&board.status().positions.map(f64::from));
+        let from = [place(&touched), began, rests];
         let Some(back) = wanted.back(&machine.axes[number], from) else { return Ok(()) };
         let back = Moves::unwatched(back.file(machine)?.into())?;
         let way = back.itinerary();
@@ -298,12 +301,15 @@ impl<'a> Pause<'a> {
         point_at(file.letters(), self.zero, &positions)
     }
 
-    /// The machine places in steps of the axes that `travel` bounds.
-    fn places(&self, file: &ProgramFile, status: &Status) -> Vec<Option<i64>> {
+    /// The machine places in steps of the letters that `travel` bounds.
+    fn places(&self, file: &ProgramFile, status: &Status) -> Vec<Option<f64>> {
         let steps = self.zero.iter().zip(status.positions);
-        let axes = file.machine().axes.iter().zip(steps);
-        axes.map(|(axis, (zero, position))| axis.travel.map(|_| zero + i64::from(position)))
-            .collect()
+        let motors: Vec<f64> = steps.map(|(zero, at)| (zero + i64::from(at)) as f64).collect();
+        let machine = file.machine();
+        let place = |(number, axis): (usize, &Axis)| {
+            axis.travel.map(|_| machine.letter_steps(number, &motors))
+        };
+        machine.axes.iter().enumerate().map(place).collect()
     }
 }
 

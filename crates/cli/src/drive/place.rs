@@ -12,9 +12,9 @@ use std::collections::BTreeMap;
 pub struct Place {
     /// Machine coordinates of the letters x, y, z in mm and a, b, c in degrees.
     pub start: [f64; 6],
-    /// Of each axis, whether its machine zero is known, so that `travel` bounds it.
+    /// Of each axis, whether the machine zero of its letter is known, so that `travel` bounds it.
     pub soft: Vec<bool>,
-    /// Of each axis, the machine place of its register's zero in steps.
+    /// Of each motor, the machine place of its register's zero in steps.
     pub zero: Vec<i64>,
 }
 
@@ -36,14 +36,20 @@ impl Place {
         let mut place =
             Self { start: Settings::default().start, soft: Vec::new(), zero: Vec::new() };
         let mut lost = Vec::new();
-        let mut motors = Vec::new();
+        let registers: Vec<f64> = positions.iter().map(|&at| at.into()).collect();
+        let mut at = Vec::new();
         for (number, axis) in machine.axes.iter().enumerate() {
-            let position = i64::from(positions.get(number).copied().unwrap_or_default());
-            let homed = memory.offset(number).filter(|_| !unhomed && axis.home.is_some());
+            let homed = memory.place(number, positions);
+            let homed = homed.filter(|_| !unhomed && axis.home.is_some());
+            // Each motor of a gantry has a place of its own.
+            let own = match machine.is_crossed(number) {
+                true => machine.letter_steps(number, &registers),
+                false => registers.get(number).copied().unwrap_or_default(),
+            };
             let steps = match homed {
-                Some(offset) => position.saturating_add(offset),
-                None if unhomed => 0,
-                None => position,
+                Some(steps) => steps,
+                None if unhomed => 0.0,
+                None => own,
             };
             if homed.is_none() && axis.home.is_some() && !unhomed {
                 lost.push(axis.name.as_str());
@@ -52,12 +58,18 @@ impl Place {
                 within(axis, steps)?;
             }
             place.soft.push(homed.is_some() && axis.travel.is_some());
-            place.zero.push(steps.saturating_sub(position));
-            motors.push(steps);
+            at.push(steps);
         }
+        let turned = machine.motor_steps(&at);
+        let motor = |number: usize| match machine.is_crossed(number) {
+            true => turned[number],
+            false => at[number],
+        };
+        let motors: Vec<f64> = (0..at.len()).map(motor).collect();
+        let zero = motors.iter().zip(&registers).map(|(motor, register)| (motor - register) as i64);
+        place.zero = zero.collect();
         if lost.is_empty() {
             is_square(machine, &motors)?;
-            let motors: Vec<f64> = motors.iter().map(|&steps| steps as f64).collect();
             place.start = letters.place(&motors);
             return Ok(place);
         }
@@ -68,10 +80,12 @@ impl Place {
         )))
     }
 
-    /// The machine places in steps of the axes that `travel` bounds, for these positions.
-    pub fn bounded_steps(&self, positions: &[i32]) -> Vec<Option<i64>> {
-        let steps = self.zero.iter().zip(positions).zip(&self.soft);
-        steps.map(|((zero, &at), &soft)| soft.then(|| zero + i64::from(at))).collect()
+    /// The machine places in steps of the letters that `travel` bounds, for these positions.
+    pub fn bounded_steps(&self, machine: &Machine, positions: &[i32]) -> Vec<Option<f64>> {
+        let steps = self.zero.iter().zip(positions);
+        let motors: Vec<f64> = steps.map(|(zero, &at)| (zero + i64::from(at)) as f64).collect();
+        let soft = self.soft.iter().enumerate();
+        soft.map(|(axis, &soft)| soft.then(|| machine.letter_steps(axis, &motors))).collect()
     }
 
     /// The machine with `travel` only for axes whose zero is known.
@@ -97,15 +111,15 @@ pub fn named_point(letters: &Letters, at: &Point) -> BTreeMap<char, f64> {
 }
 
 /// Refuses to move a letter whose motors are not at one place, so that what they move is not square.
-fn is_square(machine: &Machine, motors: &[i64]) -> Result<(), Failure> {
+fn is_square(machine: &Machine, motors: &[f64]) -> Result<(), Failure> {
     for (motor, (axis, &steps)) in machine.axes.iter().zip(motors).enumerate() {
         let leader = machine.leader(motor);
         let off = steps - motors[leader];
-        if off == 0 {
+        if off == 0.0 {
             continue;
         }
         let letter = &axis.letter;
-        let (first, off) = (&machine.axes[leader].name, axis.unit.both(off as f64, 0));
+        let (first, off) = (&machine.axes[leader].name, axis.unit.both(off, 0));
         return Err(Failure::input(format!(
             "the motors of {letter} are not at one place: {} is {off} from {first}. `carrystep home \
              {letter}` brings both to one place; on a letter without a home table, align them by hand \
@@ -117,13 +131,13 @@ fn is_square(machine: &Machine, motors: &[i64]) -> Result<(), Failure> {
 }
 
 /// Refuses a program that would begin beyond the travel of an axis.
-fn within(axis: &Axis, steps: i64) -> Result<(), Failure> {
-    let Some([low, high]) = axis.travel.filter(|[low, high]| !(*low..=*high).contains(&steps))
-    else {
-        return Ok(());
-    };
+fn within(axis: &Axis, steps: f64) -> Result<(), Failure> {
+    // Half a step of crossed belts is rounding.
+    let is_out = |[low, high]: &[i64; 2]| steps < *low as f64 - 0.5 || steps > *high as f64 + 0.5;
+    let Some([low, high]) = axis.travel.filter(is_out) else { return Ok(()) };
     let name = &axis.name;
-    let [at, low, high] = [steps, low, high].map(|steps| digits(steps as f64 / axis.unit.steps));
+    let [at, low, high] =
+        [steps, low as f64, high as f64].map(|steps| digits(steps / axis.unit.steps));
     let unit = &axis.unit.name;
     Err(Failure::input(format!(
         "{name} stands at {at} {unit}, beyond its travel of {low} to {high} {unit}: jog it back \

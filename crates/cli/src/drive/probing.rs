@@ -6,6 +6,7 @@ use super::moves::Moves;
 use super::outcome::{Culprit, How, tell_fault};
 use super::place::{Place, named_point, point_at};
 use super::touch::{Touched, Watch, go, is_closed, touch};
+use crate::belt_ways::EITHER;
 use crate::connection::{self, ConnectedBoard, ConnectedBoardError, Connection};
 use crate::control::StoppedBy;
 use crate::failure::Failure;
@@ -80,7 +81,7 @@ pub fn probe(
     let file = wish.way().file(machine)?;
     let positions = connection.board.status().positions;
     let place = Place::find(machine, letters, &memory, &positions, unhomed)?;
-    jog::within_travel(&file, &place.bounded_steps(&positions))?;
+    jog::within_travel(&file, &place.bounded_steps(machine, &positions))?;
     let planned = Moves::unwatched(file.into())?;
     {
         // Before the session is opened: a refusal leaves the board and its memory as they are.
@@ -129,14 +130,21 @@ pub fn probe(
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
-        culprits.iter().for_each(|&axis| memory.set_limit(axis, Some(way)));
+        for &motor in &culprits {
+            // On crossed belts, the other letter rests.
+            let axes = machine.belts().filter(|belts| belts.contains(&motor));
+            for axis in axes.map_or_else(|| vec![motor], Vec::from) {
+                let rests = machine.is_crossed(axis) && axis != number;
+                memory.set_limit(axis, Some(if rests { EITHER } else { way }));
+            }
+        }
     }
     let kept = memory.keep(&mut board);
     if let (Err(error), Some(_), Some(_)) = (&kept, &touched, wish.target) {
         return Err(memory::not_kept(error));
     }
     let positions = board.status().positions.map(f64::from);
-    let direction = |axis| if axis == number { way } else { 0 };
+    let moves = |motor| machine.coefficient(motor, number) * way;
     Ok(Probed {
         passed: ended == How::Done,
         port,
@@ -146,7 +154,7 @@ pub fn probe(
         cause: answer.cause_name().filter(|_| ended == How::Fault),
         culprits: culprits
             .into_iter()
-            .map(|axis| Culprit { axis: axes[axis].clone(), direction: direction(axis) })
+            .map(|axis| Culprit { axis: axes[axis].clone(), direction: moves(axis) })
             .collect(),
         remedy: cause.map(Cause::remedy),
         touched: touched.map(|at| named_point(letters, &at)),
@@ -208,7 +216,8 @@ impl Session<'_> {
         if is_closed(self.board)? != wish.away {
             return Err(Failure::input(wish.already()).into());
         }
-        let began = self.board.status().positions[number];
+        let place = |motors: &[f64]| machine.letter_steps(number, motors);
+        let began = place(&self.board.status().positions.map(f64::from));
         let steps = match touch(self.board, machine, (planned, !wish.away), watch)? {
             Touched::At(steps) => steps,
             Touched::Missed => return Err(Failure::Run(wish.missed()).into()),
@@ -221,7 +230,8 @@ impl Session<'_> {
             self.memory.set_work(offsets);
             self.memory.drives(self.board).map_err(|error| memory::not_kept(&error))?;
         }
-        let from = (steps[number], began, self.board.status().positions[number]);
+        let rests = place(&self.board.status().positions.map(f64::from));
+        let from = [place(&steps), began, rests];
         let Some(back) = wish.back(&machine.axes[number], from) else { return Ok(()) };
         let back = Moves::unwatched(back.file(machine)?.into())?;
         self.way = -self.way;

@@ -153,6 +153,8 @@ fn began_at(file: &ProgramFile) -> String {
 struct RowsLook<'a> {
     file: &'a ProgramFile,
     supply: Supply,
+    /// The numbers of the axes x and y of crossed belts.
+    belts: Option<[usize; 2]>,
     gone: Vec<i128>,
     first: Vec<i8>,
     rows: u64,
@@ -168,7 +170,8 @@ impl<'a> RowsLook<'a> {
             true => supply,
             false => supply.with_enough(Horizon::enough_ticks(tick_ns) * tick_ns),
         };
-        Self { file, supply, gone: vec![0; axes], first: vec![0; axes], rows: 0 }
+        let (gone, first, belts) = (vec![0; axes], vec![0; axes], machine.belts());
+        Self { file, supply, belts, gone, first, rows: 0 }
     }
 
     /// Looks at the next row.
@@ -176,14 +179,23 @@ impl<'a> RowsLook<'a> {
     /// # Errors
     /// The line is too slow, or `wish` wants a stop.
     fn see(&mut self, row: &Row, wish: &mut dyn FnMut() -> Wish) -> Result<(), Failure> {
-        let motors = self.gone.iter_mut().zip(&mut self.first).zip(&row.segments);
-        for (number, ((gone, way), &segment)) in (0..).zip(motors) {
+        for (number, (gone, &segment)) in (0..).zip(self.gone.iter_mut().zip(&row.segments)) {
             *gone += travel(&segment, segment.ticks.into());
-            if *way == 0 && gone.abs() >= HALF_STEP {
-                *way = gone.signum() as i8;
-            }
             let sent = self.supply.add(&Command::Segment { axis: number, segment });
             sent.map_err(|error| starved(self.file, error))?;
+        }
+        let (gone, belts) = (&self.gone, self.belts);
+        for (axis, way) in self.first.iter_mut().enumerate().filter(|(_, way)| **way == 0) {
+            // The way of the axis' letter: on crossed belts half the sum of both motors, or half
+            // their difference.
+            let gone = match belts {
+                Some([x, y]) if axis == x => (gone[x] + gone[y]) / 2,
+                Some([x, y]) if axis == y => (gone[x] - gone[y]) / 2,
+                _ => gone[axis],
+            };
+            if gone.abs() >= HALF_STEP {
+                *way = gone.signum() as i8;
+            }
         }
         self.rows += 1;
         if self.rows.is_multiple_of(ROWS_OF_A_LOOK) && wish() == Wish::Stop {

@@ -87,7 +87,12 @@ pub(super) struct AxisRecord {
     pub(super) position: i32,
     /// Steps per unit in the machine file with which the axis was homed.
     pub(super) steps_per_unit: f64,
-    /// The machine coordinate of the register's zero in steps, if the axis is homed.
+    /// On crossed belts, 1 or -1 for each register that counts in the letter's place, and 0 for the
+    /// others: the place is in half steps. Empty if the axis' own register is its letter's place.
+    #[serde(default)]
+    pub(super) registers: Vec<i8>,
+    /// The machine coordinate of the registers' zero in steps, on crossed belts in half steps, if the
+    /// axis is homed.
     pub(super) offset: Option<i64>,
     /// The direction, 1 or -1, in which the axis has met a limit whose switch is still closed.
     pub(super) limit: Option<i8>,

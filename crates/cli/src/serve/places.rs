@@ -21,8 +21,7 @@ pub fn find(
     memory: &BoardMemory,
     positions: &[i32],
 ) -> Result<(Place, bool), Failure> {
-    let homed =
-        |number: usize| machine.axes[number].home.is_none() || memory.offset(number).is_some();
+    let homed = |number: usize| machine.axes[number].home.is_none() || memory.is_homed(number);
     let lost = !(0..machine.axes.len()).all(homed);
     Ok((Place::find(machine, letters, memory, positions, lost)?, lost))
 }

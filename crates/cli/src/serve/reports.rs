@@ -35,6 +35,7 @@ impl Requests {
         for ((before, now), way) in moved.filter(|((before, now), _)| *before != now) {
             *way = now.wrapping_sub(*before).signum() as i8;
         }
+        self.belts.see(&status.positions);
         self.positions = status.positions;
     }
 

@@ -12,7 +12,9 @@ use super::accessories::Accessories;
 use super::clients::Clients;
 use super::terms;
 use crate::arguments::WhenGone;
+use crate::belt_ways::BeltWays;
 use crate::drive::{Place, point_at};
+use carrystep_files::Machine;
 use carrystep_gcode::Offsets;
 use carrystep_grbl::{
     Alarm, Dialect, Door, Input, Overrides, Pins, Probed, State, WELCOME, message,
@@ -113,6 +115,8 @@ pub struct Requests {
     pub from: Vec<f64>,
     /// The direction in which each axis was last seen moving.
     pub ways: [i8; 8],
+    /// The same of x and y on crossed belts.
+    pub belts: BeltWays,
     /// Whether the axes rest, as far as is known.
     pub rests: bool,
     /// The line in which the tool is, and N of the lines.
@@ -125,6 +129,7 @@ pub struct Requests {
 
 impl Requests {
     pub fn new(
+        machine: &Machine,
         (dialect, clients): (Dialect, Clients),
         lines: Lines,
         place: Place,
@@ -163,6 +168,7 @@ impl Requests {
             guard: None,
             from,
             ways: [0; 8],
+            belts: BeltWays::new(machine),
             rests: true,
             line: None,
             numbers: VecDeque::new(),

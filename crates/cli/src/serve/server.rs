@@ -184,9 +184,13 @@ impl Server<'_> {
         }
         let cause = found::cause(&answer);
         if cause == Some(Cause::Limit) {
-            for axis in (0..self.axes.len()).filter(|axis| answer.culprits >> axis & 1 == 1) {
+            let own = (0..self.axes.len()).filter(|&axis| !self.machine.is_crossed(axis));
+            for axis in own.filter(|axis| answer.culprits >> axis & 1 == 1) {
                 self.memory
                     .set_limit(axis, self.requests.ways.get(axis).copied().filter(|way| *way != 0));
+            }
+            for (axis, way) in self.requests.belts.met(answer.culprits) {
+                self.memory.set_limit(axis, Some(way));
             }
         }
         let names = found::names(self.axes, answer.culprits);

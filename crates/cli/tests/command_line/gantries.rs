@@ -54,12 +54,12 @@ fn folder() -> Folder {
     folder
 }
 
-fn on(folder: &Folder, board: &Board, command: &str) -> Ran {
+pub fn on(folder: &Folder, board: &Board, command: &str) -> Ran {
     folder.run(&format!("{command} --machine machine.toml --port {}", board.port))
 }
 
 /// The changes of STEP and DIR of each axis in a capture by carrystep, ps since its start.
-fn pins(vcd: &str) -> BTreeMap<(String, String), Vec<(u64, char)>> {
+pub fn pins(vcd: &str) -> BTreeMap<(String, String), Vec<(u64, char)>> {
     let (mut names, mut scope, mut ps, mut origin) = (BTreeMap::new(), String::new(), 0, 0);
     let mut pins: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for line in vcd.lines() {
@@ -167,7 +167,7 @@ driver = "tmc2209"
 "#;
 
 /// The positions of the motors, steps.
-fn positions(folder: &Folder, board: &Board) -> Vec<i64> {
+pub fn positions(folder: &Folder, board: &Board) -> Vec<i64> {
     let told = on(folder, board, "status --json").stdout;
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
     let axes = told["axes"].as_array().unwrap().iter();

@@ -21,6 +21,7 @@ mod check_slices;
 mod ci_action;
 mod clocks;
 mod command;
+mod corexy;
 mod curves;
 #[cfg(target_os = "linux")]
 mod cut_captures;

@@ -56,6 +56,14 @@ pub(super) fn unite(
     Ok(())
 }
 
+/// Gives two motors the least of their limits and the longest of their driver's times.
+pub(super) fn make_equal(axes: &mut [Axis], first: usize, second: usize) {
+    let other = axes[second].clone();
+    axes[first].take_least(&other);
+    let other = axes[first].clone();
+    axes[second].take_least(&other);
+}
+
 /// The letter of a motor.
 fn of(source: &SourceText, axis: &Axis, letter: &Spanned<String>) -> Result<String, InputError> {
     let name = letter.as_ref();

@@ -3,7 +3,7 @@
 use super::reader;
 use super::reference::{Limits, Sample, grbl, least_time};
 use carrystep_files::Machine;
-use carrystep_job::{Cartesian, Item, Planner, Row, rows};
+use carrystep_job::{Item, Planner, Row, rows};
 
 /// Grbl's junction distance, mm.
 const JUNCTION: f64 = 0.01;
@@ -25,7 +25,7 @@ pub struct Times {
 
 /// The rows of a program.
 pub fn planned(machine: &Machine, items: &[Item]) -> Vec<Row> {
-    let planner = Planner::new(machine, &Cartesian, 3, &[0.0; 3]).unwrap();
+    let planner = Planner::new(machine, 3, &[0.0; 3]).unwrap();
     rows(planner, items.to_vec()).collect::<Result<_, _>>().unwrap()
 }
 

@@ -31,9 +31,9 @@ const LIMIT: u8 = 5;
 struct Leg {
     /// Mask of the axes that met their limit.
     met: u8,
-    /// Position of each of these axes at which its limit was accepted, steps.
+    /// Position of each of their motors at which the limit was accepted, steps.
     latched: [i32; AXES],
-    /// Position of each axis at the start of the move, steps.
+    /// Position of each motor at the start of the move, steps.
     begun: [i32; AXES],
 }
 
@@ -62,11 +62,6 @@ impl SegmentSource for Moves {
 /// The element of an axis; 0 if the number is out of range.
 fn at(values: &[i32; AXES], axis: u8) -> i32 {
     values.get(usize::from(axis)).copied().unwrap_or(0)
-}
-
-/// Distance between two positions, steps. The position register may wrap between them.
-fn apart(from: i32, to: i32) -> u32 {
-    to.wrapping_sub(from).unsigned_abs()
 }
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
@@ -151,7 +146,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
             }
             let alone = each(group).map(|axis| 1 << axis);
-            let together = [group].into_iter().filter(|_| !one);
+            let together = homing.parts(group).filter(|_| !one);
             for axes in alone.filter(|_| one).chain(together) {
                 if self.find(homing, axes, edges, watch)?.is_none() {
                     return Ok(None);
@@ -166,14 +161,16 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
             }
         }
-        if one {
-            self.pull_off(homing, homing.mask(), edges, |axis| axis.pull_off, watch)
-        } else {
-            Ok(Some(()))
+        for part in homing.parts(homing.mask()).filter(|_| one) {
+            if self.pull_off(homing, part, edges, |axis| axis.pull_off, watch)?.is_none() {
+                return Ok(None);
+            }
         }
+        Ok(Some(()))
     }
 
-    /// The axes move away from their switches. With the wiring `Pair` an axis may meet the limit at
+    /// The axes move away from their switches, letters with common motors one after the other. With
+    /// the wiring `Pair` an axis may meet the limit at
     /// its other end; it is then far enough from its switch.
     fn move_off(
         &mut self,
@@ -182,11 +179,13 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let far = |_, axis: &AxisHoming| (axis.move_off, false, axis.seek);
-        let Some(leg) = self.leg(homing, axes, HomingStage::MoveOff, far, watch)? else {
-            return Ok(None);
-        };
-        if leg.met != 0 && homing.wiring != Wiring::Pair {
-            return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
+        for part in homing.parts(axes) {
+            let Some(leg) = self.leg(homing, part, HomingStage::MoveOff, far, watch)? else {
+                return Ok(None);
+            };
+            if leg.met != 0 && homing.wiring != Wiring::Pair {
+                return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
+            }
         }
         self.opened(homing, axes).map(Some)
     }
@@ -220,15 +219,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Ok(None);
         };
         found.all(axes, HomingFault::NotFound)?;
-        let ran_on = each(axes).fold([0; AXES], |mut ran_on, axis| {
-            let rests = self.status.positions.get(usize::from(axis)).copied().unwrap_or(0);
-            ran_on
-                .get_mut(usize::from(axis))
-                .into_iter()
-                .for_each(|ran_on| *ran_on = apart(at(&found.latched, axis), rests));
-            ran_on
-        });
-        let ran_on = |axis: u8| ran_on.get(usize::from(axis)).copied().unwrap_or(0);
+        let rests = self.status.positions;
+        let ran_on = |axis: u8| {
+            let [from, to] = [&found.latched, &rests].map(|places| homing.place(axis, places));
+            homing.way(axis, from, to).unsigned_abs()
+        };
         let back = |number, axis: &AxisHoming| {
             (axis.move_off.saturating_add(ran_on(number)), false, axis.seek)
         };
@@ -251,12 +246,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Ok(None);
         };
         found.all(axes, HomingFault::NotAgain)?;
-        found.moved(axes)?;
+        found.moved(homing, axes)?;
         for axis in each(axes) {
             edges
                 .get_mut(usize::from(axis))
                 .into_iter()
-                .for_each(|edge| *edge = at(&found.latched, axis));
+                .for_each(|edge| *edge = homing.place(axis, &found.latched));
         }
         Ok(Some(()))
     }
@@ -274,7 +269,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let pull = |number, axis: &AxisHoming| {
             // Distance from the switch, positive away from it. It is negative if the axis has
             // overrun the switch.
-            let away = at(&positions, number).wrapping_sub(at(edges, number));
+            let away = homing.way(number, at(edges, number), homing.place(number, &positions));
             let away = if axis.toward_max { away.wrapping_neg() } else { away };
             let wanted = i32::try_from(place(axis)).unwrap_or(i32::MAX);
             let steps = i64::from(wanted) - i64::from(away);
@@ -309,11 +304,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let moves = moves(homing, left, &wish)
                 .map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
             let source = homing.source(left, stage);
+            let motors = homing.motors(left);
             if let Some(source) = source {
-                self.write(SEEK, u32::from(left) | u32::from(source) << 8)?;
+                self.write(SEEK, u32::from(motors) | u32::from(source) << 8)?;
             }
             let ended = self.stream(moves, |progress| watch(left, stage, progress));
-            let waits = if source.is_some() { self.status.answer.seeking } else { left };
+            let waits = if source.is_some() { self.status.answer.seeking } else { motors };
             if source.is_some() && matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
                 // From here on no axis waits for a limit, and those that have met it may move
                 // again.
@@ -324,17 +320,20 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             {
                 self.clear()?;
                 // One input for all does not tell whose switch it is.
-                let axes = if homing.wiring == Wiring::One { left } else { culprits };
+                let axes = match homing.wiring {
+                    Wiring::One => left,
+                    Wiring::Each | Wiring::Pair => culprits,
+                };
                 return Err(HostError::Homing { axes, why: HomingFault::Closed });
             }
             let ended = ended?;
             if ended == Ended::Stopped {
                 return Ok(None);
             }
-            let met = left & !waits;
-            for axis in each(met) {
-                let position = self.register(of_axis(SEEK_POSITION, axis))?.cast_signed();
-                leg.latched.get_mut(usize::from(axis)).into_iter().for_each(|at| *at = position);
+            let met = left & !homing.axes_of(left, waits);
+            for motor in each(homing.motors(met)) {
+                let position = self.register(of_axis(SEEK_POSITION, motor))?.cast_signed();
+                leg.latched.get_mut(usize::from(motor)).into_iter().for_each(|at| *at = position);
             }
             if met != 0 {
                 // An axis that has met its limit rests at any fraction of a step. A clear sets the
@@ -349,21 +348,25 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 }
 
-/// The moves of these axes: steps, whether toward the switch, and speed of each as `wish` gives
+/// The moves of the motors of these axes: steps, whether toward the switch, and speed of each as `wish` gives
 /// them. A failure names its axis.
 fn moves(
     homing: &Homing<'_>,
     axes: u8,
     wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
 ) -> Result<Moves, (u8, HomingFault)> {
-    let mut moves = Moves { start: Some(axes), ..Moves::default() };
+    let mut moves = Moves { start: Some(homing.motors(axes)), ..Moves::default() };
     for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {
         let (steps, toward, speed) = wish(number, axis);
         let rest = if toward { 0 } else { homing.settle() };
-        let travel = axis
-            .travel(steps, toward, speed, rest)
-            .map_err(|error| (number, HomingFault::TooLong(error)))?;
-        moves.travels.get_mut(usize::from(number)).into_iter().for_each(|place| *place = travel);
+        for (motors, toward) in [(axis.forward, toward), (axis.backward, !toward)] {
+            let travel = axis
+                .travel(steps, toward, speed, rest)
+                .map_err(|error| (number, HomingFault::TooLong(error)))?;
+            for motor in each(motors) {
+                moves.travels.get_mut(usize::from(motor)).into_iter().for_each(|at| *at = travel);
+            }
+        }
     }
     Ok(moves)
 }
@@ -379,8 +382,9 @@ impl Leg {
 
     /// Checks that each of these axes has moved before it has met its limit. One that was met at
     /// once has closed between the last look at the switches and the start.
-    fn moved<E>(&self, axes: u8) -> Result<(), HostError<E>> {
-        let at_once = |axis: &u8| apart(at(&self.begun, *axis), at(&self.latched, *axis)) == 0;
+    fn moved<E>(&self, homing: &Homing<'_>, axes: u8) -> Result<(), HostError<E>> {
+        let at_once =
+            |axis: &u8| homing.place(*axis, &self.begun) == homing.place(*axis, &self.latched);
         match each(axes).filter(at_once).fold(0, |mask, axis| mask | 1 << axis) {
             0 => Ok(()),
             axes => Err(HostError::Homing { axes, why: HomingFault::StillClosed }),

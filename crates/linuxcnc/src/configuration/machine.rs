@@ -7,7 +7,7 @@ use super::{
 use carrystep_core::StartPhase;
 use carrystep_core::engine::{Guard, Latch, LatchSource, LimitWiring};
 use carrystep_core::link::LineKind;
-use carrystep_files::machine::End;
+use carrystep_files::machine::{End, Kinematics};
 use carrystep_files::{Axis, Machine, decimal};
 
 /// What the machine file does not say.
@@ -39,6 +39,9 @@ impl Configuration {
     ) -> Result<(Self, Vec<String>), MachineRefused> {
         if machine.phase != StartPhase::Half {
             return Err(MachineRefused::Phase);
+        }
+        if machine.kinematics != Kinematics::Cartesian {
+            return Err(MachineRefused::Kinematics);
         }
         let engine = machine.engine();
         engine.check().map_err(|error| MachineRefused::Build(error.to_string()))?;

@@ -38,6 +38,12 @@ pub enum MachineRefused {
         /// The second motor.
         axis: String,
     },
+    /// Two crossed belts move x and y.
+    #[error(
+        "kinematics = \"corexy\": the configuration that is written has trivkins, with a joint for each \
+         letter. Run programs of this machine with `carrystep run`"
+    )]
+    Kinematics,
     /// An axis has another unit than LinuxCNC.
     #[error(
         "axis '{axis}' is in {unit}: LinuxCNC has it in {wanted}. Give lead or steps_per_unit in that unit"

@@ -94,11 +94,12 @@ pub fn check(
     changes: &[PinChange],
     levels: Option<&[(u64, u8)]>,
 ) -> PathReport {
-    let axes = file.machine().axes.iter().zip(file.letters().of_axes()).zip(&survey.axes);
-    let axes = axes.map(|((axis, &letter), planned)| PathAxis {
+    let letters = file.letters().of_axes().iter().zip(file.letters().moves());
+    let axes = file.machine().axes.iter().zip(letters).zip(&survey.axes);
+    let axes = axes.map(|((axis, (&letter, &moves)), planned)| PathAxis {
         name: &axis.name,
         letter,
-        step: file.letters().step()[letter],
+        moves,
         start_steps: planned.start_steps,
         steps: planned.steps(),
         pins_ns: axis.pins_ns,

@@ -21,6 +21,7 @@ impl Owned {
 pub fn homing_of(machine: &Machine) -> Owned {
     let mut axes = [None; 8];
     for (number, (place, axis)) in axes.iter_mut().zip(&machine.axes).enumerate() {
+        let [forward, backward] = machine.homing_motors(number);
         *place = axis.home.map(|home| AxisHoming {
             toward_max: home.toward == End::Max,
             start: home.start,
@@ -30,6 +31,8 @@ pub fn homing_of(machine: &Machine) -> Owned {
             move_off: home.move_off,
             max_travel: home.max_travel,
             pull_off: home.pull_off,
+            forward,
+            backward,
             beside: machine.with_its_letter(number) & !(1 << number),
             most_apart: home.most_apart,
         });

@@ -66,6 +66,8 @@ pub enum Start {
 /// is searched.
 #[derive(Debug, Clone, Copy)]
 struct Switched {
+    /// The motors that move the axis' letter forward, and those that move it backward.
+    motors: [u8; 2],
     sign: i32,
     edge: i32,
     /// Position of the switch at the other end.
@@ -80,6 +82,16 @@ struct Switched {
 impl Switched {
     fn depth(&self, position: i32) -> i32 {
         (position - self.edge) * self.sign
+    }
+
+    /// Where the letter is, rounded down to whole steps.
+    fn place(&self, board: &impl SimulatedBoard) -> i32 {
+        let sum = |mask: u8| -> i32 {
+            (0..8).filter(|motor| mask >> motor & 1 == 1).map(|motor| board.position(motor)).sum()
+        };
+        let [forward, backward] = self.motors;
+        let count = (forward | backward).count_ones() as i32;
+        (sum(forward) - sum(backward)).div_euclid(count)
     }
 }
 
@@ -115,7 +127,7 @@ impl<B: Make> World<B> {
         }
         self.bounce.0 = self.bounce.0.saturating_sub(self.slice);
         for (number, axis) in self.axes.iter_mut().enumerate() {
-            let position = self.board.position(number);
+            let position = axis.place(&self.board);
             let depth = axis.depth(position);
             axis.deepest = axis.deepest.max(depth);
             axis.bounces &= depth >= -1;
@@ -140,14 +152,14 @@ impl<B: Make> World<B> {
         while self.board.cycle() < end {
             self.press();
             // Speeds are below 10 steps per millisecond.
-            let near = |(number, axis): (usize, &Switched)| {
-                let position = self.board.position(number);
+            let near = |axis: &Switched| {
+                let position = axis.place(&self.board);
                 axis.bounces
                     || axis.edge.abs_diff(position) < 20
                     || axis.far.abs_diff(position) < 20
             };
             let still = self.board.rests() && !self.axes.iter().any(|axis| axis.bounces);
-            let still = still || !self.axes.iter().enumerate().any(near);
+            let still = still || !self.axes.iter().any(near);
             let next = if still { end } else { end.min(self.board.cycle() + self.slice) };
             while self.board.cycle() < next {
                 self.board.run(next, &mut Deaf).unwrap();
@@ -176,7 +188,7 @@ impl<B: Make> Bench<B> {
         let guard = &machine.guard;
         let tick = u64::from(machine.timebase.clocks_per_tick());
         let mut axes = Vec::new();
-        for (axis, start) in machine.axes.iter().zip(starts) {
+        for (number, (axis, start)) in machine.axes.iter().zip(starts).enumerate() {
             let home = axis.home.unwrap();
             let sign = if home.toward == End::Max { 1 } else { -1 };
             let length = axis.travel.map_or(600, |[low, high]| (high - low) as i32);
@@ -192,6 +204,7 @@ impl<B: Make> Bench<B> {
             let bounces = *start != Start::Open && guard.debounce > 4;
             let stood = depth.max(0);
             axes.push(Switched {
+                motors: machine.homing_motors(number),
                 sign,
                 edge,
                 far,
@@ -239,6 +252,13 @@ impl<B: Make> Bench<B> {
 
     pub fn board(&self) -> Ref<'_, B> {
         Ref::map(self.0.borrow(), |world| &world.board)
+    }
+
+    /// The place of an axis' letter, rounded down to whole steps.
+    #[allow(dead_code)]
+    pub fn place(&self, axis: usize) -> i32 {
+        let world = self.0.borrow();
+        world.axes[axis].place(&world.board)
     }
 
     /// Position at which the switch of an axis closes.

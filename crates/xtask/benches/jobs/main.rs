@@ -18,7 +18,7 @@ mod common;
 mod stopwatch;
 
 use carrystep_files::Machine;
-use carrystep_job::{Cartesian, Item, Planner, rows};
+use carrystep_job::{Item, Planner, rows};
 use clap::Parser;
 use common::measure::{deviation, planned, program, times};
 use std::path::PathBuf;
@@ -85,7 +85,7 @@ fn judge(missed: &mut Vec<String>, holds: bool, what: String) {
 /// Processor time of planning a program, s: the least of three.
 fn planning(machine: &Machine, items: &[Item]) -> f64 {
     let once = || {
-        let planner = Planner::new(machine, &Cartesian, 3, &[0.0; 3]).unwrap();
+        let planner = Planner::new(machine, 3, &[0.0; 3]).unwrap();
         rows(planner, items.iter().cloned()).filter(Result::is_ok).count()
     };
     (0..3).map(|_| stopwatch::least(0.0, once).0).fold(f64::INFINITY, f64::min)

@@ -83,7 +83,7 @@ fn connected(machine: &Machine) -> (TcpStream, Requests, Control) {
     sender.set_nodelay(true).unwrap();
     let clients = Clients::new(Pty::new().unwrap(), Some(listener), None).unwrap();
     let dialect = Dialect::new(settings, LINES);
-    let mut requests = Requests::new((dialect, clients), lines, place, WhenGone::Finish);
+    let mut requests = Requests::new(machine, (dialect, clients), lines, place, WhenGone::Finish);
     requests.begins();
     // It is the name of no device, so that nothing is claimed.
     let claim = control::claim("no device", 0, "serve", false).unwrap().unwrap();

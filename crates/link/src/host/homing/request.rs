@@ -48,6 +48,12 @@ pub struct AxisHoming {
     pub max_travel: u32,
     /// Distance from the switch at which the axis rests at the end, steps.
     pub pull_off: u32,
+    /// Mask of the motors that make a step forward when the letter moves up by a step: the axis alone,
+    /// or both motors of crossed belts, one of which may run backward. Letters with several motors
+    /// need the wiring `One`, because each motor waits for a switch that it samples itself.
+    pub forward: u8,
+    /// Mask of the motors that make a step backward then.
+    pub backward: u8,
     /// Mask of the other axes that move the same letter, as the motors of a gantry do; 0 if it moves
     /// its letter alone.
     pub beside: u8,
@@ -104,7 +110,8 @@ impl fmt::Display for HomingStage {
 /// How homing ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Homed {
-    /// The positions at which the slow approach met the limits, in steps of the position register.
+    /// The places of the letters at which the slow approach met the limits, in steps of the position
+    /// register: its sum over the forward motors of an axis less that over its backward motors.
     At([i32; AXES]),
     /// The caller stopped homing.
     Stopped,
@@ -125,6 +132,41 @@ impl Homing<'_> {
     pub(super) fn toward_max(&self) -> u8 {
         let at_max = |axis: &u8| self.axis(*axis).is_some_and(|axis| axis.toward_max);
         each(self.known()).filter(at_max).fold(0, |mask, axis| mask | 1 << axis)
+    }
+
+    /// The motors of these axes, as a mask.
+    pub(super) fn motors(&self, axes: u8) -> u8 {
+        let motors = each(axes).filter_map(|axis| self.axis(axis));
+        motors.fold(0, |mask, axis| mask | axis.motors())
+    }
+
+    /// Of these axes, those with a motor of this mask.
+    pub(super) fn axes_of(&self, axes: u8, motors: u8) -> u8 {
+        let is_one = |axis: &u8| self.motors(1 << axis) & motors != 0;
+        each(axes).filter(is_one).fold(0, |mask, axis| mask | 1 << axis)
+    }
+
+    /// These axes in parts that move one after the other, as letters with common motors must.
+    pub(super) fn parts(&self, axes: u8) -> impl Iterator<Item = u8> {
+        let is_crossed =
+            |axis: &u8| self.axis(*axis).is_some_and(|axis| axis.motors().count_ones() > 1);
+        let crossed = each(axes).filter(is_crossed).fold(0, |mask, axis| mask | 1 << axis);
+        let alone = each(crossed).map(|axis| 1 << axis);
+        core::iter::once(axes & !crossed).chain(alone).filter(|&part| part != 0)
+    }
+
+    /// The place of an axis' letter where the motors have these positions, in steps of one motor after
+    /// the other: a step of a letter with two motors changes it by 2.
+    pub(super) fn place(&self, axis: u8, positions: &[i32; AXES]) -> i32 {
+        let at = |motor: u8| positions.get(usize::from(motor)).copied().unwrap_or(0);
+        let sum = |motors: u8| each(motors).fold(0_i32, |sum, motor| sum.wrapping_add(at(motor)));
+        self.axis(axis).map_or(0, |axis| sum(axis.forward).wrapping_sub(sum(axis.backward)))
+    }
+
+    /// Steps of an axis' letter from one place to another. The registers may wrap between them.
+    pub(super) fn way(&self, axis: u8, from: i32, to: i32) -> i32 {
+        let motors = self.motors(1 << axis).count_ones().max(1);
+        to.wrapping_sub(from) / motors as i32
     }
 
     /// The source for which these axes wait in this stage, as the register SEEK has it; `None` if
@@ -211,6 +253,11 @@ impl Homing<'_> {
 }
 
 impl AxisHoming {
+    /// The motors that move the letter.
+    const fn motors(&self) -> u8 {
+        self.forward | self.backward
+    }
+
     /// The move of `steps` steps toward the switch or away from it, with `rest` ticks of rest
     /// before and behind it.
     pub(super) fn travel(
