@@ -2,9 +2,10 @@
 //! `hdl-out/resources.md`, which `cargo xtask resources` measures completely. This test measures
 //! the size of all rows, and the clock of the rows marked `always`.
 
+use carrystep_boards::Mapped;
 use carrystep_tests::effort;
 use carrystep_tools::resources::{
-    self, EIGHT_TO_SIX, EngineRow, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS,
+    self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, LINES, LINK_BUDGET, PAGE, ROWS,
 };
 use carrystep_tools::{kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
@@ -77,14 +78,28 @@ fn engines_of_other_families_fit_their_budgets() {
         let verilog = resources::verilog(&family.of).expect("a fine engine");
         let found = xilinx::cells(&verilog, ENGINE_NAME, family.name).expect("cells");
         effort::say(&format!("{}: {found:?}", family.name));
-        let budget = family.budget;
-        let fits = found.luts <= budget.luts
-            && found.flip_flops <= budget.flip_flops
-            && found.carries <= budget.carries
-            && found.block_rams <= budget.block_rams;
-        assert!(fits, "{found:?} used of {family:?}");
+        assert_within(&found, family);
     }
     kept::say();
+}
+
+/// With everything that can be left out, and the link with its UART.
+#[test]
+fn engine_and_link_with_all_options_fit_their_budget_of_an_ecp5() {
+    let found = resources::ecp5().expect("cells");
+    effort::say(&format!("ECP5: {found:?}"));
+    assert_within(&found, &ECP5);
+    kept::say();
+}
+
+/// A family's cells are within its budget.
+fn assert_within(found: &Mapped, family: &FamilyRow) {
+    let budget = family.budget;
+    let fits = found.luts <= budget.luts
+        && found.flip_flops <= budget.flip_flops
+        && found.carries <= budget.carries
+        && found.block_rams <= budget.block_rams;
+    assert!(fits, "{found:?} used of {family:?}");
 }
 
 #[test]

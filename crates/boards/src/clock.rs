@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! iCE40      F x (DIVF + 1) / (DIVR + 1) / 2^DIVQ         PLL
+//! ECP5       F x M / D / O                                PLL
 //! Spartan-3  F x M / D                                    DCM (3E and 6 too)
 //! Spartan-7  F x M / D / O                                MMCM
 //! ```
@@ -17,10 +18,12 @@ use std::fmt;
 use thiserror::Error;
 
 mod dcm;
+mod ecp5;
 mod ice40;
 mod mmcm;
 
 pub use dcm::Dcm;
+pub use ecp5::Ecp5Pll;
 pub use ice40::Ice40Pll;
 pub use mmcm::Mmcm;
 
@@ -32,6 +35,8 @@ pub enum ClockManager {
     Oscillator,
     /// The PLL of an iCE40.
     Ice40Pll(Ice40Pll),
+    /// The PLL of an ECP5.
+    Ecp5Pll(Ecp5Pll),
     /// The frequency synthesiser of a Spartan's DCM.
     Dcm(Dcm),
     /// The MMCM of a Spartan-7.
@@ -44,6 +49,9 @@ impl fmt::Display for ClockManager {
             Self::Oscillator => f.write_str("the oscillator"),
             Self::Ice40Pll(Ice40Pll { divr, divf, divq, filter_range }) => {
                 write!(f, "PLL: DIVR {divr}, DIVF {divf}, DIVQ {divq}, FILTER_RANGE {filter_range}")
+            }
+            Self::Ecp5Pll(Ecp5Pll { divide, multiply, out_divide }) => {
+                write!(f, "PLL: x {multiply} / {divide} / {out_divide}")
             }
             Self::Dcm(Dcm { multiply, divide }) => write!(f, "DCM: x {multiply} / {divide}"),
             Self::Mmcm(Mmcm { multiply, divide, out_divide }) => {
@@ -58,6 +66,8 @@ impl fmt::Display for ClockManager {
 pub enum ClockManagers {
     /// The PLL of an iCE40.
     Ice40,
+    /// The PLL of an ECP5.
+    Ecp5,
     /// A DCM, with the ranges of its input and of its synthesised clock, Hz.
     Dcm {
         /// Slowest input, Hz.
@@ -110,6 +120,7 @@ impl ClockManagers {
         }
         let (manager, ways): (_, Vec<Way>) = match self {
             Self::Ice40 => ("the PLL", ice40::ways(oscillator_hz).collect()),
+            Self::Ecp5 => ("the PLL", ecp5::ways(oscillator_hz).collect()),
             Self::Dcm { least_in, least_out, most_out } => {
                 ("the DCM", dcm::ways(oscillator_hz, least_in, least_out..=most_out).collect())
             }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use strum::IntoStaticStr;
 
+mod ecp5;
 mod ice40;
 mod spartan3;
 mod spartan3e;
@@ -23,6 +24,8 @@ mod spartan7;
 pub enum Family {
     /// Lattice iCE40 LP, HX and UltraPlus.
     Ice40,
+    /// Lattice ECP5.
+    Ecp5,
     /// Xilinx Spartan-3.
     Spartan3,
     /// Xilinx Spartan-3E.
@@ -42,8 +45,17 @@ pub trait FpgaFamily: Sync {
     /// The toolchain that makes the family's bitstreams.
     fn toolchain(&self) -> &'static Toolchain;
 
-    /// The name of the family in yosys' `synth_xilinx`; `None` for an iCE40, which has a command of
-    /// its own.
+    /// The open tools that place designs of this family; `None` if only its maker's tools do.
+    fn placer(&self) -> Option<Placer> {
+        None
+    }
+
+    /// What `logic_cells` of a part counts, for people.
+    fn cells(&self) -> &'static str {
+        "LUTs"
+    }
+
+    /// The name of the family in yosys' `synth_xilinx`; `None` for a family that is not Xilinx'.
     fn yosys(&self) -> Option<&'static str> {
         None
     }
@@ -86,6 +98,11 @@ pub trait FpgaFamily: Sync {
         &[]
     }
 
+    /// The options with which nextpnr is told a part; none if no nextpnr places the family.
+    fn nextpnr(&self, _: &Part) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The order name of a part, as the toolchain uses it.
     fn ordered(&self, part: &Part) -> String {
         format!("{}-{}{}", part.name, part.package, part.speed_suffix())
@@ -93,10 +110,20 @@ pub trait FpgaFamily: Sync {
 }
 
 impl Family {
+    /// What of a board of this family the tests compare with the Rust-HDL modules on every pin.
+    pub fn compared(self) -> &'static str {
+        match self.facts().placer() {
+            Some(Placer::Ice40) => "bitstream",
+            Some(Placer::Ecp5) => "netlist",
+            None => "EDIF",
+        }
+    }
+
     /// What differs between this family and others.
     pub fn facts(self) -> &'static dyn FpgaFamily {
         match self {
             Self::Ice40 => &ice40::Ice40,
+            Self::Ecp5 => &ecp5::Ecp5,
             Self::Spartan3 => &spartan3::Spartan3,
             Self::Spartan3e => &spartan3e::Spartan3e,
             Self::Spartan6 => &spartan6::Spartan6,
@@ -109,6 +136,15 @@ impl fmt::Display for Family {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.facts().title())
     }
+}
+
+/// A variant of nextpnr, with the tools before and behind it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Placer {
+    /// `synth_ice40`, nextpnr-ice40 and icepack.
+    Ice40,
+    /// `synth_ecp5`, nextpnr-ecp5 and ecppack.
+    Ecp5,
 }
 
 /// Electrical standard of a pin, which is determined by the voltage of its bank.

@@ -29,7 +29,7 @@ mod toolchain;
 
 pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
-pub use family::{Family, FpgaFamily, IoStandard, PllInput};
+pub use family::{Family, FpgaFamily, IoStandard, Placer, PllInput};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
 pub use self_test::{BoardSelfTest, SELF_TEST_BAUD};
@@ -113,10 +113,10 @@ pub struct Part {
     pub name: String,
     /// Package, such as `tq144` or `ft256`.
     pub package: String,
-    /// Speed grade of a Spartan.
+    /// Speed grade of a Spartan or an ECP5.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<u8>,
-    /// Logic cells of an iCE40.
+    /// Logic cells of an iCE40, or LUTs of an ECP5.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub logic_cells: Option<u32>,
     /// Number of block RAMs.
@@ -368,10 +368,20 @@ impl Part {
         if name.starts_with("up") { "" } else { "-dffe_min_ce_use 4" }
     }
 
-    /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
-    /// iCE40, its name and package.
+    /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`; that of
+    /// Lattice for an ECP5: `LFE5U-25F-6BG381C`. For an iCE40, its name and package.
     pub fn ordered(&self) -> String {
         self.family.facts().ordered(self)
+    }
+
+    /// The options with which nextpnr is told the part: `--hx1k --package tq144`.
+    pub fn nextpnr(&self) -> Vec<String> {
+        self.family.facts().nextpnr(self)
+    }
+
+    /// The family of the part.
+    pub fn family(&self) -> Family {
+        self.family
     }
 
     /// The speed grade with a hyphen before it, as the last part of an order name.

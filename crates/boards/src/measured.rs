@@ -14,26 +14,31 @@ pub const MEASURED_AT: &str = "crates/boards/data/measured.toml";
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Measured {
-    /// An iCE40, placed with all pins assigned.
+    /// An iCE40 or an ECP5, placed with all pins assigned.
     Placed(Placed),
     /// A Spartan, synthesised only. It was not placed with the tools of Xilinx.
     Mapped(Mapped),
 }
 
-/// Figures of nextpnr and icetime.
+/// Figures of nextpnr, and of icetime for an iCE40.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Placed {
-    /// Logic cells.
+    /// Logic cells of an iCE40, or LUTs of an ECP5, with those of its carry chains.
     pub logic_cells: u32,
     /// Number of block RAMs.
     pub block_rams: u32,
     /// Greatest clock according to nextpnr, MHz.
     pub nextpnr_mhz: f64,
-    /// Greatest clock according to icetime, MHz.
-    pub icetime_mhz: f64,
+    /// Greatest clock according to icetime, MHz, which knows iCE40 only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub icetime_mhz: Option<f64>,
     /// The first of nextpnr's seeds that reaches the clock; otherwise the best one.
     pub seed: u32,
+    /// Least clock of all five seeds according to nextpnr, MHz, on a board that must reach its clock
+    /// with each of them: one with an ECP5.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_mhz: Option<f64>,
 }
 
 /// Figures of yosys.
@@ -67,7 +72,7 @@ impl Board {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Measured, boards};
+    use crate::{Family, Measured, boards};
 
     #[test]
     fn every_board_was_measured_and_is_large_enough() {
@@ -84,6 +89,11 @@ mod tests {
                         "{}",
                         board.name
                     );
+                    let with_each_seed = placed
+                        .least_mhz
+                        .is_none_or(|mhz| mhz * 1e6 >= board.clocks[0].clock_hz as f64);
+                    assert!(with_each_seed, "{}", board.name);
+                    assert_eq!(placed.least_mhz.is_some(), board.family == Family::Ecp5);
                     (placed.block_rams, board.parts[0].block_rams)
                 }
                 Measured::Mapped(mapped) => (mapped.block_rams, board.parts[0].block_rams),

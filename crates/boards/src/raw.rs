@@ -267,8 +267,10 @@ impl Reader<'_> {
         for spanned in &raw.part {
             let RawPart { name, package, speed, logic_cells, block_rams } = spanned.as_ref();
             if speed.is_some() != family.facts().has_speed_grades() {
-                return self
-                    .refuse(spanned.span(), "a Spartan needs a `speed` grade, an iCE40 has none");
+                return self.refuse(
+                    spanned.span(),
+                    "a Spartan or an ECP5 needs a `speed` grade, an iCE40 has none",
+                );
             }
             if parts.iter().any(|part| part.name == *name) {
                 return self.refuse(spanned.span(), format!("two parts are called '{name}'"));

@@ -31,6 +31,13 @@ pub static ISE: Toolchain = Toolchain {
     by_hand: Some("./build.sh, with ISE's settings64.sh read"),
 };
 
+impl Toolchain {
+    /// The end of the name of a board's constraints, such as `.pcf`.
+    pub fn constraints_end(&self) -> &'static str {
+        self.constraints.strip_prefix("top").unwrap_or(self.constraints)
+    }
+}
+
 impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.title)

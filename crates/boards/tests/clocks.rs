@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::clock::{ClockManager, ClockManagers, Dcm, Ice40Pll, Mmcm};
+use carrystep_boards::clock::{ClockManager, ClockManagers, Dcm, Ecp5Pll, Ice40Pll, Mmcm};
 use std::process::Command;
 
 /// Converts the MHz of a golden line, or of icepll's output, to Hz.
@@ -88,10 +88,27 @@ fn spartan_settings_equal_those_computed_by_hand() {
     assert_eq!(ClockManagers::Mmcm.solve(12_000_000, 40_000_000), mmcm(18));
 }
 
+/// 400 and 800 MHz are the only VCO clocks of 25 MHz that divide to 80 MHz, and are as near to the
+/// middle of the range; 600 MHz, the middle, divides to 40 MHz. Of 48 MHz, 480 and 720 MHz are as
+/// near to it.
+#[test]
+fn ecp5_settings_equal_those_computed_by_hand() {
+    let pll = |divide, multiply, out_divide| {
+        Ok(ClockManager::Ecp5Pll(Ecp5Pll { divide, multiply, out_divide }))
+    };
+    let solve = |from, to| ClockManagers::Ecp5.solve(from, to);
+    assert_eq!(solve(25_000_000, 80_000_000), pll(1, 32, 10));
+    assert_eq!(solve(25_000_000, 40_000_000), pll(1, 24, 15));
+    assert_eq!(solve(48_000_000, 80_000_000), pll(1, 15, 9));
+    assert_eq!(solve(48_000_000, 40_000_000), pll(1, 15, 18));
+    // It would need a VCO of 1200 MHz.
+    assert_eq!(solve(25_000_000, 48_000_000).unwrap_err().nearest_hz, Some(47_656_250));
+}
+
 #[test]
 fn extreme_frequencies_do_not_panic() {
     let spartan6 = carrystep_boards::Family::Spartan6.facts().clock_managers();
-    for managers in [ClockManagers::Ice40, ClockManagers::Mmcm, spartan6] {
+    for managers in [ClockManagers::Ice40, ClockManagers::Ecp5, ClockManagers::Mmcm, spartan6] {
         for oscillator in [0, 1, 12_000_000, u64::MAX] {
             for wanted in [1, 48_000_000, u64::MAX - 1] {
                 assert!(

@@ -6,7 +6,6 @@ use crate::progress::Stages;
 use carrystep_boards::{Board, Part};
 use carrystep_core::tick::mhz;
 use carrystep_tools::board::{BuildJob, build};
-use carrystep_tools::ice40;
 use carrystep_verilog::TextFile;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -25,7 +24,9 @@ pub struct Made {
     clock_hz: u64,
     /// By nextpnr.
     mhz: f64,
-    icetime_mhz: f64,
+    /// By icetime, for an iCE40.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    icetime_mhz: Option<f64>,
     seed: u32,
     /// Present if the clock is reached.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,10 +38,10 @@ impl fmt::Display for Made {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { logic_cells, block_rams, clock_hz, mhz: reached, icetime_mhz, seed, .. } = self;
         writeln!(f, "logic cells  {logic_cells}\nblock RAMs   {block_rams}")?;
+        let icetime = icetime_mhz.map(|mhz| format!("{mhz:.1} by icetime, ")).unwrap_or_default();
         writeln!(
             f,
-            "clock        {reached:>6.1}  MHz by nextpnr (seed {seed}), {icetime_mhz:.1} by icetime, \
-             {} needed",
+            "clock        {reached:>6.1}  MHz by nextpnr (seed {seed}), {icetime}{} needed",
             mhz(*clock_hz)
         )
     }
@@ -94,8 +95,8 @@ pub fn make(
     let job = BuildJob {
         verilog: &texts(".v"),
         top,
-        pcf: &texts(".pcf"),
-        part: ice40::NextpnrPart { device: &part.name, package: &part.package },
+        constraints: &texts(board.family.facts().toolchain().constraints_end()),
+        part,
         clock_hz,
     };
     let file = out.join(format!("{top}.{}", board.bitstream));

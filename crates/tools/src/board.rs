@@ -2,9 +2,10 @@
 
 pub mod page;
 
-use crate::SynthesisError;
-use crate::ice40::{self, NextpnrPart, PlacedDesign, Size};
-use crate::tool::{self, ICEPACK, ICETIME};
+use crate::ice40::{self, NextpnrPart, Size};
+use crate::tool::{self, ICEPACK, ICETIME, NEXTPNR};
+use crate::{SynthesisError, ecp5};
+use carrystep_boards::{Part, Placer};
 
 /// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
 /// the same.
@@ -18,9 +19,9 @@ pub struct BuildJob<'a> {
     /// Name of the top module.
     pub top: &'a str,
     /// Constraints that assign each port to a pin.
-    pub pcf: &'a str,
+    pub constraints: &'a str,
     /// The part.
-    pub part: NextpnrPart<'a>,
+    pub part: &'a Part,
     /// Clock, Hz.
     pub clock_hz: u64,
 }
@@ -33,8 +34,8 @@ pub struct Built {
     pub seed: u32,
     /// Greatest clock according to nextpnr, MHz.
     pub mhz: f64,
-    /// Greatest clock according to icetime, MHz.
-    pub icetime_mhz: f64,
+    /// Greatest clock according to icetime, MHz, for an iCE40.
+    pub icetime_mhz: Option<f64>,
     /// The bitstream.
     pub bitstream: Vec<u8>,
 }
@@ -49,54 +50,117 @@ impl Built {
 /// Builds a bitstream. `stage` is called with the name of each program before it is started.
 ///
 /// # Errors
-/// [`SynthesisError`] if a tool is missing or refuses the design. If the design is too large, the
-/// tool is nextpnr.
+/// [`SynthesisError`] if a tool is missing or refuses the design, or if no open tool places the
+/// family. If the design is too large, the tool is nextpnr.
 pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
+    match job.part.family().facts().placer() {
+        Some(Placer::Ice40) => ice40_bitstream(job, stage),
+        Some(Placer::Ecp5) => ecp5_bitstream(job, stage),
+        None => Err(SynthesisError::Tool {
+            tool: NEXTPNR.name,
+            message: format!("no open tool places a {}", job.part.family()),
+        }),
+    }
+}
+
+fn ice40_bitstream(
+    job: &BuildJob<'_>,
+    stage: &mut dyn FnMut(&str),
+) -> Result<Built, SynthesisError> {
+    let part = NextpnrPart { device: &job.part.name, package: &job.part.package };
     stage("yosys");
-    let netlist = ice40::synthesise_for(job.verilog, job.top, job.part.device)?;
-    let mut best: Option<(u32, PlacedDesign)> = None;
+    let netlist = ice40::synthesise_for(job.verilog, job.top, part.device)?;
+    let (seed, placed) = first_that_reaches(
+        job.clock_hz,
+        |seed| {
+            stage(&format!("nextpnr-ice40, seed {seed}"));
+            netlist.place_on(part, job.constraints, job.clock_hz, seed)
+        },
+        |placed| placed.mhz,
+    )?;
+    let folder = tool::folder()?;
+    tool::write(folder.path(), "top.asc", &placed.asc)?;
+    tool::write(folder.path(), "top.pcf", job.constraints)?;
+    stage("icetime");
+    let said = tool::run(
+        &ICETIME,
+        folder.path(),
+        &["-d", part.device, "-P", part.package, "-p", "top.pcf", "-t", "top.asc"],
+    )?;
+    stage("icepack");
+    tool::run(&ICEPACK, folder.path(), &["top.asc", "top.bin"])?;
+    Ok(Built {
+        size: placed.size,
+        seed,
+        mhz: placed.mhz,
+        icetime_mhz: Some(slowest_path(&said)?),
+        bitstream: tool::read_bytes(folder.path(), "top.bin")?,
+    })
+}
+
+fn ecp5_bitstream(
+    job: &BuildJob<'_>,
+    stage: &mut dyn FnMut(&str),
+) -> Result<Built, SynthesisError> {
+    stage("yosys");
+    let netlist = ecp5::synthesise(job.verilog, job.top)?;
+    let (seed, placed) = first_that_reaches(
+        job.clock_hz,
+        |seed| {
+            stage(&format!("nextpnr-ecp5, seed {seed}"));
+            netlist.place_on(job.part, job.constraints, job.clock_hz, seed)
+        },
+        |placed| placed.mhz,
+    )?;
+    stage("ecppack");
+    let bitstream = placed.bitstream()?;
+    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
+}
+
+/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5. `None` for another family, whose
+/// boards need one seed only.
+///
+/// # Errors
+/// As [`build`].
+pub fn clocks_of_seeds(job: &BuildJob<'_>) -> Result<Option<[f64; SEEDS.len()]>, SynthesisError> {
+    if job.part.family().facts().placer() != Some(Placer::Ecp5) {
+        return Ok(None);
+    }
+    let netlist = ecp5::synthesise(job.verilog, job.top)?;
+    let mut clocks = [0.0; SEEDS.len()];
+    for (mhz, seed) in clocks.iter_mut().zip(SEEDS) {
+        *mhz = netlist.place_on(job.part, job.constraints, job.clock_hz, seed)?.mhz;
+    }
+    Ok(Some(clocks))
+}
+
+/// The placement of the first seed that reaches a clock, Hz, or else the best one, with its seed.
+fn first_that_reaches<P>(
+    clock_hz: u64,
+    mut place: impl FnMut(u32) -> Result<P, SynthesisError>,
+    mhz: impl Fn(&P) -> f64,
+) -> Result<(u32, P), SynthesisError> {
+    let mut best: Option<(u32, P)> = None;
     let mut failed = None;
     for seed in SEEDS {
-        stage(&format!("nextpnr-ice40, seed {seed}"));
         // If a part is nearly full, only some seeds lead to a placement.
-        match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
-            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => {
+        match place(seed) {
+            Ok(placed) if best.as_ref().is_none_or(|(_, best)| mhz(&placed) > mhz(best)) => {
                 best = Some((seed, placed));
             }
             Ok(_) => {}
             Err(error @ SynthesisError::Tool { .. }) => failed = Some(error),
             Err(error) => return Err(error),
         }
-        if best.as_ref().is_some_and(|(_, best)| best.mhz * 1e6 >= job.clock_hz as f64) {
+        if best.as_ref().is_some_and(|(_, best)| mhz(best) * 1e6 >= clock_hz as f64) {
             break;
         }
     }
-    let (seed, placed) = match (best, failed) {
-        (Some(best), _) => best,
-        (None, Some(error)) => return Err(error),
+    match (best, failed) {
+        (Some(best), _) => Ok(best),
+        (None, Some(error)) => Err(error),
         (None, None) => unreachable!("there are seeds"),
-    };
-    let folder = tool::folder()?;
-    tool::write(folder.path(), "top.asc", &placed.asc)?;
-    tool::write(folder.path(), "top.pcf", job.pcf)?;
-    stage("icetime");
-    let said = tool::run(
-        &ICETIME,
-        folder.path(),
-        &["-d", job.part.device, "-P", job.part.package, "-p", "top.pcf", "-t", "top.asc"],
-    )?;
-    stage("icepack");
-    tool::run(&ICEPACK, folder.path(), &["top.asc", "top.bin"])?;
-    let bitstream = std::fs::read(folder.path().join("top.bin")).map_err(|source| {
-        SynthesisError::Io { context: "cannot read top.bin".to_owned(), source }
-    })?;
-    Ok(Built {
-        size: placed.size,
-        seed,
-        mhz: placed.mhz,
-        icetime_mhz: slowest_path(&said)?,
-        bitstream,
-    })
+    }
 }
 
 /// Reads the line `Total path delay: 11.64 ns (85.92 MHz)`.

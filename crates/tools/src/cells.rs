@@ -26,6 +26,9 @@ pub(crate) const ICE40: Library = Library {
 pub(crate) const XILINX: Library =
     Library { file: "../share/yosys/xilinx/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
 
+pub(crate) const ECP5: Library =
+    Library { file: "../share/yosys/ecp5/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
+
 /// A design for an iCE40, preceded by the models of its cells.
 pub(crate) fn with_models(verilog: &str) -> Result<String, SynthesisError> {
     Ok(format!("{}{verilog}", models(&ICE40, verilog)?))
@@ -50,6 +53,15 @@ pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, Synthes
         text += "\nendmodule\n";
     }
     Ok(text)
+}
+
+/// The kinds of cells in the output of yosys' `stat`, each with its number.
+pub(crate) fn counted(stat: &str) -> impl Iterator<Item = (&str, u32)> {
+    stat.lines().filter_map(|line| {
+        let mut words = line.split_whitespace();
+        let (name, number) = (words.next()?, words.next()?.parse().ok()?);
+        words.next().is_none().then_some((name, number))
+    })
 }
 
 fn text(library: &Library) -> Result<String, SynthesisError> {

@@ -1,12 +1,11 @@
 //! Turns Verilog into an iCE40 bitstream with yosys, nextpnr and icepack, and reads the figures of
 //! each stage.
 
-use crate::cells::pattern;
+use crate::nextpnr_log::NextpnrLog;
 use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR, PYTHON};
 use crate::{SynthesisError, cells, read_back};
 use carrystep_boards::Part;
 use serde_json::Value;
-use std::collections::HashMap;
 use std::path::Path;
 
 /// A part: nextpnr's names of its device and of its package.
@@ -21,19 +20,18 @@ pub struct NextpnrPart<'a> {
 /// Resources of a part that a design uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
-    /// Logic cells. A cell holds a LUT, a flip-flop, a bit of carry, or all three.
+    /// Logic cells of an iCE40, of which one holds a LUT, a flip-flop, a bit of carry, or all three;
+    /// LUTs of an ECP5.
     pub logic_cells: u32,
-    /// Block RAMs of 4 kbit.
+    /// Block RAMs, of 4 kbit in an iCE40 and 18 kbit in an ECP5.
     pub block_rams: u32,
 }
 
 impl Size {
     /// Parses nextpnr's log.
     fn of(log: &str) -> Result<Self, SynthesisError> {
-        Ok(Self {
-            logic_cells: used(log, "ICESTORM_LC:")?,
-            block_rams: used(log, "ICESTORM_RAM:")?,
-        })
+        let log = log_of(log);
+        Ok(Self { logic_cells: log.used("ICESTORM_LC:")?, block_rams: log.used("ICESTORM_RAM:")? })
     }
 }
 
@@ -167,7 +165,7 @@ impl Netlist {
         let placement = serde_json::from_str(&tool::read(folder.path(), "placed.json")?);
         Ok(PlacedDesign {
             asc: tool::read(folder.path(), "placed.asc")?,
-            mhz: greatest_clock(&log)?,
+            mhz: log_of(&log).greatest_clock()?,
             size: Size::of(&log)?,
             placement: placement.map_err(|error| unread(format!("placed.json: {error}")))?,
         })
@@ -250,23 +248,6 @@ fn unread(what: String) -> SynthesisError {
     SynthesisError::Unread { tool: NEXTPNR.name, what }
 }
 
-/// The number behind a name in nextpnr's report on packing.
-fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
-    let line = log.lines().find(|line| line.contains(name) && line.contains('%'));
-    let number =
-        line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
-    number.ok_or_else(|| unread(name.to_owned()))
-}
-
-/// The last clock in nextpnr's log, which is that of the routed design.
-fn greatest_clock(log: &str) -> Result<f64, SynthesisError> {
-    let clock = pattern(r"Max frequency for clock +'(\S+)': ([0-9.]+) MHz");
-    // The last figure of each clock counts; the slowest clock is the design's.
-    let last: HashMap<&str, f64> = clock
-        .captures_iter(log)
-        .filter_map(|found| Some((found.get(1)?.as_str(), found[2].parse().ok()?)))
-        .collect();
-    last.into_values()
-        .min_by(f64::total_cmp)
-        .ok_or_else(|| unread("Max frequency for clock".to_owned()))
+fn log_of(text: &str) -> NextpnrLog<'_> {
+    NextpnrLog { tool: &NEXTPNR, text }
 }

@@ -13,11 +13,13 @@
 pub mod board;
 mod cells;
 pub mod doctor;
+pub mod ecp5;
 pub mod equivalence;
 mod error;
 pub mod ice40;
 mod inverses;
 pub mod kept;
+mod nextpnr_log;
 pub mod programs;
 mod read_back;
 pub mod resources;

@@ -1,6 +1,6 @@
 //! `cargo xtask resources` measures every row and writes `hdl-out/resources.md`. With the argument
 //! `boards` (from `cargo xtask long boards`) it builds all boards, and writes `hdl-out/boards.md`
-//! and the figures that `carrystep boards` shows.
+//! and the figures that `carrystep boards` shows. With names behind it, it builds these boards only.
 
 use carrystep_boards::MEASURED_AT;
 use carrystep_tools::board::page;
@@ -16,8 +16,9 @@ fn say(line: &str) {
 }
 
 fn main() -> ExitCode {
-    let written = match std::env::args().nth(1).as_deref() {
-        Some("boards") => boards(),
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let written = match arguments.split_first() {
+        Some((what, names)) if what == "boards" => boards(names),
         _ => resources(),
     };
     match written {
@@ -32,9 +33,10 @@ fn main() -> ExitCode {
 /// Text above the figures of the boards.
 const HEAD: &str = "# What the shipped gateware takes of each board, on its first part with its first clock. Written by `cargo xtask long boards`.\n\n";
 
-/// Builds all boards. A board that misses its clock is entered in the table, and is an error.
-fn boards() -> Result<(), String> {
-    let all = page::measure(&mut say).map_err(|error| error.to_string())?;
+/// Builds these boards, or all. A board that misses its clock is entered in the table, and is an
+/// error.
+fn boards(names: &[String]) -> Result<(), String> {
+    let all = page::measure(names, &say).map_err(|error| error.to_string())?;
     let text = page::page(&all);
     let data = toml::to_string(&all).map_err(|error| error.to_string())?;
     write(MEASURED_AT, &(HEAD.to_owned() + &data))?;
@@ -43,7 +45,7 @@ fn boards() -> Result<(), String> {
         return Err(format!("{}: a clock is not reached", page::PAGE));
     }
     say(&format!(
-        "FIGURES {} boards, each iCE40 on its pins and in time",
+        "FIGURES {} boards, each iCE40 on its pins and in time, each ECP5 with five seeds of five",
         text.matches("\n| `").count()
     ));
     Ok(())
@@ -75,12 +77,14 @@ fn resources() -> Result<(), String> {
     }
     let links = resources::links().map_err(|error| error.to_string())?;
     say(&format!("the link: {links:?}"));
-    let text = resources::page(&rows, &links, &families);
+    let ecp5 = resources::ecp5().map_err(|error| error.to_string())?;
+    say(&format!("ECP5: {ecp5:?}"));
+    let text = resources::page(&rows, &links, &families, &ecp5);
     write(PAGE, &text)?;
     resources::check(&text)?;
     // A line for the table of `cargo xtask long`.
     say(&format!(
-        "FIGURES {} rows of iCE40, {} of Xilinx, each within its budget",
+        "FIGURES {} rows of iCE40, {} of Xilinx, one of ECP5, each within its budget",
         rows.len(),
         families.len()
     ));

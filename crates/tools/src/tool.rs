@@ -2,7 +2,7 @@
 
 use crate::programs::Tool;
 pub(crate) use crate::programs::{
-    ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS,
+    ECPPACK, ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, NEXTPNR_ECP5, PYTHON, YOSYS,
 };
 use crate::{SynthesisError, kept};
 use std::path::Path;
@@ -36,6 +36,12 @@ pub(crate) fn yosys(folder: &Path, script: &str) -> Result<String, SynthesisErro
 pub(crate) fn read(folder: &Path, name: &str) -> Result<String, SynthesisError> {
     let context = || format!("cannot read {name}");
     std::fs::read_to_string(folder.join(name))
+        .map_err(|source| SynthesisError::Io { context: context(), source })
+}
+
+pub(crate) fn read_bytes(folder: &Path, name: &str) -> Result<Vec<u8>, SynthesisError> {
+    let context = || format!("cannot read {name}");
+    std::fs::read(folder.join(name))
         .map_err(|source| SynthesisError::Io { context: context(), source })
 }
 

@@ -8,6 +8,7 @@ pub use edif::from_edif;
 pub use models::simulated;
 
 use crate::SynthesisError;
+use crate::cells::counted;
 use crate::tool::{self, YOSYS};
 use carrystep_boards::Mapped;
 
@@ -48,12 +49,7 @@ pub fn to_edif(verilog: &str, top: &str, family: &str) -> Result<String, Synthes
 
 fn count(stat: &str) -> Result<Mapped, SynthesisError> {
     let mut cells = Mapped::default();
-    for line in stat.lines() {
-        let mut words = line.split_whitespace();
-        let (Some(name), Some(number), None) = (words.next(), words.next(), words.next()) else {
-            continue;
-        };
-        let Ok(number) = number.parse::<u32>() else { continue };
+    for (name, number) in counted(stat) {
         match name {
             "INV" => cells.luts += number,
             "RAM16X1D" => cells.luts += 2 * number,

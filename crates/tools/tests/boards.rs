@@ -13,7 +13,7 @@ fn builds(name: &str) {
     let built = built(board).expect("a bitstream");
     assert!(built.reaches(board.clocks[0].clock_hz), "{name}: {} MHz", built.mhz);
     assert!(built.bitstream.len() > 30_000);
-    let found = Measured::Placed(placed(board, &built));
+    let found = Measured::Placed(placed(board, &built, None));
     kept::say();
     assert_eq!(board.measured(), Some(found), "run `cargo xtask long boards`");
 }

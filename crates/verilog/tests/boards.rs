@@ -4,9 +4,10 @@
 
 mod common;
 
-use carrystep_boards::{Board, OSCILLATOR, PORTS, Way, board, boards};
+use carrystep_boards::{Board, Family, OSCILLATOR, PORTS, Placer, Way, board, boards};
 use carrystep_files::SourceText;
 use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped_machine};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// All bits of a board's ports that have pins of their own.
@@ -88,18 +89,24 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin
-/// and place the PLL, and icepack must make a bitstream.
+/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow, so that a
+/// test run builds for one of those boards only; `cargo xtask long self-test` builds all.
 #[test]
-fn script_of_every_ice40_board_builds_a_bitstream_with_all_pins() {
-    for board in boards().iter().filter(|board| board.family.facts().toolchain().by_hand.is_none())
-    {
+fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
+    let is_every_board = std::env::var_os("CARRYSTEP_BOARDS").is_some();
+    for board in boards() {
+        let is_chosen = match board.family.facts().placer() {
+            Some(Placer::Ice40) => true,
+            Some(Placer::Ecp5) => is_every_board || board.name == "ulx3s",
+            None => false,
+        };
+        if !is_chosen {
+            continue;
+        }
         let folder = folder(board);
         run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
-        assert!(
-            std::fs::metadata(folder.path().join("top.bin")).unwrap().len() > 30_000,
-            "{}",
-            board.name
-        );
+        let bitstream = folder.path().join(format!("top.{}", board.bitstream));
+        assert!(std::fs::metadata(bitstream).unwrap().len() > 30_000, "{}", board.name);
     }
 }
 
@@ -135,6 +142,27 @@ fn constraints_contain_exactly_the_ports_of_the_top_level() {
     );
     let refused = files(board, &["limit_max[0]".to_owned()]).unwrap_err().to_string();
     assert_eq!(refused, "icestick has no pin for limit_max[0]");
+}
+
+/// The constraints of every ECP5 board place each port on the pin that the board's file gives it,
+/// and nothing else.
+#[test]
+fn constraints_of_an_ecp5_place_every_port_on_its_pin() {
+    for board in boards().iter().filter(|board| board.family == Family::Ecp5) {
+        let files = files(board, &ports(board)).unwrap();
+        let text = &files.iter().find(|file| file.name.ends_with(".lpf")).unwrap().text;
+        let quoted = |line: &str| {
+            let mut words = line.strip_prefix("LOCATE COMP ")?.split('"');
+            Some((words.nth(1)?.to_owned(), words.nth(1)?.to_owned()))
+        };
+        let found: BTreeMap<String, String> = text.lines().filter_map(quoted).collect();
+        let wires = board.wires.iter().filter(|wire| !wire.beside_uart);
+        let pins = wires.map(|wire| (wire.port.clone(), wire.pin.clone()));
+        let ties = board.ties.iter().map(|tie| (tie.port.clone(), tie.pin.clone()));
+        let oscillator = [(OSCILLATOR.to_owned(), board.oscillator.pin.clone())];
+        let known: BTreeMap<String, String> = pins.chain(ties).chain(oscillator).collect();
+        assert_eq!(found, known, "{}", board.name);
+    }
 }
 
 /// The error for a board with one thing changed in the shipped machine file.

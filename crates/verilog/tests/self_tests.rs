@@ -4,7 +4,7 @@
 
 mod common;
 
-use carrystep_boards::{board, boards};
+use carrystep_boards::{Placer, board, boards};
 use carrystep_verilog::{SELF_TEST_NAME, SELF_TEST_WAIVERS, SelfTestGateware, TextFile};
 use common::run;
 use std::collections::BTreeSet;
@@ -58,7 +58,7 @@ fn yosys_finds_no_latch_and_no_undriven_wire() {
 /// Every port of the top level has a pin, and no pin is assigned without its port.
 #[test]
 fn constraints_name_exactly_the_ports_of_the_top_level() {
-    for board in boards().iter().filter(|board| board.family.facts().yosys().is_none()) {
+    for board in boards().iter().filter(|board| board.family.facts().placer().is_some()) {
         let files = files(&board.name);
         let text = |end: &str| &files.iter().find(|file| file.name.ends_with(end)).unwrap().text;
         let (_, ports) = text("_selftest.v").split_once(" (\n").unwrap();
@@ -75,8 +75,14 @@ fn constraints_name_exactly_the_ports_of_the_top_level() {
                 }
             }
         }
-        let pins = text(".pcf").lines().filter(|line| line.starts_with("set_io"));
-        let named = pins.map(|line| line.rsplit(' ').nth(1).unwrap().to_owned());
+        let is_icestorm = board.family.facts().placer() == Some(Placer::Ice40);
+        let constraints = text(board.family.facts().toolchain().constraints_end()).lines();
+        let named = constraints.filter_map(|line| {
+            if is_icestorm {
+                return line.strip_prefix("set_io")?.rsplit(' ').nth(1).map(str::to_owned);
+            }
+            line.strip_prefix("LOCATE COMP \"")?.split('"').next().map(str::to_owned)
+        });
         assert_eq!(named.collect::<BTreeSet<_>>(), declared, "{}", board.name);
     }
 }

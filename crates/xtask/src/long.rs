@@ -112,21 +112,21 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "boards",
-        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 to bitstreams on their pins, Spartans to yosys' cells",
+        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 and ECP5 to bitstreams on their pins, Spartans to yosys' cells",
         asks: &[],
         cargo: &["-p", "carrystep-tools", "--", "boards"],
     },
     Run {
         name: "equivalence",
-        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
+        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, ECP5 boards as Verilog and as netlists, Spartans as Verilog and as the EDIF of their cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_is_its_verilog"],
     },
     Run {
         name: "self-test",
-        what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and read back from bitstream or EDIF; planted faults",
+        what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and as bitstream (iCE40), netlist (ECP5) or EDIF (Spartans); planted faults; every pin of each iCE40 and ECP5 board placed by its build script",
         asks: &[("CARRYSTEP_BOARDS", "all")],
-        cargo: &["--test", "a_self_test_shows_every_pin"],
+        cargo: &["--test", "a_self_test_shows_every_pin", "--test", "boards"],
     },
     Run {
         name: "holds",

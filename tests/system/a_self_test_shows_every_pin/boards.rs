@@ -7,7 +7,7 @@ use carrystep_tests::self_test_board::SelfTestSession;
 use carrystep_tests::{board_clock, effort, jobs};
 use carrystep_tools::board::{BuildJob, build};
 use carrystep_tools::ice40::{self, NextpnrPart};
-use carrystep_tools::{kept, xilinx};
+use carrystep_tools::{ecp5, kept, xilinx};
 use carrystep_verilog::SelfTestGateware;
 
 /// A whole session; every assertion is about the recorded pins.
@@ -59,16 +59,20 @@ fn session(board: &'static Board, spi: bool) -> SelfTestSession {
 fn simulated(board: &Board, verilog: &str) -> String {
     match board.family {
         Family::Ice40 => board_clock::with_bench_pll(verilog),
+        Family::Ecp5 => ecp5::simulated(verilog).expect("models of its cells"),
         _ => xilinx::simulated(verilog).expect("models of its cells"),
     }
 }
 
-/// What the tools make of a session's Verilog, read back: the bitstream of an iCE40, the EDIF of a
-/// Spartan's cells.
+/// What the tools make of a session's Verilog: the bitstream of an iCE40 and the EDIF of a Spartan's
+/// cells, read back, and the netlist of an ECP5.
 fn read_back(board: &Board, session: &SelfTestSession) -> String {
     if let Some(family) = board.family.facts().yosys() {
         let edif = xilinx::to_edif(&session.verilog, &session.top(), family).expect("EDIF");
         return xilinx::from_edif(&edif).expect("EDIF");
+    }
+    if board.family == Family::Ecp5 {
+        return ecp5::synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
     }
     let part = &board.parts[0];
     let netlist = ice40::synthesise_for(&session.verilog, &session.top(), &part.name);
@@ -85,7 +89,7 @@ fn on_the_pins(board: &'static Board, spi: bool) {
     let compare = |verilog: &str| session.difference(&simulated(board, verilog));
     let name = &board.name;
     assert_eq!(compare(&session.verilog), None, "{name}: the Verilog");
-    if effort::is_every_board() || name == "icestick" {
+    if effort::is_every_board() || name == "icestick" || board.family == Family::Ecp5 {
         assert_eq!(compare(&read_back(board, &session)), None, "{name}: read back");
     }
     let last_input = format!("assign pins[{}]", session.test.last_input());
@@ -103,14 +107,15 @@ fn on_the_pins(board: &'static Board, spi: bool) {
     kept::say();
 }
 
-/// The self-test of an iCE40 board, with its real times, fits and reaches its clock.
+/// The self-test of an iCE40 or ECP5 board, with its real times, fits and reaches its clock.
 #[test]
-fn self_test_of_an_ice40_board_becomes_a_bitstream() {
+fn self_test_of_a_board_becomes_a_bitstream() {
     let is_chosen = |board: &&Board| {
-        board.family == Family::Ice40 && (effort::is_every_board() || board.name == "icestick")
+        let is_placed = board.family.facts().placer().is_some();
+        is_placed && (effort::is_every_board() || board.name == "icestick")
     };
-    let ice40s: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
-    jobs::each(&ice40s, |board| {
+    let placed: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
+    jobs::each(&placed, |board| {
         let part = &board.parts[0];
         let gateware = SelfTestGateware::new(board, part, false).expect("a self-test");
         let files = gateware.files().expect("its files");
@@ -121,8 +126,8 @@ fn self_test_of_an_ice40_board_becomes_a_bitstream() {
         let job = BuildJob {
             verilog: &texts(".v"),
             top: &gateware.top(),
-            pcf: &texts(".pcf"),
-            part: NextpnrPart { device: &part.name, package: &part.package },
+            constraints: &texts(board.family.facts().toolchain().constraints_end()),
+            part,
             clock_hz: gateware.clock_hz(),
         };
         let built = build(&job, &mut |_| ()).expect("a bitstream");
@@ -134,18 +139,18 @@ fn self_test_of_an_ice40_board_becomes_a_bitstream() {
             size.logic_cells, size.block_rams, built.mhz
         ));
     });
-    effort::figures(&format!("{} self-tests as bitstreams, each in time", ice40s.len()));
+    effort::figures(&format!("{} self-tests as bitstreams, each in time", placed.len()));
     kept::say();
 }
 
 #[test]
 fn every_pin_of_a_board_is_what_its_self_test_says() {
-    let some = ["icestick", "mojo-v3"];
+    let some = ["icestick", "mojo-v3", "orangecrab"];
     let is_chosen = |board: &&Board| effort::is_every_board() || some.contains(&&*board.name);
     let chosen: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
     jobs::each(&chosen, |board| on_the_pins(board, false));
     effort::figures(&format!(
-        "{} self-tests from their pins, as Verilog and read back from bitstream or EDIF, three \
+        "{} self-tests from their pins, as Verilog and as bitstream, EDIF or netlist, three \
          planted faults seen on each",
         chosen.len()
     ));

@@ -1,6 +1,6 @@
 //! Lattice iCE40 LP, HX and UltraPlus.
 
-use super::{FpgaFamily, PllInput};
+use super::{FpgaFamily, Placer, PllInput};
 use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
@@ -25,6 +25,14 @@ impl FpgaFamily for Ice40 {
         &TOOLCHAIN
     }
 
+    fn placer(&self) -> Option<Placer> {
+        Some(Placer::Ice40)
+    }
+
+    fn cells(&self) -> &'static str {
+        "logic cells"
+    }
+
     fn clock_managers(&self) -> ClockManagers {
         ClockManagers::Ice40
     }
@@ -47,6 +55,10 @@ impl FpgaFamily for Ice40 {
 
     fn has_pll_input(&self) -> bool {
         true
+    }
+
+    fn nextpnr(&self, Part { name, package, .. }: &Part) -> Vec<String> {
+        vec![format!("--{name}"), "--package".to_owned(), package.clone()]
     }
 
     fn ordered(&self, Part { name, package, .. }: &Part) -> String {

@@ -77,14 +77,23 @@ pub fn gateware<'a>(
 /// The list of all boards, one line each.
 fn list() -> String {
     let mut text = format!(
-        "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {:>14}  {:>8}  {:>5}  board\n",
+        "{:<13}  {:<9}  {:>5}  {:>4}  {:>6}  {:>16}  {:>8}  {:>5}  board\n",
         "name", "part", "MHz", "tick", "phases", "logic", "RAMs", "Fmax"
     );
     for board in boards() {
         let (part, clock) = (&board.parts[0], &board.clocks[0]);
         let [logic, rams, fmax] = match board.measured() {
-            Some(Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, .. })) => [
-                part.logic_cells.map_or_else(String::new, |of| format!("{logic_cells}/{of} LC")),
+            Some(Measured::Placed(Placed {
+                logic_cells,
+                block_rams,
+                nextpnr_mhz,
+                least_mhz,
+                ..
+            })) => [
+                part.logic_cells.map_or_else(String::new, |of| {
+                    let unit = if least_mhz.is_some() { "LUTs" } else { "LC" };
+                    format!("{logic_cells}/{of} {unit}")
+                }),
                 format!("{block_rams}/{}", part.block_rams),
                 format!("{nextpnr_mhz:.1}"),
             ],
@@ -98,7 +107,7 @@ fn list() -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {logic:>14}  {rams:>8}  {fmax:>5}  {}",
+            "{:<13}  {:<9}  {:>5}  {:>4}  {:>6}  {logic:>16}  {rams:>8}  {fmax:>5}  {}",
             board.name,
             part.name,
             mhz(clock.clock_hz),
@@ -143,12 +152,18 @@ fn in_full(board: &Board) -> String {
             block_rams,
             nextpnr_mhz,
             icetime_mhz,
+            least_mhz,
             ..
         })) => writeln!(
             text,
-            "measured     {logic_cells} of {} logic cells, {block_rams} of {} block RAMs, {nextpnr_mhz:.1} MHz by nextpnr, {icetime_mhz:.1} MHz by icetime",
+            "measured     {logic_cells} of {} {}, {block_rams} of {} block RAMs, {nextpnr_mhz:.1} MHz by nextpnr{}{}",
             first.logic_cells.unwrap_or_default(),
-            first.block_rams
+            board.family.facts().cells(),
+            first.block_rams,
+            least_mhz
+                .map(|mhz| format!(", {mhz:.1} MHz or more with each of five seeds"))
+                .unwrap_or_default(),
+            icetime_mhz.map(|mhz| format!(", {mhz:.1} MHz by icetime")).unwrap_or_default()
         ),
         Some(Measured::Mapped(Mapped { luts, flip_flops, block_rams, .. })) => writeln!(
             text,
@@ -157,6 +172,10 @@ fn in_full(board: &Board) -> String {
         ),
         None => Ok(()),
     };
+    if board.measured().is_some() {
+        let compared = board.family.compared();
+        let _ = writeln!(text, "compared     {compared}, with Rust-HDL on every pin");
+    }
     let _ = writeln!(text, "\n{:<12}  {:<4}  at", "port", "pin");
     for wire in &board.wires {
         let at = wire.at.as_ref().map_or_else(

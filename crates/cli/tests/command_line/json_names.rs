@@ -85,6 +85,12 @@ const SHARED: &str =
     boards[].shared[].why boards[].gate.port boards[].gate.pin boards[].gate.wait_ns boards[].gate.holds
     boards[].gate.why";
 
+const ECP5: &str = "boards[].parts[].logic_cells boards[].parts[].speed boards[].usb
+    boards[].clocks[].made_by.ecp5_pll boards[].clocks[].made_by.ecp5_pll.divide
+    boards[].clocks[].made_by.ecp5_pll.multiply boards[].clocks[].made_by.ecp5_pll.out_divide
+    boards[].measured.logic_cells boards[].measured.nextpnr_mhz boards[].measured.seed
+    boards[].measured.least_mhz";
+
 const SPARTANS: &str =
     "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
     boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
@@ -173,7 +179,7 @@ fn linuxcnc_document_keeps_its_field_names() {
 #[test]
 fn boards_document_keeps_its_field_names() {
     let folder = Folder::new();
-    document(&folder, "boards", 0, &[BOARDS, ICE40, TIES, SHARED, SPARTANS]);
+    document(&folder, "boards", 0, &[BOARDS, ICE40, ECP5, TIES, SHARED, SPARTANS]);
     let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
     assert_eq!(one["boards"][0]["clocks"][0]["clock_hz"], 37_500_000);
     assert_eq!(one["tried_on_hardware"], false);

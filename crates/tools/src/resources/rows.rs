@@ -162,3 +162,11 @@ pub const FAMILIES: [FamilyRow; 3] = [
         budget: Mapped { luts: 720, flip_flops: 430, carries: 60, block_rams: 6 },
     },
 ];
+
+/// Engine, link and UART with everything that can be left out and the deepest queues, in the cells
+/// of an ECP5. A LUT is one as nextpnr counts them, with those of carry chains.
+pub const ECP5: FamilyRow = FamilyRow {
+    name: "ecp5",
+    of: EngineRow { queue: QUEUE_DEPTHS[2], ..ALL_ONE },
+    budget: Mapped { luts: 1850, flip_flops: 630, carries: 140, block_rams: 17 },
+};

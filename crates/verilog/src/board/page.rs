@@ -57,7 +57,10 @@ fn values(board: &Board) -> Value {
         name => &board.name,
         title => &board.title,
         family => board.family.to_string(),
+        placed => board.family.facts().placer().is_some(),
+        cells => board.family.facts().cells(),
         toolchain => board.family.facts().toolchain().to_string(),
+        compared => board.family.compared(),
         parts => board.parts.iter().map(|part| context! {
             name => &part.name,
             ordered => part.ordered(),

@@ -20,7 +20,7 @@ yosys=${YOSYS:-yosys} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-icepa
 # near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do
     test "$seed" != none || { echo "no placement reaches {{ mhz }} MHz: see nextpnr.log"; exit 1; }
-    "$nextpnr" --{{ part.name }} --package {{ part.package }} --freq {{ mhz }} --seed $seed --json {{ top }}.json --pcf {{ top }}.pcf --asc {{ top }}.asc --quiet --log nextpnr.log && break
+    "$nextpnr" {{ part.nextpnr }} --freq {{ mhz }} --seed $seed --json {{ top }}.json --pcf {{ top }}.pcf --asc {{ top }}.asc --quiet --log nextpnr.log && break
 done
 "$icepack" {{ top }}.asc {{ bitstream }}
 echo "{{ bitstream }} is made; load it with: {{ flash }}"

@@ -59,6 +59,7 @@ fn command(binary: &Binary) -> Command {
     command
         .args(&binary.arguments)
         .current_dir(&binary.folder)
+        .env("PATH", shell::path())
         .envs(binary.environment.iter().cloned());
     command
 }
