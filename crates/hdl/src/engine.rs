@@ -313,42 +313,46 @@ impl<const N: usize, const S: usize> Engine<N, S> {
     /// Makes the engine of a build. The caller has checked the build and ensures that it has N
     /// axes, and several latches if S is 1.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
-        let mut pulser = PerAxis::<Pulser, N>::default();
-        for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
+        let mut engine = Self::default();
+        engine.set(build)?;
+        Ok(engine)
+    }
+
+    /// Replaces the parts that depend on the build. An expression `Self { .. }` with
+    /// `..Self::default()` would move each of the other fields by itself, for each N and S.
+    fn set(&mut self, build: &EngineBuild) -> Result<(), HdlError> {
+        for (pulser, pins) in self.pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
         let slots = build.slots();
-        Ok(Self {
-            time_slot: TimeSlot::new(),
-            store: Store::new(build.phase, &build.guard.stop, slots),
-            queue: Queue::new(slots, build.cuts),
-            cut_control: CutControl::new(build.cuts),
-            readout: Readout::new(slots),
-            event_wheel: EventWheel::new(&build.timebase),
-            output_control: OutputControl::new(&build.outputs, slots),
-            pulse_width: PulseWidth::new(build.outputs.pwm_divider),
-            switches: Switches::new(&build.guard),
-            seek_control: SeekControl::new(),
-            edge_latch: EdgeLatch::new(build.guard.latches.first()),
-            latch_bank: PerAxis::from_fn(|_| LatchBank::new(&build.guard)),
-            stops: Stops::new(&build.guard),
-            supervisor: Supervisor::new(&build.guard),
-            pulser,
-            axes: Parameter::new(N as u64),
-            off_at_ramps: Parameter::of(&off_at_ramps.bits(0)),
-            outputs_off_at_ramps_out_of_range: ParameterRefusal::of(&off_at_ramps.is_outside(0, 1)),
-            clocks_per_tick_too_few_for_the_axes: ParameterRefusal::of(
-                &clocks.whole().is_less(&Formula::number(least)),
-            ),
-            to_top: Parameter::new(N as u64 - 1),
-            one_axis: PerAxis::from_fn(|axis| Parameter::new(1 << axis)),
-            rest_1: Register::new(true),
-            rest_2: Register::new(true),
-            ..Self::default()
-        })
+        self.time_slot = TimeSlot::new();
+        self.store = Store::new(build.phase, &build.guard.stop, slots);
+        self.queue = Queue::new(slots, build.cuts);
+        self.cut_control = CutControl::new(build.cuts);
+        self.readout = Readout::new(slots);
+        self.event_wheel = EventWheel::new(&build.timebase);
+        self.output_control = OutputControl::new(&build.outputs, slots);
+        self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
+        self.switches = Switches::new(&build.guard);
+        self.seek_control = SeekControl::new();
+        self.edge_latch = EdgeLatch::new(build.guard.latches.first());
+        self.latch_bank = PerAxis::from_fn(|_| LatchBank::new(&build.guard));
+        self.stops = Stops::new(&build.guard);
+        self.supervisor = Supervisor::new(&build.guard);
+        self.axes = Parameter::new(N as u64);
+        self.off_at_ramps = Parameter::of(&off_at_ramps.bits(0));
+        self.outputs_off_at_ramps_out_of_range =
+            ParameterRefusal::of(&off_at_ramps.is_outside(0, 1));
+        self.clocks_per_tick_too_few_for_the_axes =
+            ParameterRefusal::of(&clocks.whole().is_less(&Formula::number(least)));
+        self.to_top = Parameter::new(N as u64 - 1);
+        self.one_axis = PerAxis::from_fn(|axis| Parameter::new(1 << axis));
+        self.rest_1 = Register::new(true);
+        self.rest_2 = Register::new(true);
+        Ok(())
     }
 }
 

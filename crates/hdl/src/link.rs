@@ -23,6 +23,7 @@
 //! cells.
 
 use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
+use crate::primitives::compiled_once;
 use crate::primitives::formula::Formula;
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
@@ -194,7 +195,9 @@ fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
     facts(build, id).into_iter().map(formula).collect()
 }
 
-impl<const N: usize, const S: usize> Logic for Link<N, S> {
+compiled_once::logic!(Link<N = 8, S = 1>);
+
+impl<const N: usize, const S: usize> compiled_once::Kernel for Link<N, S> {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, processor, register_mirror);
@@ -277,6 +280,7 @@ impl<const N: usize, const S: usize> Logic for Link<N, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primitives::compiled_once::assert_sizes_agree;
     use crate::sim::assert_synthesizes;
     use carrystep_core::link::LineKind;
     use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
@@ -293,6 +297,15 @@ mod tests {
             .map(|(at, fact)| (*at, fact.value().value() as u32))
             .collect();
         assert_eq!(values, facts(&build, id));
+    }
+
+    #[test]
+    fn statements_are_those_of_each_size() {
+        assert_sizes_agree::<Link<1, 0>>();
+        assert_sizes_agree::<Link<2, 1>>();
+        assert_sizes_agree::<Link<3, 1>>();
+        assert_sizes_agree::<Link<7, 0>>();
+        assert_sizes_agree::<Link<8, 1>>();
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Building blocks that Rust-HDL does not have, in the form that the exported Verilog needs:
 //! registers with a reset value, memories, words of bits, and constants that differ between builds.
 
+pub(crate) mod compiled_once;
 pub mod constant;
 pub mod formula;
 pub mod held_memory;

@@ -54,6 +54,8 @@ pub struct PlacedDesign {
     pub mhz: f64,
     /// Resources that the design uses.
     pub size: Size,
+    /// Delays of all cells and wires, in the format SDF.
+    pub sdf: String,
     /// Location of every cell.
     placement: Value,
 }
@@ -159,6 +161,8 @@ impl Netlist {
             "--timing-allow-fail",
             "--asc",
             "placed.asc",
+            "--sdf",
+            "placed.sdf",
             "--write",
         ];
         let (folder, log) = self.nextpnr(part, pcf, &[&more[..], &["placed.json"]].concat())?;
@@ -167,6 +171,7 @@ impl Netlist {
             asc: tool::read(folder.path(), "placed.asc")?,
             mhz: log_of(&log).greatest_clock()?,
             size: Size::of(&log)?,
+            sdf: tool::read(folder.path(), "placed.sdf")?,
             placement: placement.map_err(|error| unread(format!("placed.json: {error}")))?,
         })
     }
@@ -206,6 +211,11 @@ impl Netlist {
 }
 
 impl PlacedDesign {
+    /// nextpnr's description of the placed design: cells with their locations, and nets.
+    pub(crate) fn placement(&self) -> &Value {
+        &self.placement
+    }
+
     /// Reads the bitstream of these configuration bits back as Verilog. Of the netlist, only the
     /// ports and the names of its flip-flops and memories are used. `asc` is [`PlacedDesign::asc`],
     /// possibly with a bit changed.

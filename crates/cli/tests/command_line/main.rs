@@ -102,6 +102,9 @@ mod serve_states;
 #[cfg(unix)]
 mod serve_streams;
 mod shard_merges;
+// Other targets and the profile `dev` have other sizes.
+#[cfg(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu", not(debug_assertions)))]
+mod size;
 #[cfg(unix)]
 mod stop_on_the_wire;
 #[cfg(unix)]

@@ -26,6 +26,7 @@
 use super::layout::{EVENT_AXES, EVENT_BACKWARD, EVENT_TICK};
 use crate::parameters::EVENT_MEMORY;
 use crate::parts::tick::Tick;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -107,7 +108,9 @@ impl<const N: usize> EventWheel<N> {
     }
 }
 
-impl<const N: usize> Logic for EventWheel<N> {
+compiled_once::logic!(EventWheel<N = 8>);
+
+impl<const N: usize> compiled_once::Kernel for EventWheel<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, when);
@@ -196,7 +199,16 @@ impl<const N: usize> Logic for EventWheel<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primitives::compiled_once::assert_sizes_agree;
     use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn statements_are_those_of_each_size() {
+        assert_sizes_agree::<EventWheel<1>>();
+        assert_sizes_agree::<EventWheel<2>>();
+        assert_sizes_agree::<EventWheel<7>>();
+        assert_sizes_agree::<EventWheel<8>>();
+    }
 
     #[test]
     fn event_wheel_synthesizes() {

@@ -1,6 +1,7 @@
 //! Checks which builds make an engine, and that yosys accepts the Verilog of the engines.
 
 use super::*;
+use crate::primitives::compiled_once::assert_sizes_agree;
 use carrystep_core::engine::EngineError;
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
@@ -17,6 +18,15 @@ fn of_axes(axes: usize) -> EngineBuild {
     build.guard.stop.resize(axes, 1);
     build.timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
     build
+}
+
+#[test]
+fn statements_are_those_of_each_size() {
+    assert_sizes_agree::<Engine<1, 0>>();
+    assert_sizes_agree::<Engine<2, 1>>();
+    assert_sizes_agree::<Engine<3, 1>>();
+    assert_sizes_agree::<Engine<7, 0>>();
+    assert_sizes_agree::<Engine<8, 1>>();
 }
 
 #[test]

@@ -17,10 +17,13 @@ use super::layout::{
     BEAT_LAST, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST, COUNTS_LOSSES, COUNTS_PULSES,
     MASK_OF_SLOT, POSITION_LOW, PUT_NAMES, PUT_NUMBER, PUT_SLOT, SLOT_OF_FIRST,
 };
+use crate::primitives::compiled_once;
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
-impl<const N: usize, const S: usize> Logic for Engine<N, S> {
+compiled_once::logic!(Engine<N = 8, S = 1>);
+
+impl<const N: usize, const S: usize> compiled_once::Kernel for Engine<N, S> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(

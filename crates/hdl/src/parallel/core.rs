@@ -23,6 +23,7 @@ use crate::HdlError;
 use crate::parallel::axis::ParallelAxis;
 use crate::parts::shaper::Shaper;
 use crate::parts::tick::Tick;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
@@ -131,7 +132,9 @@ impl<const N: usize> ParallelCore<N> {
     }
 }
 
-impl<const N: usize> Logic for ParallelCore<N> {
+compiled_once::logic!(ParallelCore<N = 6>);
+
+impl<const N: usize> compiled_once::Kernel for ParallelCore<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, armed, mask, broken);
@@ -240,8 +243,17 @@ impl<const N: usize> Logic for ParallelCore<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primitives::compiled_once::assert_sizes_agree;
     use crate::sim::assert_synthesizes;
     use carrystep_core::{AXES, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn statements_are_those_of_each_size() {
+        assert_sizes_agree::<ParallelCore<1>>();
+        assert_sizes_agree::<ParallelCore<2>>();
+        assert_sizes_agree::<ParallelCore<5>>();
+        assert_sizes_agree::<ParallelCore<6>>();
+    }
 
     #[test]
     fn parallel_core_of_any_number_of_axes_synthesizes() {

@@ -19,6 +19,7 @@ pub struct Running {
     path: PathBuf,
     begun: Instant,
     seen: Seen,
+    worked: Option<Duration>,
 }
 
 /// A binary that has ended.
@@ -27,6 +28,8 @@ pub struct EndedProcess {
     pub counts: Counts,
     /// From its start to its end.
     pub took: Duration,
+    /// Processor time of it and of the processes that it started, where the system tells it.
+    pub worked: Option<Duration>,
     /// Seconds of each test.
     pub seconds: Vec<(String, f64)>,
     /// All that it printed.
@@ -88,7 +91,7 @@ impl Running {
         let child = command.stdin(Stdio::null()).stdout(file).stderr(errors).spawn();
         let child = child.map_err(|error| shell::cannot("start", &binary.program, &error))?;
         let (count, path, begun) = (slice.count, path.to_owned(), Instant::now());
-        Ok(Self { slice: place, count, child, path, begun, seen: Seen::default() })
+        Ok(Self { slice: place, count, child, path, begun, seen: Seen::default(), worked: None })
     }
 
     /// Looks at it; what it came to, where it has ended.
@@ -96,6 +99,8 @@ impl Running {
     /// # Errors
     /// The system's.
     pub fn poll(&mut self) -> Result<Option<EndedProcess>, String> {
+        // After `try_wait` has seen the end, the system has forgotten the process.
+        self.worked = processor_time(self.child.id()).or(self.worked);
         let status =
             self.child.try_wait().map_err(|error| format!("cannot wait for a test: {error}"))?;
         let now = self.begun.elapsed();
@@ -111,8 +116,23 @@ impl Running {
         if self.count.is_none() {
             seconds = vec![(String::new(), now.as_secs_f64())];
         }
-        Ok(Some(EndedProcess { counts, took: now, seconds, output }))
+        Ok(Some(EndedProcess { counts, took: now, worked: self.worked, seconds, output }))
     }
+}
+
+/// The processor time of a process and of those of its children that it has waited for. Linux alone
+/// tells it.
+fn processor_time(process: u32) -> Option<Duration> {
+    processor_time_in(&fs::read_to_string(format!("/proc/{process}/stat")).ok()?)
+}
+
+/// The sum of the fields 14 to 17 of `/proc/PID/stat`, in hundredths of a second. The second field,
+/// the name of the program in parentheses, may contain spaces.
+fn processor_time_in(stat: &str) -> Option<Duration> {
+    let (_, fields) = stat.rsplit_once(") ")?;
+    let times = fields.split(' ').skip(11).take(4);
+    let times: Vec<u64> = times.map(str::parse).collect::<Result<_, _>>().ok()?;
+    (times.len() == 4).then(|| Duration::from_millis(10 * times.iter().sum::<u64>()))
 }
 
 /// When the line `test NAME ... ` was seen of each test.
@@ -168,12 +188,20 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::super::slices::Needs;
-    use super::{Binary, Running, Seen, Slice, listed, tests};
+    use super::{Binary, Running, Seen, Slice, listed, processor_time_in, tests};
     use std::time::Duration;
 
     #[test]
     fn tests_are_listed() {
         assert_eq!(listed("one: test\na::two: test\nfast: benchmark\n\n"), ["one", "a::two"]);
+    }
+
+    #[test]
+    fn processor_time_is_that_of_a_process_and_its_children() {
+        let stat = "7 (a ) name) S 1 2 3 4 5 6 7 8 9 10 100 20 3 4 20 0 1 0 99 1000";
+        assert_eq!(processor_time_in(stat), Some(Duration::from_millis(1270)));
+        assert_eq!(processor_time_in("7 (name) S 1"), None);
+        assert_eq!(processor_time_in(""), None);
     }
 
     #[test]

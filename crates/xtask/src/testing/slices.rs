@@ -4,7 +4,7 @@ use super::binaries::Binary;
 use super::memory::TestTimes;
 
 /// A slice is split where it is expected to take more seconds than this.
-const LONGEST: f64 = 40.0;
+pub const LONGEST: f64 = 40.0;
 
 /// Binaries that are not split, because their tests share something that takes long to make.
 const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equal_verilog"];
@@ -13,12 +13,14 @@ const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equa
 const WIDE: [&str; 2] =
     ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
 
-/// Binaries whose tests mostly wait for a board or a line that runs in real time.
-const WAITING: [&str; 4] = [
-    "carrystep-virtual-board::bad_line",
-    "carrystep-virtual-board::facts",
-    "carrystep-virtual-board::homing",
-    "carrystep-virtual-board::rates",
+/// Tests that mostly wait for a board or a line that runs in real time: the binary, and its modules
+/// with such tests; none: all its tests.
+const WAITING: [(&str, &[&str]); 5] = [
+    ("carrystep-virtual-board::bad_line", &[]),
+    ("carrystep-virtual-board::facts", &[]),
+    ("carrystep-virtual-board::homing", &[]),
+    ("carrystep-virtual-board::rates", &[]),
+    ("carrystep-cli::command_line", &["boards::wrong_peer_on_the_port_is_named"]),
 ];
 
 /// What a slice needs of the computer.
@@ -33,13 +35,18 @@ pub enum Needs {
 }
 
 impl Needs {
+    /// What the tests of a binary need that do not wait.
     fn of(binary: &str) -> Self {
-        if WIDE.contains(&binary) {
-            Self::AllCores
-        } else if WAITING.contains(&binary) {
-            Self::Patience
-        } else {
-            Self::OneCore
+        if WIDE.contains(&binary) { Self::AllCores } else { Self::OneCore }
+    }
+
+    /// What a test needs.
+    fn of_test(binary: &str, test: &str) -> Self {
+        let modules = WAITING.iter().find(|(name, _)| *name == binary).map(|(_, modules)| *modules);
+        match modules {
+            Some([]) => Self::Patience,
+            Some(modules) if modules.iter().any(|name| test.starts_with(name)) => Self::Patience,
+            _ => Self::of(binary),
         }
     }
 }
@@ -62,35 +69,39 @@ pub struct Slice {
 /// The slices of a binary; none where it has no tests.
 pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -> Vec<Slice> {
     let id = binary.id.as_str();
-    let needs = Needs::of(id);
     if !binary.lists {
         let seconds = memory.expect(id, &[String::new()]).into_iter().sum();
+        let needs = Needs::of(id);
         return vec![Slice { binary: place, names: Vec::new(), count: None, needs, seconds }];
     }
     let expected = memory.expect(id, tests);
-    let seconds: f64 = expected.iter().sum();
-    let is_one = TOGETHER.contains(&id) || needs == Needs::AllCores;
-    let parts = if is_one { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
-    let parts = split(&expected, (parts as usize).min(tests.len()));
-    let is_whole = parts.len() == 1;
-    let slice = |part: Vec<usize>| Slice {
-        binary: place,
-        names: if is_whole {
-            Vec::new()
-        } else {
-            part.iter().map(|&test| tests[test].clone()).collect()
-        },
-        count: Some(part.len()),
-        needs,
-        seconds: part.iter().map(|&test| expected[test]).sum(),
-    };
-    parts.into_iter().map(slice).collect()
+    let mut slices = Vec::new();
+    for needs in [Needs::AllCores, Needs::OneCore, Needs::Patience] {
+        let own: Vec<usize> =
+            (0..tests.len()).filter(|&test| Needs::of_test(id, &tests[test]) == needs).collect();
+        let seconds: f64 = own.iter().map(|&test| expected[test]).sum();
+        let is_one = TOGETHER.contains(&id) || needs == Needs::AllCores;
+        let parts = if is_one { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
+        let parts = split(&own, &expected, (parts as usize).min(own.len()));
+        slices.extend(parts.into_iter().map(|part| Slice {
+            binary: place,
+            names: if part.len() == tests.len() {
+                Vec::new()
+            } else {
+                part.iter().map(|&test| tests[test].clone()).collect()
+            },
+            count: Some(part.len()),
+            needs,
+            seconds: part.iter().map(|&test| expected[test]).sum(),
+        }));
+    }
+    slices
 }
 
-/// So many parts, of nearly equal length: each test, the longest first, goes to the part that is
-/// the shortest so far.
-fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
-    let mut order: Vec<usize> = (0..seconds.len()).collect();
+/// So many parts of these tests, of nearly equal length: each test, the longest first, goes to the
+/// part that is the shortest so far.
+fn split(tests: &[usize], seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
+    let mut order = tests.to_vec();
     order.sort_by(|&one, &other| seconds[other].total_cmp(&seconds[one]));
     let mut all = vec![(0.0_f64, Vec::new()); parts];
     for test in order {
@@ -106,7 +117,7 @@ fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Binary, LONGEST, TOGETHER, TestTimes, of, split};
+    use super::{Binary, LONGEST, Needs, TOGETHER, TestTimes, WAITING, of, split};
 
     fn binary(id: &str) -> Binary {
         let (program, folder) = (id.into(), ".".into());
@@ -162,8 +173,21 @@ mod tests {
     }
 
     #[test]
+    fn tests_that_wait_have_slices_of_their_own() {
+        let (id, modules) = WAITING.into_iter().find(|(_, modules)| !modules.is_empty()).unwrap();
+        let waiting = format!("{}one", modules[0]);
+        let (memory, tests) =
+            memory(id, &[(&*waiting, LONGEST), ("a::one", 1.0), ("a::two", LONGEST)]);
+        let slices = of(0, &binary(id), &tests, &memory);
+        let needs: Vec<_> = slices.iter().map(|slice| (slice.needs, slice.names.len())).collect();
+        assert_eq!(needs, [(Needs::OneCore, 1), (Needs::OneCore, 1), (Needs::Patience, 1)]);
+        assert_eq!(slices[2].names, [waiting]);
+    }
+
+    #[test]
     fn no_part_is_empty() {
-        assert!(split(&[0.0; 5], 5).iter().all(|part| part.len() == 1));
-        assert!(split(&[], 0).is_empty());
+        let tests: Vec<usize> = (0..5).collect();
+        assert!(split(&tests, &[0.0; 5], 5).iter().all(|part| part.len() == 1));
+        assert!(split(&[], &[], 0).is_empty());
     }
 }
