@@ -56,6 +56,8 @@ pub struct PlacedDesign {
     pub mhz: f64,
     /// Resources that the design uses.
     pub size: Size,
+    /// Delays of all cells and wires, in the format SDF.
+    pub sdf: String,
     /// Location of every cell.
     placement: Value,
 }
@@ -161,6 +163,8 @@ impl Netlist {
             "--timing-allow-fail",
             "--asc",
             "placed.asc",
+            "--sdf",
+            "placed.sdf",
             "--write",
         ];
         let (folder, log) = self.nextpnr(part, pcf, &[&more[..], &["placed.json"]].concat())?;
@@ -169,6 +173,7 @@ impl Netlist {
             asc: tool::read(folder.path(), "placed.asc")?,
             mhz: greatest_clock(&log)?,
             size: Size::of(&log)?,
+            sdf: tool::read(folder.path(), "placed.sdf")?,
             placement: placement.map_err(|error| unread(format!("placed.json: {error}")))?,
         })
     }
@@ -208,6 +213,11 @@ impl Netlist {
 }
 
 impl PlacedDesign {
+    /// nextpnr's description of the placed design: cells with their locations, and nets.
+    pub(crate) fn placement(&self) -> &Value {
+        &self.placement
+    }
+
     /// Reads the bitstream of these configuration bits back as Verilog. Of the netlist, only the
     /// ports and the names of its flip-flops and memories are used. `asc` is [`PlacedDesign::asc`],
     /// possibly with a bit changed.

@@ -21,6 +21,7 @@ pub mod kept;
 pub mod programs;
 mod read_back;
 pub mod resources;
+pub mod timed;
 mod tool;
 pub mod xilinx;
 
