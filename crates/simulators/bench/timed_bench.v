@@ -48,7 +48,7 @@ module timed_bench;
         differs = 0;
         glitches = 0;
         fields = $fscanf(file, "%d %h %h %h", count, inputs, expected, counts);
-        // Before the first edge, all levels that follow from the configuration come to rest.
+        // The models of the cells ignore clock edges in this time.
         #1000000;
         before = outputs;
         while (fields == 4 && cycle < cycles) begin

@@ -6,7 +6,7 @@ use crate::tool::{self, ICARUS};
 use crate::vectors::Vectors;
 use carrystep_tools::timed::{LATEST, VIOLATION};
 use std::collections::BTreeMap;
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 const BENCH: &str = include_str!("../bench/timed_bench.v");

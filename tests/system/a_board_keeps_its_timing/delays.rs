@@ -1,5 +1,7 @@
 //! Changes of single entries in nextpnr's file of delays.
 
+use std::collections::HashSet;
+
 /// A name as nextpnr writes it.
 fn escaped(name: &str) -> String {
     let escapes = |character| match character {
@@ -44,17 +46,26 @@ pub fn with_longer_wires(sdf: &str, cell: &str, more: u64) -> String {
     })
 }
 
-/// All checks: cells and their inputs.
+/// The checks of all inputs that may change: cells and their inputs.
 pub fn checks(sdf: &str) -> Vec<(String, String)> {
-    let all = std::cell::RefCell::new(Vec::new());
-    with(sdf, |cell, words| {
-        if let ["(SETUPHOLD", "(posedge", pin, ..] = words {
-            let pin = pin.trim_end_matches(')');
-            all.borrow_mut().push((cell.replace('\\', ""), pin.to_owned()));
-        }
-        None
+    let wires = sdf.lines().filter_map(|line| line.trim().strip_prefix("(INTERCONNECT "));
+    let ends = wires.filter(|wire| !wire.starts_with("\\$PACKER")).filter_map(|wire| {
+        let (cell, pin) = wire.split(' ').nth(1)?.rsplit_once('/')?;
+        Some((cell.replace('\\', ""), pin.to_owned()))
     });
-    all.into_inner()
+    let changing: HashSet<(String, String)> = ends.collect();
+    let mut cell = String::new();
+    let mut all = Vec::new();
+    for line in sdf.lines().map(str::trim) {
+        if let Some(name) = line.strip_prefix("(INSTANCE ") {
+            cell = name.trim_end_matches(')').replace('\\', "");
+        } else if let Some(check) = line.strip_prefix("(SETUPHOLD (posedge ") {
+            let (pin, _) = check.split_once(')').expect("an input");
+            all.push((cell.clone(), pin.to_owned()));
+        }
+    }
+    all.retain(|check| changing.contains(check));
+    all
 }
 
 /// The file with another check of an input; without one if `times`, set-up and hold in ps, is

@@ -65,8 +65,8 @@ impl Model {
         self.quarter = self.quarters[usize::from(sum & 2047)];
         self.words[usize::from(count & 255)] = sum;
         self.halves[usize::from(count & 511)] = (sum >> 4) as u8;
-        self.quarters[usize::from(count)] = (sum >> 7) as u8 & 3;
         if self.seen & 1 != 0 {
+            self.quarters[usize::from(count)] = (sum >> 7) as u8 & 3;
             self.count = (count + 1) & 2047;
         }
         (self.seen, self.first) = (self.first, pins);
@@ -131,7 +131,7 @@ fn a_small_design_is_in_time_exactly_as_long_as_its_slowest_path() {
     let small = Small::new();
     let sdf = &small.placed.sdf;
     let run = small.run(sdf, HALF_PS);
-    assert_eq!((&run.difference, run.violations), (&None, 0), "{run:?}");
+    assert_eq!((&run.difference, &run.first_violation), (&None, &None));
     assert_eq!(run.cycles, CYCLES);
 
     // nextpnr's figure holds for every path, also for one that the recording never uses.

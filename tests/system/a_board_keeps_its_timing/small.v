@@ -41,7 +41,7 @@ module small_design (
         else sum <= sum + (word ^ {half, half}) + {count[2:0], quarter, count};
         words[count[7:0]] <= sum;
         halves[count[8:0]] <= sum[11:4];
-        quarters[count] <= sum[8:7];
+        if (seen[0]) quarters[count] <= sum[8:7];
         word <= words[sum[9:2]];
         half <= halves[sum[8:0]];
         quarter <= quarters[sum[10:0]];

@@ -6,6 +6,8 @@
 // Flip-flops and block RAMs examine each input at the cell's own pin. An input that changes within
 // its set-up time before the clock edge, at the clock edge itself, or within its hold time after it,
 // is a violation. The state that follows is that of the inputs at the clock edge.
+// They ignore clock edges in the first microsecond, in which all levels that follow from the
+// configuration come to rest.
 //
 // At a clock edge, they also print the time from the edge before it to the last change of an input,
 // with the set-up time of that input, if it is longer than ever before: the shortest period for which
@@ -63,7 +65,7 @@ module timed_flip_flop #(
         end
     end endgenerate
 
-    always @(posedge clk) begin
+    always @(posedge clk) if ($time >= 1000000) begin
         now = $time;
         if (due > now) $display("VIOLATION set-up %0d %m", now);
         if (clocked != 0 && due > clocked + latest) begin
@@ -126,7 +128,7 @@ module timed_ram #(
             $display("VIOLATION hold %0d %m", $time);
     end
 
-    always @(posedge rclk) begin
+    always @(posedge rclk) if ($time >= 1000000) begin
         now = $time;
         if (r_due > now) $display("VIOLATION set-up %0d %m", now);
         if (r_clocked != 0 && r_due > r_clocked + latest) begin
@@ -146,7 +148,7 @@ module timed_ram #(
         end
     end
 
-    always @(posedge wclk) begin
+    always @(posedge wclk) if ($time >= 1000000) begin
         now = $time;
         if (w_due > now) $display("VIOLATION set-up %0d %m", now);
         if (w_clocked != 0 && w_due > w_clocked + latest) begin
