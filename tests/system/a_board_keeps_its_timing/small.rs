@@ -16,7 +16,7 @@ const PART: NextpnrPart<'_> = NextpnrPart { device: "hx1k", package: "tq144" };
 const CLOCK_HZ: u64 = 48_000_000;
 const HALF_PS: u64 = 10_416;
 
-const CYCLES: u64 = 1_000;
+const CYCLES: u64 = 400;
 
 /// The registers of `small.v`.
 struct Model {
@@ -67,7 +67,7 @@ impl Model {
         self.halves[usize::from(count & 511)] = (sum >> 4) as u8;
         if self.seen & 1 != 0 {
             self.quarters[usize::from(count)] = (sum >> 7) as u8 & 3;
-            self.count = (count + 1) & 2047;
+            self.count = (count + 37) & 2047;
         }
         (self.seen, self.first) = (self.first, pins);
     }
@@ -144,7 +144,7 @@ fn a_small_design_is_in_time_exactly_as_long_as_its_slowest_path() {
     assert!(fast.violations > 0, "{slowest} needs {need} ps");
     effort::say(&format!("{slowest} needs {need} ps, at most {limit:.0} ps by nextpnr"));
 
-    // Every cell whose wires are too long.
+    // The wires to every cell too long by 1 ps. Those to a carry make others late as well.
     let cells = run.needs_ps.iter().filter(|(cell, _)| is_of_rising_edge(cell));
     let cells: Vec<_> = cells.step_by(stride(20)).collect();
     for (cell, need) in &cells {
@@ -157,10 +157,11 @@ fn a_small_design_is_in_time_exactly_as_long_as_its_slowest_path() {
     let checks: Vec<_> = delays::checks(sdf).into_iter().step_by(stride(50)).collect();
     let silent = checks.iter().filter(|check| {
         let strict = delays::with_check(sdf, check, Some((4 * HALF_PS, 0)));
-        small.run(&strict, HALF_PS).violations == 0
+        let first = small.run(&strict, HALF_PS).first_violation;
+        !first.is_some_and(|first| first.ends_with(&check.0))
     });
     let silent: Vec<_> = silent.collect();
-    assert!(silent.is_empty(), "checks that see nothing: {silent:?}");
+    assert!(silent.is_empty(), "checks that do not see it: {silent:?}");
     let hold = delays::with_check(sdf, &checks[0], Some((0, HALF_PS)));
     let early = small.run(&hold, HALF_PS).first_violation.expect("a violation");
     assert!(early.starts_with("VIOLATION hold"), "{early}");
@@ -187,6 +188,13 @@ fn delays_that_do_not_fit_the_placement_are_refused() {
         let less = refused(&delays::without_first(sdf, line));
         assert!(less.contains(why), "{less}");
     }
-    let more = sdf.replacen("(IOPATH I3 O", "(IOPATH I3 LO (1:1:1) (1:1:1))\n(IOPATH I3 O", 1);
-    assert!(small.placed.timed(&more, TOP).is_ok(), "a path to an output without a net");
+    let last = sdf.rfind(')').expect("an end");
+    for (entry, why) in [
+        ("TIMINGCHECK (SETUPHOLD (posedge I0) (posedge CLK) (1:1:1) (0:0:0))", "a check of"),
+        ("DELAY (ABSOLUTE (IOPATH I0 O (1:1:1) (1:1:1)))", "a delay of"),
+    ] {
+        let cell = format!("(CELL (CELLTYPE \"ICESTORM_LC\") (INSTANCE stranger) ({entry}))");
+        let more = refused(&format!("{}{cell})", &sdf[..last]));
+        assert!(more.contains(&format!("{why} stranger")), "{more}");
+    }
 }
