@@ -184,7 +184,7 @@ fn items(text: &str) -> Result<Vec<Item>, SynthesisError> {
                 open.last_mut().ok_or_else(unclosed)?.push(Item::List(list));
             }
             '"' => {
-                top.push(Item::Word(characters.by_ref().take_while(|&next| next != '"').collect()))
+                top.push(Item::Word(characters.by_ref().take_while(|&next| next != '"').collect()));
             }
             space if space.is_whitespace() => {}
             first => {
