@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! estop 1     presses the e-stop, `estop 0` releases it; likewise `min x 1`, `max x 0`, `probe 1`,
-//!             and `input 2 1` for general input 2
+//!             `interlock 1` opens the interlock, and `input 2 1` activates general input 2
 //! end         ends the board, as Ctrl-C does
 //! ```
 
@@ -15,7 +15,7 @@ use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 
 /// The lines that the panel knows, each as an example.
-pub const KNOWN: &str = "estop 1, min x 1, max x 0, probe 1, input 0 1, end";
+pub const KNOWN: &str = "estop 1, min x 1, max x 0, probe 1, interlock 1, input 0 1, end";
 
 /// The greatest number of general inputs.
 const GENERAL: u8 = 8;
@@ -147,6 +147,10 @@ impl SwitchPanel {
             }
             ["probe", _] => {
                 self.hand.touch_probe(level);
+                return true;
+            }
+            ["interlock", _] => {
+                self.hand.open_interlock(level);
                 return true;
             }
             ["input", number, _] => {

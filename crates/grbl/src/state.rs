@@ -7,8 +7,6 @@ use std::fmt;
 pub enum Door {
     /// It is closed, and the machine may go on.
     IsClosed,
-    /// It is still open, and the machine rests.
-    IsOpen,
     /// The machine is brought to rest.
     Stops,
     /// Spindle and coolant are switched on again.
@@ -59,7 +57,6 @@ impl fmt::Display for State {
             Self::Jog => "Jog",
             Self::Alarm => "Alarm",
             Self::Door(Door::IsClosed) => "Door:0",
-            Self::Door(Door::IsOpen) => "Door:1",
             Self::Door(Door::Stops) => "Door:2",
             Self::Door(Door::Restores) => "Door:3",
             Self::Check => "Check",

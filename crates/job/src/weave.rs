@@ -19,6 +19,9 @@ use carrystep_plan::exact::{ExactLimits, speeds, travel};
 
 /// Greatest jump of the acceleration at a boundary, as a part of the limit: 1/50.
 const JUMP: i128 = 50;
+/// A motor rests between two control points that are nearer than this, 2^-64 step: 2^-24 step,
+/// which is more than floats err by.
+const REST: u128 = 1 << 40;
 /// Greatest distance between P and the spline at a knot, 2^-64 step: a quarter of a step.
 const QUARTER: i128 = 1 << 62;
 
@@ -63,7 +66,18 @@ impl<const N: usize> Weave<N> {
 
     /// Whether the next control point leaves the place of rest.
     pub fn leaves(&self, point: &[i128; N]) -> bool {
-        self.held.is_some() || *point != self.at
+        self.held.is_some() || self.rested(*point) != self.at
+    }
+
+    /// A control point, without the errors of floats that would move a motor that rests. The guard
+    /// of the gateware stops motion toward a limit switch that is closed, however slow it is.
+    fn rested(&self, mut point: [i128; N]) -> [i128; N] {
+        for (next, last) in point.iter_mut().zip(&self.control[2]) {
+            if next.abs_diff(*last) < REST {
+                *next = *last;
+            }
+        }
+        point
     }
 
     /// Adds a control point; gives the span before the one that it completes.
@@ -71,7 +85,7 @@ impl<const N: usize> Weave<N> {
     /// # Errors
     /// The rule that the finished span breaks.
     pub fn push(&mut self, point: [i128; N]) -> Result<Option<Span<N>>, Broken> {
-        let span = self.span(self.ticks, point)?;
+        let span = self.span(self.ticks, self.rested(point))?;
         let done = self.held.replace(span);
         match done {
             None => Ok(None),

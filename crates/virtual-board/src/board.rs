@@ -33,6 +33,11 @@ impl Switches {
         self.set(0, 0, touches);
     }
 
+    /// The interlock is open, or closed.
+    pub fn open_interlock(&mut self, open: bool) {
+        self.set(1, 0, open);
+    }
+
     /// A general input, from 0 on, is active or not. Even numbers are in row 2 behind the probe, odd
     /// ones in row 3 behind the interlock.
     pub fn set_input(&mut self, number: u8, active: bool) {

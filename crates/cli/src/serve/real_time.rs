@@ -85,8 +85,8 @@ impl Requests {
     }
 
     fn resume(&mut self, control: &mut Control) {
-        // As with Grbl, not before the machine rests, and not while the door is open.
-        if self.door && (!self.accessories.is_parked() || self.pins.door) {
+        // As with Grbl, not before the machine rests.
+        if self.door && !self.accessories.is_parked() {
             return;
         }
         (self.holds, self.door) = (false, false);

@@ -228,11 +228,8 @@ impl Requests {
 
     /// What the safety door has come to.
     const fn door_state(&self) -> Door {
-        match (self.accessories.is_parked(), self.pins.door) {
-            (false, _) => Door::Stops,
-            (true, true) => Door::IsOpen,
-            (true, false) => Door::IsClosed,
-        }
+        // An interlock that is open is an alarm, so that `Door:1` of Grbl is not shown.
+        if self.accessories.is_parked() { Door::IsClosed } else { Door::Stops }
     }
 
     /// The machine place of the board.

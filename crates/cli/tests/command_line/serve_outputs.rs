@@ -24,6 +24,17 @@ fn begins(mist: bool) -> (Folder, Board, Served, Sender) {
     (folder, board, served, sender)
 }
 
+/// The machine of these tests with a spindle and an interlock.
+fn with_interlock() -> (Folder, Board, Served, Sender) {
+    let folder = Folder::new();
+    let inputs = "[machine.inputs]\ninterlock = \"high\"\n\n[machine.outputs]\n";
+    folder.write("machine.toml", MACHINE.replace("[machine.outputs]\n", inputs));
+    let board = Board::new(&folder, "--fast");
+    let served = Served::with(&folder, &format!("--port {}", board.port));
+    let sender = Sender::tcp(&served);
+    (folder, board, served, sender)
+}
+
 /// The outputs of the board with their levels, in the order of their changes, and the place of x.
 fn switched(folder: &Folder, board: Board, served: Served) -> Vec<(usize, bool, f64)> {
     assert_eq!(served.interrupt().0, 0);
@@ -180,4 +191,27 @@ fn safety_door_switches_off_and_on_again() {
     let pair = |level| [(0, level), (1, level)];
     assert_eq!(levels, [pair(true), pair(false), pair(true), pair(false)].concat(), "{found:?}");
     assert!(found[2..6].iter().all(|change| (change.2 - rests).abs() < 0.013), "{found:?}");
+}
+
+#[test]
+fn interlock_that_opens_behind_the_safety_door_is_an_alarm_and_places_stay_true() {
+    let (_folder, mut board, served, mut sender) = with_interlock();
+    sender.simple("G21 G91 M3 S1000\nG1 X4 F100");
+    moves(&mut sender, 0.5);
+    sender.send(DOOR);
+    let rests = place(&sender.state("Door:0"));
+    board.press("interlock 1");
+    sender.until(|line| line == "ALARM:3");
+    sender.until(|line| line == "[MSG:stopped by the machine: interlock]");
+    sender.send("~");
+    assert_eq!(place(&sender.state("Alarm")), rests);
+    assert_eq!(sender.ask("$X").last().unwrap(), "error:8");
+    board.press("interlock 0");
+    while sender.ask("$X").last().unwrap() != "ok" {}
+    assert_eq!(sender.place(), rests);
+    // What was left of the line is dropped.
+    sender.done("G90 G0 X2");
+    assert_eq!(sender.place(), [2.0, 0.0, 0.0]);
+    assert_eq!(served.interrupt().0, 0);
+    assert!(board.end().contains("\nx at 160\n"));
 }

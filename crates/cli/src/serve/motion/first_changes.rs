@@ -51,6 +51,8 @@ const PROGRAM: &str = "G21 G90 G17 F2400\nG1 X10\nG2 X10 Y10 J5\nG1 X0 F1800\nG3
 const STEADY: &str = "G21 G90 G1 X36 Y10 F1500\n";
 /// Rapid moves alone.
 const RAPID: &str = "G21 G90\nG0 X40 Y10\nG0 X0 Y30\nG0 X20 Y0 Z5\n";
+/// One rapid move, which is at its greatest speed from 0.1 s to 2 s.
+const LONG_RAPID: &str = "G21 G90\nG0 X200\n";
 /// A jog.
 const JOG: &str = "$J=G21 G91 X36 Y10 F2000\n";
 
@@ -194,4 +196,6 @@ fn overrides_change_the_pulses_within_40_ms() {
     assert_bound("feed +10 %", (STEADY, b""), 0x91, 2);
     assert_bound("feed -10 %", (STEADY, b""), 0x92, 2);
     assert_bound("feed -1 %", (STEADY, b""), 0x94, 2);
+    assert_bound("rapid 50 %", (LONG_RAPID, b""), 0x96, 2);
+    assert_bound("rapid 100 % after 25 %", (LONG_RAPID, &[0x97]), 0x95, 2);
 }
