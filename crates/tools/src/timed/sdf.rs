@@ -243,7 +243,7 @@ mod tests {
             ("(540:540:540) (540:540:540)", ""),
             ("SETUPHOLD", "WIDTH"),
             ("ABSOLUTE", "INCREMENT"),
-            ("(negedge I0) (negedge CLK) (468", "(negedge I0) (negedge CLK) (467"),
+            ("(negedge I0) (negedge CLK) (468", "(negedge I0) (negedge CLK) (469"),
             ("b.c/I0", "b.c"),
         ] {
             assert!(Delays::of(&TEXT.replace(before, after)).is_err(), "{before}");
