@@ -54,7 +54,7 @@ fn an_icestick_moves_six_axes_with_its_delays() {
 
     kept::say();
     effort::figures(&format!(
-        "icestick, {} cycles at {} MHz: every pin as in the model, no violation; pins change {:.2} to {:.2} ns \
+        "{} cycles of the icestick at {} MHz: every pin as in the model, no violation; pins change {:.2} to {:.2} ns \
          after the clock; no path used needs more than {:.2} ns, by nextpnr none more than {limit:.2} ns; the \
          first {BEGIN} cycles need {:.3} ns, and a period {} ps shorter has {} violations",
         run.cycles,

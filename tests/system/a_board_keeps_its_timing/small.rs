@@ -168,7 +168,7 @@ fn a_small_design_is_in_time_exactly_as_long_as_its_slowest_path() {
     kept::say();
     if effort::is_every_board() {
         effort::figures(&format!(
-            "a small design: {} cells with longer wires and {} checks, all seen; it needs {need} ps, at most {limit:.0} ps by nextpnr",
+            "{} cells with longer wires and {} checks of a small design, all seen; it needs {need} ps, at most {limit:.0} ps by nextpnr",
             cells.len(),
             checks.len()
         ));
