@@ -1,12 +1,15 @@
 //! Records a session between a host and a board, in Rust-HDL's modules of line, link and engine.
 //! The recording of the pins is the reference for every later stage.
 
-use crate::link_bench::{BoardPins, Host, LinkBench};
+use crate::link_bench::{BoardPins, Host, LinkBench, wide};
 use carrystep_boards::Board;
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
-use carrystep_core::link::registers::{CLEAR, CONTROL, POSITION, SEGMENT, START, of_axis};
+use carrystep_core::link::registers::{
+    CLEAR, CONTROL, POSITION, SEGMENT, SEGMENTS, START, of_axis,
+};
 use carrystep_files::SourceText;
+use carrystep_simulators::timed::TimedRun;
 use carrystep_simulators::vectors::Vectors;
 use carrystep_verilog::{Gateware, shipped_machine};
 
@@ -36,6 +39,16 @@ impl Session {
         Self::with(board, meet_a_limit)
     }
 
+    /// A session with the gateware as it ships, on its own line: switch the drivers on, wait until
+    /// starts are accepted, and move all axes, each in both directions. Both ends are models.
+    ///
+    /// # Panics As [`Session::of`].
+    pub fn as_shipped(board: &'static Board) -> Self {
+        let gateware = Gateware::shipped(board, &board.parts[0]).expect("gateware");
+        let bench = LinkBench::models(gateware.build(), gateware.uart().expect("a UART"));
+        Self::recorded(board, gateware, bench, move_all_axes)
+    }
+
     fn with(board: &'static Board, talk: impl Fn(&mut LinkBench)) -> Self {
         // A level shifter in the line is not part of the gateware. The few leaked boards live until
         // the test ends.
@@ -46,13 +59,30 @@ impl Session {
         let source = SourceText { path: "machine.toml".into(), text: text.into() };
         let gateware = Gateware::new(board, &board.parts[0], source).expect("gateware");
         assert_eq!(gateware.build().axes(), AXES);
-        let mut bench = LinkBench::uart(gateware.build(), gateware.uart().expect("a UART"));
+        let bench = LinkBench::uart(gateware.build(), gateware.uart().expect("a UART"));
+        Self::recorded(board, gateware, bench, talk)
+    }
+
+    fn recorded(
+        board: &'static Board,
+        gateware: Gateware<'static>,
+        mut bench: LinkBench,
+        talk: impl Fn(&mut LinkBench),
+    ) -> Self {
         bench.board = Some(BoardPins::new(board));
         talk(&mut bench);
         let vectors = bench.board.expect("what was kept").vectors;
         let verilog =
             gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text).collect();
         Self { gateware, vectors, verilog }
+    }
+
+    /// Replays at most `cycles` cycles of the recording on Verilog with delays; see
+    /// [`Vectors::timed`].
+    ///
+    /// # Panics If Icarus is missing or rejects the Verilog.
+    pub fn timed(&self, verilog: &str, half_ps: u64, cycles: u64) -> TimedRun {
+        self.vectors.timed(&self.gateware.top(), verilog, half_ps, cycles).expect("Icarus")
     }
 
     /// The first cycle in which a pin of this Verilog differs from the recording. Every cell in the
@@ -106,6 +136,22 @@ fn talk(bench: &mut LinkBench) {
     host.write(bench, CLEAR, &[0]);
     assert_eq!(bench.read(POSITION).fault, None);
     assert!(bench.steps > 5, "{} steps", bench.steps);
+}
+
+fn move_all_axes(bench: &mut LinkBench) {
+    let mut host = Host::powered(bench);
+    // Up to one step in eight ticks, and back at half of that.
+    let there = [60, 59, 58, 57, 61, 59].map(|log| [1_i64 << log, 1 << 49, 0]);
+    let back = there.map(|[v, a, j]| [-v / 2, a, j]);
+    for (axes, last) in [(there, false), (back, true)] {
+        let axes =
+            [0, 1, 2, 3, 4, 5].map(|axis| axes[axis].map(|number| number * [1, -1][axis % 2]));
+        host.write(bench, SEGMENTS, &wide(0b11_1111, 250, &axes, last));
+    }
+    host.run(bench, 0b11_1111);
+    let said = bench.status();
+    assert_eq!(said.fault, None, "{said:?}");
+    assert!(bench.steps > 60, "{} steps", bench.steps);
 }
 
 fn meet_a_limit(bench: &mut LinkBench) {

@@ -18,6 +18,7 @@ mod icarus;
 mod listener;
 pub mod pins;
 pub mod replay;
+pub mod timed;
 mod tool;
 pub mod vectors;
 mod verilator;

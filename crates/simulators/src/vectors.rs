@@ -75,17 +75,9 @@ impl Vectors {
     pub fn difference(&self, module: &str, verilog: &str) -> Result<Option<String>, LevelError> {
         tool::find(&ICARUS)?;
         let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-        let mut text = String::new();
-        for (count, inputs, Bits { bits, counts }) in &self.rows {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count} {:x} {bits:x} {counts:x}", inputs.bits);
-        }
-        for (name, text) in
-            [("module.v", verilog), ("bench.v", &self.bench(module)), ("vectors.txt", &text)]
-        {
-            std::fs::write(folder.path().join(name), text)
-                .map_err(tool::io(format!("cannot write {name}")))?;
-        }
+        let bench = self.bench(BENCH, module);
+        let files = [("module.v", verilog), ("bench.v", &bench), ("vectors.txt", &self.text())];
+        tool::put(folder.path(), &files)?;
         let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
         tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
         let mut runs = Command::new("vvp");
@@ -96,7 +88,18 @@ impl Vectors {
         Ok((said != format!("same {}", self.cycles())).then_some(said))
     }
 
-    fn bench(&self, module: &str) -> String {
+    /// The cycles in the format of the benches.
+    pub(crate) fn text(&self) -> String {
+        let mut text = String::new();
+        for (count, inputs, Bits { bits, counts }) in &self.rows {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{count} {:x} {bits:x} {counts:x}", inputs.bits);
+        }
+        text
+    }
+
+    /// A bench for the module of this name, made from its template.
+    pub(crate) fn bench(&self, template: &str, module: &str) -> String {
         let mut connections = String::new();
         let mut widths = [0; 2];
         for (side, (vector, ports)) in
@@ -114,7 +117,7 @@ impl Vectors {
             }
         }
         let [inputs, outputs] = widths.map(|width| width.to_string());
-        BENCH
+        template
             .replace("CLOCK", self.clock)
             .replace("CONNECTIONS", &connections)
             .replace("MODULE", module)

@@ -23,6 +23,7 @@ mod nextpnr_log;
 pub mod programs;
 mod read_back;
 pub mod resources;
+pub mod timed;
 mod tool;
 pub mod xilinx;
 

@@ -123,6 +123,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "a_board_is_its_verilog"],
     },
     Run {
+        name: "timing",
+        what: "the iCEstick as placed and routed, simulated with [nextpnr's delays](timing.md): from bytes on the line to pulses of six axes, every pin in every clock, no input of a register within its set-up or hold time; violations above the greatest clock; every single check of a small design",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["--test", "a_board_keeps_its_timing"],
+    },
+    Run {
         name: "self-test",
         what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and as bitstream (iCE40), netlist (ECP5) or EDIF (Spartans); planted faults; every pin of each iCE40 and ECP5 board placed by its build script",
         asks: &[("CARRYSTEP_BOARDS", "all")],

@@ -2,9 +2,8 @@
 //! cycle, every pin of what the tools make from a board's Verilog must equal link and engine in
 //! Rust-HDL.
 //!
-//! A test run covers the iCEstick, an ECP5 board and a Spartan-6. `cargo xtask long equivalence`
-//! covers every iCE40 and ECP5 board and every family of Spartans, with planted faults that must be
-//! detected.
+//! A test run covers the iCEstick and a Spartan-6. `cargo xtask long equivalence` covers every iCE40
+//! and ECP5 board and every family of Spartans, with planted faults that must be detected.
 
 mod ecp5;
 mod ice40;

@@ -105,7 +105,7 @@ impl Workshop {
         for _ in 0..3 {
             match attempt(self.folder.path()) {
                 Outcome::Good(figures) => {
-                    eprintln!("FIGURES {name}: {figures}");
+                    eprintln!("FIGURES {figures} ({name})");
                     return;
                 }
                 Outcome::Void(why) => eprintln!("void: {name}: {why}"),

@@ -135,6 +135,21 @@ pub const INPUTS: &[Inputs] = &[
         ],
     ),
     (
+        "timing",
+        &[
+            "crates/core/",
+            "crates/boards/",
+            "crates/model/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/tools/",
+            "crates/simulators/",
+            "hdl-out/",
+            "tests/support/board_session.rs",
+            "tests/system/a_board_keeps_its_timing/",
+        ],
+    ),
+    (
         "self-test",
         &[
             "crates/core/",
