@@ -85,10 +85,9 @@ const SHARED: &str =
     boards[].shared[].why boards[].gate.port boards[].gate.pin boards[].gate.wait_ns boards[].gate.holds
     boards[].gate.why";
 
-const ECP5: &str = "boards[].parts[].logic_cells boards[].parts[].speed boards[].usb
-    boards[].clocks[].made_by.ecp5_pll boards[].clocks[].made_by.ecp5_pll.divide
+/// What an ECP5 has beyond an iCE40 and a Spartan.
+const ECP5: &str = "boards[].clocks[].made_by.ecp5_pll boards[].clocks[].made_by.ecp5_pll.divide
     boards[].clocks[].made_by.ecp5_pll.multiply boards[].clocks[].made_by.ecp5_pll.out_divide
-    boards[].measured.logic_cells boards[].measured.nextpnr_mhz boards[].measured.seed
     boards[].measured.least_mhz";
 
 const SPARTANS: &str =
