@@ -151,7 +151,8 @@ mod tests {
     #[test]
     fn luts_are_counted_as_nextpnr_counts_them() {
         let stat = "   Number of cells:               2494\n     CCU2C                         105\n     \
-                    DP16KD                          8\n     LUT4                         1418\n     PFUMX 234\n     \
+                    DP16KD                          8\n     LUT4                         1418\n     \
+                    PFUMX                         234\n     \
                     TRELLIS_DPR16X4                96\n     TRELLIS_FF                    569\n";
         let found = count(stat).expect("cells");
         assert_eq!((found.luts, found.flip_flops), (2204, 569), "2204 LUT4s according to its log");

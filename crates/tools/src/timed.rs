@@ -5,7 +5,8 @@
 //! own delay, and so has every path through a LUT, a carry, a global buffer, a flip-flop and a block
 //! RAM. All delays are transport delays: a pulse shorter than a delay passes. Flip-flops and block
 //! RAMs print a line that begins with [`VIOLATION`] where an input changes within its set-up or hold
-//! time. All registers start at 0 and block RAMs with their INIT values, as after configuration; they ignore clock edges in the first microsecond.
+//! time. All registers start at 0 and block RAMs with their INIT values, as after configuration;
+//! they ignore clock edges in the first microsecond.
 //!
 //! Three things have no delay: the pads, because nextpnr gives none; the PLL, which passes its
 //! reference on, so that the simulated oscillator has the frequency of the PLL's output; and its

@@ -113,7 +113,13 @@ impl Design<'_> {
         let family = board.family.facts();
         let values = context! {
             board => context! { name => &board.name, title => &board.title },
-            part => context! { name => &part.name, package => &part.package, ordered => part.ordered(), synthesis => Part::synthesis(&part.name), nextpnr => part.nextpnr().join(" ") },
+            part => context! {
+                name => &part.name,
+                package => &part.package,
+                ordered => part.ordered(),
+                synthesis => Part::synthesis(&part.name),
+                nextpnr => part.nextpnr().join(" "),
+            },
             top,
             sources => sources.iter().map(|&source| Value::from(source)).collect::<Vec<_>>(),
             pins,
