@@ -3,9 +3,9 @@
 //! From a kernel, Rust-HDL makes the method `hdl`, which lists the kernel's statements for the
 //! Verilog. It is many times as long as the kernel. Rust would compile it once for each size of a
 //! generic module, although the lists of two sizes differ only in numbers: the bounds of loops over
-//! the axes, and the widths of slices that have one bit per axis. A module that implements
-//! [`Kernel`] and is named in [`logic`] has one `hdl` for one size, and this file replaces
-//! these numbers in its list.
+//! the axes, and the widths of slices that have one bit per axis. A module that implements [`Kernel`]
+//! and is named in [`logic`] has its `hdl` compiled for one size. For another size, [`resized`]
+//! replaces these numbers in the list that this `hdl` gives.
 
 use rust_hdl::prelude::Verilog;
 use rust_hdl::prelude::ast::{
