@@ -6,6 +6,7 @@
 use crate::error::TraceError;
 use crate::wave_format::{SCOPE, SIGNALS};
 use minijinja::{Environment, Value, context};
+use std::path::Path;
 
 const TEMPLATE: &str = include_str!("../templates/gtkwave.gtkw");
 
@@ -41,11 +42,14 @@ pub fn save_file(vcd: &str, axes: &[&str], length_ps: u64) -> Result<String, Tra
         |axis| SIGNALS.iter().map(|&(name, bits)| trace(axis, name, bits)).collect::<Vec<Value>>();
     let groups: Vec<Value> =
         axes.iter().map(|&axis| context! { name => axis, traces => traces(axis) }).collect();
+    // GTKWave takes a relative name for one in the folder where it was started. From two absolute
+    // names it computes the way from the save file to the VCD, and goes it from where this file is.
+    let folder = if Path::new(vcd).is_absolute() { "" } else { "/carrystep/" };
     // GTKWave draws 2^-zoom units of time in a frame.
     let zoom = -(length_ps.max(1) as f64 / FRAMES).log2();
     let text = Environment::new().render_str(
         TEMPLATE,
-        context! { vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") },
+        context! { folder, vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") },
     )?;
     Ok(text + "\n")
 }

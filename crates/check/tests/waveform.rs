@@ -220,7 +220,14 @@ fn every_name_of_the_save_file_is_in_the_vcd() {
         assert!(signals.contains_key(*name), "{name} is not in {signals:?}");
     }
     assert!(names.contains(&"carrystep.x.position[31:0]"));
-    assert!(save.contains("[dumpfile] \"run.vcd\"\n"));
+    // GTKWave finds the VCD beside the save file, in whatever folder it is started.
+    assert!(
+        save.contains(
+            "[dumpfile] \"/carrystep/run.vcd\"\n[savefile] \"/carrystep/carrystep.gtkw\"\n"
+        )
+    );
+    let absolute = save_file("/a/run.vcd", machine.names(), 500_000_000_000).unwrap();
+    assert!(absolute.contains("[dumpfile] \"/a/run.vcd\"\n[timestart]"));
 }
 
 #[test]
