@@ -192,6 +192,9 @@ impl<const N: usize> Window<'_, N> {
                 emitted.push(point);
             }
         }
+        if self.end && faults.is_empty() {
+            faults.extend(inspector.behind(self.path));
+        }
         let (filter, inspector) = passed.unwrap_or((filter, inspector));
         if faults.is_empty() {
             let speeds = speeds.to_vec();

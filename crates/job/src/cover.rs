@@ -22,16 +22,13 @@ const HALVINGS: u32 = 14;
 /// Length of the parts near a corner, as a part of the tolerance.
 const FINE: f64 = 0.2;
 
-/// How far back on a piece the curve may seem to go, in tolerances. One that never goes back seems
-/// to do so by at most two.
-const BACK: f64 = 3.0;
-
 /// A piece on which the curve may be.
 #[derive(Debug, Clone, Copy)]
 struct On {
     number: u64,
-    /// The farthest place of this piece that was nearest to the curve, as a length along it.
-    farthest: f64,
+    /// The place that the curve has passed at least, as a length along the piece: it cannot be matched
+    /// with a place before this one.
+    passed: f64,
 }
 
 /// The pieces on which the curve may be at one place, in order.
@@ -53,7 +50,7 @@ pub(crate) struct Miss {
 impl Cover {
     /// The curve is at a place of the path.
     pub fn at(place: Place) -> Self {
-        Self { on: vec![On { number: place.piece, farthest: 0.0 }], place }
+        Self { on: vec![On { number: place.piece, passed: place.along }], place }
     }
 
     /// The first piece on which the curve may be.
@@ -61,12 +58,20 @@ impl Cover {
         self.on.first().map_or(self.place.piece, |on| self.place.piece.min(on.number))
     }
 
+    /// The last piece on which the curve may be.
+    pub fn newest(&self) -> u64 {
+        self.on.last().map_or(self.place.piece, |on| on.number)
+    }
+
     /// A place of the last piece on which the curve, at rest at a point, may be; where that piece
     /// ends there, the start of the next one.
     pub fn leaving<const N: usize>(&self, point: &Point<N>, path: &Path<N>) -> Place {
-        let number = self.on.last().map_or(self.place.piece, |on| on.number);
+        let (number, here) = self
+            .on
+            .last()
+            .map_or((self.place.piece, self.place.along), |on| (on.number, on.passed));
         let Some(piece) = path.piece(number) else { return self.place };
-        let along = self.near(point, number, piece, path).0;
+        let along = near(point, here, piece, path).0;
         if piece.length - along < NOTHING && number + 1 < path.end() {
             Place { piece: number + 1, along: 0.0 }
         } else {
@@ -84,7 +89,7 @@ impl Cover {
     ) -> Option<Miss> {
         let result = self.part(cubic, end, path, (0.0, 1.0), HALVINGS);
         if result.is_some() {
-            self.on = vec![On { number: end.piece, farthest: 0.0 }];
+            self.on = vec![On { number: end.piece, passed: end.along }];
         }
         self.place = end;
         result
@@ -99,21 +104,23 @@ impl Cover {
         left: u32,
     ) -> Option<Miss> {
         if let [only] = self.on[..]
-            && self.covers(cubic, only.number, path)
+            && covers(cubic, only, path)
             && !self.near_corner(cubic, path)
         {
             // By far the most frequent case.
             self.place = end;
             return self.enter(&cubic[3], to, path);
         }
-        let covers = |on: &On| self.covers(cubic, on.number, path);
-        let kept: Vec<On> = self.on.iter().copied().filter(covers).collect();
+        let kept: Vec<On> = self.on.iter().copied().filter(|&on| covers(cubic, on, path)).collect();
         let corner = self.near_corner(cubic, path);
         let chain = corner && self.chain(cubic, end, path);
         if chain || (!kept.is_empty() && !corner) {
             self.on = kept;
             if chain && self.on.last().is_none_or(|last| last.number < end.piece) {
-                self.on.push(On { number: end.piece, farthest: 0.0 });
+                let piece = path.piece(end.piece)?;
+                let off = relative(&from_to(&piece.at(end.along), &cubic[3]), piece, path);
+                let passed = (end.along - behind(end.along, off, piece, path)).max(0.0);
+                self.on.push(On { number: end.piece, passed });
             }
             let miss = self.enter(&cubic[3], to, path);
             self.place = end;
@@ -127,38 +134,6 @@ impl Cover {
         let half = (from + to) / 2.0;
         self.part(&first, middle, path, (from, half), left - 1)
             .or_else(|| self.part(&second, end, path, (half, to), left - 1))
-    }
-
-    /// Where a piece is nearest to a point, as a length along it, and how far away, as a part of the
-    /// tolerance.
-    fn near<const N: usize>(
-        &self,
-        point: &Point<N>,
-        number: u64,
-        piece: &Piece<N>,
-        path: &Path<N>,
-    ) -> (f64, f64) {
-        let here = match number.cmp(&self.place.piece) {
-            std::cmp::Ordering::Less => piece.length,
-            std::cmp::Ordering::Equal => self.place.along,
-            std::cmp::Ordering::Greater => 0.0,
-        };
-        let along = piece.nearest_around(point, here, (0.0, f64::INFINITY));
-        (along, relative(&from_to(&piece.at(along), point), piece, path))
-    }
-
-    /// Whether one piece is within the tolerance of a whole cubic.
-    fn covers<const N: usize>(&self, cubic: &[Point<N>; 4], number: u64, path: &Path<N>) -> bool {
-        let Some(piece) = path.piece(number) else { return false };
-        let (mut low, mut high, mut off) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-        for point in cubic {
-            let (along, away) = self.near(point, number, piece, path);
-            if away > FULL {
-                return false;
-            }
-            (low, high, off) = (low.min(along), high.max(along), off.max(away));
-        }
-        off + piece.bow(high - low) / piece.tolerance.linear <= FULL
     }
 
     /// Whether the curve may go on to another piece near a cubic that is too long to tell where.
@@ -227,8 +202,12 @@ impl Cover {
         path: &Path<N>,
     ) -> Option<Miss> {
         let (first, last) = (self.on.first()?.number, self.on.last()?.number);
-        let leaves = |piece: &Piece<N>| {
-            relative(&from_to(&piece.end, point), piece, path) <= MOST_REACH * FULL
+        // What is left of a line is near a point where its ends are; an arc may bend away between them.
+        let leaves = |piece: &Piece<N>, along: f64| {
+            let bow = piece.bow(piece.length - along) / piece.tolerance.linear;
+            let far = |at: &Point<N>| relative(&from_to(at, point), piece, path);
+            let begin = if bow > 0.0 { far(&piece.at(along)) } else { 0.0 };
+            far(&piece.end).max(begin) + bow <= MOST_REACH * FULL
         };
         let (mut bridge, mut now) = (false, Vec::with_capacity(self.on.len() + 1));
         let mut before = self.on.iter().peekable();
@@ -238,17 +217,23 @@ impl Cover {
             }
             let piece = path.piece(number)?;
             let was = before.next_if(|on| on.number == number);
-            let (along, off) = self.near(point, number, piece, path);
+            let here = was.map_or(0.0, |was| was.passed);
+            let (along, off) = near(point, here, piece, path);
+            let least = along - behind(along, off, piece, path);
             let is = match was {
-                Some(was) if along < was.farthest => {
-                    let back = from_to(&piece.at(along), &piece.at(was.farthest));
-                    (relative(&back, piece, path) <= BACK).then_some(*was)
+                Some(was) if least > was.passed => Some(On { number, passed: least }),
+                Some(was) if along >= was.passed => Some(*was),
+                // It has come back, as far as the tolerance allows.
+                Some(was) => {
+                    let back = from_to(&piece.at(was.passed), point);
+                    (relative(&back, piece, path) <= FULL).then_some(*was)
                 }
-                None if !bridge || off > FULL => None,
-                _ => Some(On { number, farthest: along }),
+                None if bridge && off <= FULL => Some(On { number, passed: least.max(0.0) }),
+                None => None,
             };
             now.extend(is);
-            bridge = (bridge || is.is_some()) && leaves(piece);
+            let left = if is.is_some() { along } else { 0.0 };
+            bridge = (bridge || is.is_some()) && leaves(piece, left);
         }
         if now.is_empty() {
             return Some(Miss { phase, piece: last });
@@ -256,6 +241,47 @@ impl Cover {
         self.on = now;
         None
     }
+}
+
+/// Where a piece is nearest to a point, as a length along it, and how far away, as a part of the
+/// tolerance. On an arc of more than a turn it is in the turn around `here`.
+fn near<const N: usize>(
+    point: &Point<N>,
+    here: f64,
+    piece: &Piece<N>,
+    path: &Path<N>,
+) -> (f64, f64) {
+    let along = piece.nearest_around(point, here, (0.0, f64::INFINITY));
+    (along, relative(&from_to(&piece.at(along), point), piece, path))
+}
+
+/// How far behind the nearest place, as a length along the piece, the piece is within the tolerance of
+/// a point at least. The point is `off` from that place, as a part of the tolerance.
+fn behind<const N: usize>(along: f64, off: f64, piece: &Piece<N>, path: &Path<N>) -> f64 {
+    let left = (FULL - off).max(0.0);
+    let tolerance = piece.tolerance;
+    if path.linear < N {
+        left * tolerance.linear.min(tolerance.rotary)
+    } else if piece.radius().is_some() || along >= piece.length {
+        left * tolerance.linear
+    } else {
+        // The point is straight beside the line.
+        (left * (FULL + off)).sqrt() * tolerance.linear
+    }
+}
+
+/// Whether one piece is within the tolerance of a whole cubic.
+fn covers<const N: usize>(cubic: &[Point<N>; 4], on: On, path: &Path<N>) -> bool {
+    let Some(piece) = path.piece(on.number) else { return false };
+    let (mut low, mut high, mut off) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+    for point in cubic {
+        let (along, away) = near(point, on.passed, piece, path);
+        if away > FULL {
+            return false;
+        }
+        (low, high, off) = (low.min(along), high.max(along), off.max(away));
+    }
+    off + piece.bow(high - low) / piece.tolerance.linear <= FULL
 }
 
 /// A difference as a part of the tolerance of a piece.
@@ -291,7 +317,8 @@ pub(crate) fn bezier<const N: usize>(c: &[Point<N>; 4]) -> [Point<N>; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::Tolerance;
+    use crate::element::{Arc, Tolerance};
+    use std::f64::consts::TAU;
 
     /// Length of a stroke, in tolerances.
     const STROKE: f64 = 10.0;
@@ -333,5 +360,28 @@ mod tests {
         assert!(followed(&path, |_| 0.95).is_ok());
         // It turns long before the corner.
         assert!(followed(&path, |number| if number < 20 { 1.0 } else { 0.5 }).is_err());
+    }
+
+    #[test]
+    fn curve_may_not_skip_an_arc_whose_ends_are_near() {
+        let tolerance = Tolerance { linear: 1.0, rotary: 1.0 };
+        for radius in [0.1, 1.5, 5.0] {
+            let mut path = Path::new(2);
+            let circle = Arc { plane: [0, 1], centre: [STROKE, radius], angle: TAU };
+            let places = [[0.0, 0.0], [STROKE, 0.0], [STROKE, 0.0], [2.0 * STROKE, 0.0]];
+            for (number, arc) in [None, Some(circle), None].into_iter().enumerate() {
+                let [from, to] = [places[number], places[number + 1]];
+                path.push(Piece::new(from, to, arc, 1.0, tolerance, number as u64, 2));
+            }
+            let mut cover = Cover::at(Place::default());
+            let miss = (1..=2 * PARTS).find_map(|part| {
+                let x = part as f64 / PARTS as f64 * STROKE;
+                let before = x - STROKE / PARTS as f64;
+                let cubic = std::array::from_fn(|k| [before + k as f64 / 3.0 * (x - before), 0.0]);
+                let (piece, along) = if part <= PARTS { (0, x) } else { (2, x - STROKE) };
+                cover.follow(&cubic, Place { piece, along }, &path)
+            });
+            assert_eq!(miss.is_none(), radius < 1.0, "{radius}: {miss:?}");
+        }
     }
 }

@@ -4,6 +4,7 @@
 use crate::cover::{Cover, bezier};
 use crate::limits::{Limit, Motors};
 use crate::path::{Corner, MOST_REACH, Path, Place};
+use crate::piece::Piece;
 use crate::rough::Knot;
 use crate::speed::Instant;
 use crate::spline::value;
@@ -65,6 +66,9 @@ pub(crate) struct Inspector<const N: usize> {
     u: [f64; 4],
     places: [Place; 4],
     cover: Cover,
+    /// Where the nearest place of the path came to a later piece than the curve, which has not come
+    /// there since: parameter and point of the curve.
+    ahead: Option<(f64, Point<N>)>,
     /// The greatest distance from the path between the last two measured knots, as a part of the
     /// tolerance.
     measured: f64,
@@ -89,6 +93,7 @@ impl<const N: usize> Inspector<N> {
             u: [0.0; 4],
             places: [Place::default(); 4],
             cover: Cover::default(),
+            ahead: None,
             measured: 0.0,
         }
     }
@@ -101,6 +106,7 @@ impl<const N: usize> Inspector<N> {
         self.u = [0.0; 4];
         self.places = [knot.place; 4];
         self.cover = Cover::at(knot.place);
+        self.ahead = None;
         self.measured = 0.0;
     }
 
@@ -149,6 +155,9 @@ impl<const N: usize> Inspector<N> {
     /// Parameters are counted from a later grid point from now on.
     pub fn rebase(&mut self, by: f64) {
         self.u.iter_mut().for_each(|u| *u -= by);
+        if let Some((u, _)) = &mut self.ahead {
+            *u -= by;
+        }
     }
 
     /// Adds the next control point; measures the curve between the two points before the last. The
@@ -184,6 +193,17 @@ impl<const N: usize> Inspector<N> {
         greatest
     }
 
+    /// At the end of a run: where the curve has turned back before a corner, if it has not come to the
+    /// last piece of the path.
+    pub fn behind(&self, path: &Path<N>) -> Option<Fault<N>> {
+        let newest = self.cover.newest();
+        if newest + 1 >= path.end() {
+            return None;
+        }
+        let (u, here) = self.ahead.unwrap_or((self.u[2], value(&self.letters, 1.0)));
+        path.piece(newest).map(|piece| nearer_to_corner(u, &here, piece, path))
+    }
+
     /// Where the distance from the path exceeds the tolerance most, between the second and third of
     /// the last control points.
     fn off(&mut self, path: &Path<N>, depth: Depth) -> Option<Fault<N>> {
@@ -193,10 +213,15 @@ impl<const N: usize> Inspector<N> {
         if end.place > self.place {
             self.place = end.place;
         }
-        let miss = match depth {
-            Depth::Proof => self.cover.follow(&bezier(&self.letters), self.place, path),
-            _ => None,
-        };
+        let mut miss = None;
+        if depth == Depth::Proof {
+            miss = self.cover.follow(&bezier(&self.letters), self.place, path);
+            if self.place.piece <= self.cover.newest() {
+                self.ahead = None;
+            } else if self.ahead.is_none() {
+                self.ahead = Some((self.u[2], value(&self.letters, 1.0)));
+            }
+        }
         let greatest = Cell::new(0.0_f64);
         let measured = |phase: f64, tip: Option<(&Point<N>, f64)>| {
             let here = value(&self.letters, phase);
@@ -245,9 +270,7 @@ impl<const N: usize> Inspector<N> {
                 let excess = (off / TOLERANCE_PART).max(LEAST_EXCESS);
                 return Some(Fault { u, excess, off: Some(from_to(&near.point, &here)) });
             }
-            // The curve has to go nearer to the corner.
-            let away = from_to(&piece.end, &here).map(|x| x / tip);
-            Some(Fault { u, excess: tip.min(MOST_EXCESS), off: Some(away) })
+            Some(nearer_to_corner(u, &here, piece, path))
         });
         let phases = PHASES.iter();
         let faults = phases.filter_map(|&phase| measured(phase, None)).chain(cut);
@@ -255,4 +278,16 @@ impl<const N: usize> Inspector<N> {
         self.measured = greatest.get().sqrt();
         worst
     }
+}
+
+/// The curve has to go nearer to the corner at the end of a piece.
+fn nearer_to_corner<const N: usize>(
+    u: f64,
+    here: &Point<N>,
+    piece: &Piece<N>,
+    path: &Path<N>,
+) -> Fault<N> {
+    let tip = (path.off(&piece.end, here, piece).sqrt() / MOST_REACH).max(LEAST_EXCESS);
+    let away = from_to(&piece.end, here).map(|x| x / tip);
+    Fault { u, excess: tip.min(MOST_EXCESS), off: Some(away) }
 }

@@ -9,8 +9,9 @@
 //!
 //! Where an axis reverses near a step's place, P is moved a little (`turn.rs`).
 //!
-//! A run ends with a segment of n + 1 ticks. Because n and n + 1 have no common divisor, taking r
-//! from the V before it and adding r to its own V moves the end by r units, whatever r is.
+//! A run ends with a segment of n + 1 ticks. Its V takes what is left over, up to a rest of r units.
+//! Because n and n + 1 have no common divisor, taking r from the V before it and adding r to its own
+//! V moves the end by r units.
 
 use crate::error::Rule;
 use crate::turn::Pair;
@@ -101,11 +102,18 @@ impl<const N: usize> Weave<N> {
     pub fn land(&mut self, target: [i128; N]) -> Result<Vec<Span<N>>, Broken> {
         let Some(mut before) = self.held.take() else { return Ok(Vec::new()) };
         let mut last = self.span(self.ticks + 1, target)?;
+        let n = i128::from(last.ticks);
         for (axis, (target, at)) in target.iter().zip(&self.at).enumerate() {
-            let rest = i64::try_from(target - at);
-            let rest = rest.map_err(|_| Broken { axis, rule: Rule::Landing })?;
-            before.segments[axis].v -= rest;
-            last.segments[axis].v += rest;
+            let left = target - at;
+            let whole = (left + n / 2).div_euclid(n);
+            let rest = left - whole * n;
+            let moved = |segment: &mut Segment, by: i128| {
+                let v = i64::try_from(i128::from(segment.v) + by);
+                segment.v = v.map_err(|_| Broken { axis, rule: Rule::Landing })?;
+                Ok(())
+            };
+            moved(&mut before.segments[axis], -rest)?;
+            moved(&mut last.segments[axis], whole + rest)?;
         }
         self.at = target;
         self.control = [target; 3];
@@ -203,4 +211,37 @@ pub(crate) fn obeys(segment: &Segment, limits: &ExactLimits, before: i128) -> Re
         return Err(Rule::Jump);
     }
     Ok(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motor_lands_slowly_from_an_error_of_floats_beside_its_target() {
+        let most = 1 << 60;
+        let limits = ExactLimits {
+            start_speed: 0,
+            speed: most,
+            acceleration: most,
+            jerk: None,
+            tolerance: 0,
+        };
+        for error in [0, 1, -1, 1999, -2001, (1 << 40) - 1, 1 - (1 << 40)] {
+            let mut weave = Weave::new(4000, [limits], [3], [0]);
+            let far = 100_i128 << 64;
+            let ramp = [1_i128, 8, 24, 45, 65, 82, 92, 98].map(|part| part * far / 100);
+            let last = far + error;
+            let points = ramp.iter().copied().chain([last, last, last, far, far]);
+            let mut spans: Vec<Span<1>> =
+                points.filter_map(|point| weave.push([point]).unwrap()).collect();
+            spans.extend(weave.land([far]).unwrap());
+            let all = spans.iter().map(|span| travel(&span.segments[0], span.ticks.into()));
+            assert_eq!(all.sum::<i128>(), far, "{error}");
+            for span in &spans[spans.len() - 2..] {
+                let v = span.segments[0].v.abs();
+                assert!(v < 1 << 30, "{error}: V is {v}");
+            }
+        }
+    }
 }

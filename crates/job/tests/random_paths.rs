@@ -203,6 +203,26 @@ fn a_smooth_path_is_planned_on_crossed_belts() {
     );
 }
 
+/// The path ends near a line on which the tool came, so that a tool that turns before the first
+/// corner is within the tolerance of that line up to the end.
+#[test]
+#[expect(clippy::unreadable_literal, reason = "only these digits show it")]
+fn tool_that_turns_before_a_corner_has_not_come_to_the_end() {
+    let line = |size: f64, to: [f64; 3]| Shape::Line { size, to };
+    let shapes = [
+        line(0.01069307106018658, [0.6331829034729821, 0.5198446232408022, 0.15356843098504733]),
+        line(0.15546125967863433, [-0.21005444368369416, 0.1290265889658647, -0.24970946086517587]),
+        Shape::Back,
+        line(2.8744275962631396, [-0.6090841551245559, -0.1782155977206314, 0.21758137266184294]),
+        line(0.012224880131992664, [0.8250904086949656, -0.5348401866679399, -0.5841192086064682]),
+        line(0.041568056191382714, [0.7226391031591337, 0.5441034419832157, -0.41308071748252984]),
+        Shape::Back,
+    ];
+    let items = items(&shapes, 24.69684199961989, 0.007668008225998642);
+    let text = machine_text(218.93188530193103, 843.0281500124129, 0.0);
+    check(&text, <[f64]>::to_vec, |motors| motors, &items);
+}
+
 #[test]
 fn bad_elements_are_refused_with_their_line() {
     let machine = common::machine(&machine_text(100.0, 1000.0, 0.0));
