@@ -13,8 +13,9 @@ use crate::path::{MOST_REACH, Path, Place};
 use crate::piece::Piece;
 use crate::vector::{Point, dot, from_to, plus};
 
-/// Part of the tolerance that the proof uses; the rest is for rounding.
-pub(crate) const FULL: f64 = 0.9999;
+/// Part of the tolerance that the proof uses; the rest is for rounding to integers, and for those who
+/// measure the curve and arcs of the path by chords.
+pub(crate) const FULL: f64 = 0.999;
 /// Length of a rest of a piece that is none, mm.
 const NOTHING: f64 = 1e-9;
 /// How often a cubic is halved.
