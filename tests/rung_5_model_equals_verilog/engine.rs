@@ -192,7 +192,7 @@ fn with_parameters(verilog: &str, of: &EngineBuild) -> String {
 fn verilog_of_one_build_with_the_parameters_of_others_is_theirs() {
     let sets = parameter_sets();
     let verilog = carrystep_verilog::engine_verilog(&sets[0], "a test").expect("a fine build");
-    for (build, usual) in sets.iter().zip([500_000; 4]) {
+    for (build, usual) in sets.iter().zip([1_000_000; 4]) {
         let seen =
             in_this_verilog(Level::Verilator, &with_parameters(&verilog, build), build, usual);
         assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");

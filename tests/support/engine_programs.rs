@@ -400,6 +400,9 @@ pub fn run_programs(
             false => program(build.axes()).boxed(),
         };
         let held = TestRunner::new(config.clone()).run(&programs, |(program, events)| {
+            if clocks.get() >= enough {
+                return Ok(());
+            }
             clocks.set(clocks.get() + one(&program, &events)?);
             Ok(())
         });

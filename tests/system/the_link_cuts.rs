@@ -16,8 +16,8 @@ const REFUSED: u8 = 5;
 /// V of a step in four ticks.
 const QUARTER: i64 = 1 << 62;
 /// Ticks and steps of a segment at this speed.
-const TICKS: u32 = 2000;
-const STEPS: i32 = 500;
+const TICKS: u32 = 600;
+const STEPS: i32 = 150;
 /// The bit of an axis' word that says that it takes part.
 const NAMED: u32 = 1 << 24;
 
