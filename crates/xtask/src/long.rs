@@ -171,6 +171,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "command_line", "real_senders"],
     },
     Run {
+        name: "container",
+        what: "the [container recipe](senders.md) built from a clean clone, without a registry: base images made of Debian's packages and rustup's toolchain; a program streamed to what starts in it, twice",
+        asks: &[("CARRYSTEP_CONTAINER", "1")],
+        cargo: &["--test", "command_line", "container_serves"],
+    },
+    Run {
         name: "soak",
         what: "[senders](senders.md): 500 real-time characters at random times, judged by the pulses (the path, speed and acceleration); four hours of motion under a sender that misbehaves at random",
         asks: &[("CARRYSTEP_CHARACTERS", "500"), ("CARRYSTEP_SOAK", "14400")],
@@ -212,6 +218,9 @@ pub fn run(names: &[String]) -> TaskResult {
     let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
     if is_asked("senders") {
         tools::install_for_senders()?;
+    }
+    if is_asked("container") {
+        tools::install_for_container()?;
     }
     committed()?;
     let commit = shell::read("git", &["rev-parse", "--short=10", "HEAD"])?;

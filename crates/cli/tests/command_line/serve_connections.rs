@@ -5,7 +5,7 @@ use crate::sender::{Sender, Served, place};
 use crate::serve_streams::folder;
 use crate::stops::stop;
 use crate::virtual_boards::{Board, passed};
-use std::io::{Read as _, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
@@ -13,11 +13,18 @@ use std::time::Duration;
 const WAY: &str = "G21 G91 F180\nG1 X5\nG1 Y5";
 
 #[test]
-fn first_connection_drives_and_the_others_watch() {
+fn first_connection_drives_and_nine_others_watch() {
     let folder = folder();
     let served = Served::new(&folder, "");
     let mut first = Sender::tcp(&served);
-    let mut watchers: Vec<Sender> = (0..5).map(|_| Sender::tcp(&served)).collect();
+    let mut watchers: Vec<Sender> = (0..9).map(|_| Sender::tcp(&served)).collect();
+    // The eleventh is closed.
+    let mut eleventh = TcpStream::connect(served.tcp).unwrap();
+    eleventh.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+    match eleventh.read(&mut [0]) {
+        Ok(count) => assert_eq!(count, 0),
+        Err(error) => assert_eq!(error.kind(), ErrorKind::ConnectionReset),
+    }
     first.done("G0 X1");
     first.place();
     for watcher in &mut watchers {
@@ -48,7 +55,7 @@ fn http_closes_its_connection_and_does_nothing() {
         let mut said = Vec::new();
         // The connection may be reset, because not all was read.
         let ended = stream.read_to_end(&mut said);
-        assert!(!matches!(ended, Err(error) if error.kind() == std::io::ErrorKind::WouldBlock));
+        assert!(!matches!(ended, Err(error) if error.kind() == ErrorKind::WouldBlock));
     }
     let mut sender = Sender::tcp(&served);
     assert!(sender.report().starts_with("<Idle|MPos:0.000,"));
