@@ -48,7 +48,7 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "repeats",
-        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, 300 random machines home",
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home",
         asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
         cargo: &[
             "--test",
@@ -66,6 +66,7 @@ const RUNS: &[Run] = &[
             "golden_vectors",
             "parameters_of_others",
             "random_machines",
+            "homes_from_every_start",
         ],
     },
     Run {

@@ -140,6 +140,21 @@ fn board_that_is_gone_is_an_alarm_and_ends_the_command() {
 }
 
 #[test]
+fn other_computers_are_let_in_only_when_asked_and_with_a_warning() {
+    let folder = folder();
+    for (options, warned) in
+        [("", false), ("--listen 127.0.0.1", false), ("--listen 0.0.0.0", true)]
+    {
+        let served = Served::new(&folder, options);
+        assert_eq!(served.tcp.ip().is_loopback(), !warned, "{}", served.tcp);
+        let (status, said) = served.interrupt();
+        assert_eq!(status, 0, "{said}");
+        let warning = "warning: 0.0.0.0:0: raw TCP has no password";
+        assert_eq!(said.contains(warning), warned, "{said}");
+    }
+}
+
+#[test]
 fn bad_options_are_refused() {
     let folder = folder();
     let refuses = |options: &str, says: &str| {
