@@ -2,8 +2,11 @@
 //! compiled simulation is kept in the user's cache directory, under the hash of everything that it
 //! was made from.
 
+mod runtime;
+
 use crate::tool::{self, VERILATOR};
 use crate::{Job, LevelError, Observer, Outcome, cache, external};
+use runtime::Runtime;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use std::process::Command;
@@ -81,8 +84,12 @@ impl Simulation<'_> {
             let folder =
                 tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
             tool::put(folder.path(), &[("core.v", verilog), ("bench.cpp", bench)])?;
+            let output = folder.path().join("obj_dir");
+            let runtime = Runtime::new(&cache, options);
+            let lent = runtime.as_ref().map(|runtime| runtime.lend(&output)).transpose();
+            let lent = lent.map_err(tool::io("cannot copy Verilator's own code"))?;
             let mut command = Command::new(VERILATOR.name);
-            command.args(OPTIONS).args(options).args([
+            command.args(lent.into_iter().flatten()).args(OPTIONS).args(options).args([
                 "--top-module",
                 top,
                 "-o",
@@ -91,7 +98,10 @@ impl Simulation<'_> {
                 "bench.cpp",
             ]);
             tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
-            let made = folder.path().join("obj_dir").join("bench");
+            if let Some(runtime) = &runtime {
+                runtime.keep(&output);
+            }
+            let made = output.join("bench");
             cache::only_ours(&made)?;
             // A rename is atomic: another process that looks for the file finds it complete or not
             // at all.
