@@ -70,14 +70,8 @@ impl Simulation<'_> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
         let cache = cache::folder()?;
-        let mut hash = Sha256::new();
         let of = [verilog, bench, top, env!("CARGO_PKG_VERSION")].into_iter();
-        for text in of.chain(options.iter().copied()).chain(OPTIONS.iter().copied()) {
-            // The length keeps texts apart that follow each other.
-            hash.update((text.len() as u64).to_le_bytes());
-            hash.update(text);
-        }
-        let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let hash = hash(of.chain(options.iter().copied()).chain(OPTIONS));
         let binary = cache.join(format!("{name}_{hash}"));
         let _one_at_a_time = COMPILER.lock();
         if !cache::holds(&binary)? {
@@ -110,4 +104,15 @@ impl Simulation<'_> {
         }
         Ok(binary)
     }
+}
+
+/// The hash of these texts, in hexadecimal digits.
+fn hash<'a>(texts: impl Iterator<Item = &'a str>) -> String {
+    let mut hash = Sha256::new();
+    for text in texts {
+        // The length keeps texts apart that follow each other.
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -4,10 +4,9 @@
 //! The object files are kept in the cache, under the hash of everything on which they depend. They
 //! are copied into the folder of a compilation, and `make` compiles what is not there.
 
-use super::OPTIONS;
+use super::{OPTIONS, hash};
 use crate::cache;
 use crate::tool::VERILATOR;
-use sha2::{Digest as _, Sha256};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,15 +22,9 @@ pub struct Runtime(PathBuf);
 impl Runtime {
     /// The object files for compilations with these options; none where a version is unknown.
     pub fn new(cache: &Path, options: &[&str]) -> Option<Self> {
-        let mut hash = Sha256::new();
         let versions = [version(VERILATOR.name)?, version("g++")?];
         let texts = versions.iter().map(String::as_str).chain(OPTIONS);
-        for text in texts.chain(options.iter().copied()) {
-            // The length keeps texts apart that follow each other.
-            hash.update((text.len() as u64).to_le_bytes());
-            hash.update(text);
-        }
-        let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let hash = hash(texts.chain(options.iter().copied()));
         Some(Self(cache.join(format!("runtime_{hash}"))))
     }
 
