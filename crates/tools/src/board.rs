@@ -4,7 +4,7 @@ pub mod page;
 
 use crate::ice40::{self, NextpnrPart, Size};
 use crate::tool::{self, ICEPACK, ICETIME, NEXTPNR};
-use crate::{SynthesisError, ecp5};
+use crate::{SynthesisError, ecp5, gowin};
 use carrystep_boards::{Part, Placer};
 
 /// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
@@ -56,6 +56,7 @@ pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, S
     match job.part.family().facts().placer() {
         Some(Placer::Ice40) => ice40_bitstream(job, stage),
         Some(Placer::Ecp5) => ecp5_bitstream(job, stage),
+        Some(Placer::Gowin) => gowin_bitstream(job, stage),
         None => Err(SynthesisError::Tool {
             tool: NEXTPNR.name,
             message: format!("no open tool places a {}", job.part.family()),
@@ -117,21 +118,50 @@ fn ecp5_bitstream(
     Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
 }
 
-/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5. `None` for another family, whose
+fn gowin_bitstream(
+    job: &BuildJob<'_>,
+    stage: &mut dyn FnMut(&str),
+) -> Result<Built, SynthesisError> {
+    stage("yosys");
+    let netlist = gowin::synthesise(job.verilog, job.top)?;
+    let (seed, placed) = first_that_reaches(
+        job.clock_hz,
+        |seed| {
+            stage(&format!("nextpnr-himbaechel-gowin, seed {seed}"));
+            netlist.place_on(job.part, job.constraints, job.clock_hz, seed)
+        },
+        |placed| placed.mhz,
+    )?;
+    stage("gowin_pack");
+    let bitstream = placed.bitstream()?;
+    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
+}
+
+/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5 or a Gowin part. `None` for another family, whose
 /// boards need one seed only.
 ///
 /// # Errors
 /// As [`build`].
 pub fn clocks_of_seeds(job: &BuildJob<'_>) -> Result<Option<[f64; SEEDS.len()]>, SynthesisError> {
-    if job.part.family().facts().placer() != Some(Placer::Ecp5) {
-        return Ok(None);
+    let each = |mhz: &dyn Fn(u32) -> Result<f64, SynthesisError>| {
+        let mut clocks = [0.0; SEEDS.len()];
+        for (clock, seed) in clocks.iter_mut().zip(SEEDS) {
+            *clock = mhz(seed)?;
+        }
+        Ok(Some(clocks))
+    };
+    let (part, pins, clock_hz) = (job.part, job.constraints, job.clock_hz);
+    match part.family().facts().placer() {
+        Some(Placer::Ecp5) => {
+            let netlist = ecp5::synthesise(job.verilog, job.top)?;
+            each(&|seed| Ok(netlist.place_on(part, pins, clock_hz, seed)?.mhz))
+        }
+        Some(Placer::Gowin) => {
+            let netlist = gowin::synthesise(job.verilog, job.top)?;
+            each(&|seed| Ok(netlist.place_on(part, pins, clock_hz, seed)?.mhz))
+        }
+        Some(Placer::Ice40) | None => Ok(None),
     }
-    let netlist = ecp5::synthesise(job.verilog, job.top)?;
-    let mut clocks = [0.0; SEEDS.len()];
-    for (mhz, seed) in clocks.iter_mut().zip(SEEDS) {
-        *mhz = netlist.place_on(job.part, job.constraints, job.clock_hz, seed)?.mhz;
-    }
-    Ok(Some(clocks))
 }
 
 /// The placement of the first seed that reaches a clock, Hz, or else the best one, with its seed.

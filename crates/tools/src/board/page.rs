@@ -152,13 +152,14 @@ pub fn row(board: &Board, measured: &Measured) -> String {
 
 /// The whole page.
 pub fn page(all: &AllMeasured) -> String {
-    let (mut ice40, mut ecp5, mut spartan) = (String::new(), String::new(), String::new());
+    let [mut ice40, mut ecp5, mut gowin, mut spartan] = [const { String::new() }; 4];
     for (board, measured) in
         boards().iter().filter_map(|board| Some((board, all.get(&board.name)?)))
     {
         let rows = match board.family.facts().placer() {
             Some(Placer::Ice40) => &mut ice40,
             Some(Placer::Ecp5) => &mut ecp5,
+            Some(Placer::Gowin) => &mut gowin,
             None => &mut spartan,
         };
         rows.push_str(&row(board, measured));
@@ -187,6 +188,11 @@ No way back from a bitstream of this family to Verilog is known to us: what is c
 | board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
 |---|---|---|---|---|---|---|---|---|---|---|
 {ecp5}
+The same on a Gowin part, by yosys 0.70, nextpnr 0.11 and apycula 0.32. Such a board must reach its clock with each of the five seeds, too. Script only: the tools make a bitstream of it, and nothing that they make was compared with Rust-HDL.
+
+| board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
+|---|---|---|---|---|---|---|---|---|---|---|
+{gowin}
 What yosys makes of it for the Spartans. Their own tools place it, which nobody here has done: whether the clock is reached is not known. A Spartan-3 or 3E cannot write single bits of a block RAM,
 so on {in_luts} the engine's wheel of events, the one memory that is written bit by bit, lies in LUTs.
 
