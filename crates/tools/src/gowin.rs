@@ -26,6 +26,11 @@ pub struct PlacedDesign {
     pub size: Size,
 }
 
+/// A board's Verilog with models of its clock cells, for simulators.
+pub fn simulated(verilog: &str) -> String {
+    format!("{}{verilog}", include_str!("gowin/cells.v"))
+}
+
 /// Synthesises Verilog.
 ///
 /// # Errors

@@ -89,8 +89,8 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin
-/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow, so that a
-/// test run builds for one of those boards only; `cargo xtask long self-test` builds all.
+/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 and Gowin is slow, so that
+/// a test run builds for one board of each only; `cargo xtask long self-test` builds all.
 #[test]
 fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
     let is_every_board = std::env::var_os("CARRYSTEP_BOARDS").is_some();
@@ -98,6 +98,7 @@ fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
         let is_chosen = match board.family.facts().placer() {
             Some(Placer::Ice40) => true,
             Some(Placer::Ecp5) => is_every_board || board.name == "ulx3s",
+            Some(Placer::Gowin) => is_every_board || board.name == "tang-nano-9k",
             None => false,
         };
         if !is_chosen {
@@ -162,6 +163,36 @@ fn constraints_of_an_ecp5_place_every_port_on_its_pin() {
         let oscillator = [(OSCILLATOR.to_owned(), board.oscillator.pin.clone())];
         let known: BTreeMap<String, String> = pins.chain(ties).chain(oscillator).collect();
         assert_eq!(found, known, "{}", board.name);
+    }
+}
+
+/// The constraints of every Gowin board place each port on the pin that the board's file gives it,
+/// with the voltage of its bank, and nothing else.
+#[test]
+fn constraints_of_a_gowin_part_place_every_port_on_its_pin() {
+    for board in boards().iter().filter(|board| board.family == Family::Gowin) {
+        let files = files(board, &ports(board)).unwrap();
+        let text = &files.iter().find(|file| file.name.ends_with(".cst")).unwrap().text;
+        let rows = |kind: &str| -> BTreeMap<String, String> {
+            let row = |line: &str| {
+                let (port, rest) = line.strip_prefix(kind)?.strip_prefix(" \"")?.split_once("\" ")?;
+                Some((port.to_owned(), rest.split([' ', ';']).next()?.to_owned()))
+            };
+            text.lines().filter_map(row).collect()
+        };
+        let wires = || board.wires.iter().filter(|wire| !wire.beside_uart);
+        let oscillator = &board.oscillator;
+        let pins = wires().map(|wire| (wire.port.clone(), wire.pin.clone()));
+        let known: BTreeMap<String, String> =
+            pins.chain([(OSCILLATOR.to_owned(), oscillator.pin.clone())]).collect();
+        assert_eq!(rows("IO_LOC"), known, "{}", board.name);
+        let standard = |port: &str| {
+            let is_low = board.name == "tang-nano-9k" && port == "led";
+            format!("IO_TYPE={}", if is_low { "LVCMOS18" } else { "LVCMOS33" })
+        };
+        let known: BTreeMap<String, String> =
+            known.into_keys().map(|port| (port.clone(), standard(&port))).collect();
+        assert_eq!(rows("IO_PORT"), known, "{}", board.name);
     }
 }
 
