@@ -175,7 +175,8 @@ fn constraints_of_a_gowin_part_place_every_port_on_its_pin() {
         let text = &files.iter().find(|file| file.name.ends_with(".cst")).unwrap().text;
         let rows = |kind: &str| -> BTreeMap<String, String> {
             let row = |line: &str| {
-                let (port, rest) = line.strip_prefix(kind)?.strip_prefix(" \"")?.split_once("\" ")?;
+                let (port, rest) =
+                    line.strip_prefix(kind)?.strip_prefix(" \"")?.split_once("\" ")?;
                 Some((port.to_owned(), rest.split([' ', ';']).next()?.to_owned()))
             };
             text.lines().filter_map(row).collect()
