@@ -262,8 +262,26 @@ fn events(axes: usize) -> impl Strategy<Value = Events> {
         events.extend(life);
         events.extend(outputs);
         events.sort_by_key(|(cycle, _)| *cycle);
+        one_cut_at_a_time(&mut events);
         events
     })
+}
+
+/// Clocks after which a cut is decided in every build of these tests: two ticks of 128 clocks.
+const DECIDED: u64 = 256;
+
+/// Leaves out cuts that would be requested while another one is not decided: the contract forbids
+/// them to a host, and does not specify which segments they name.
+fn one_cut_at_a_time(events: &mut Events) {
+    let mut free = 0;
+    events.retain(|(cycle, event)| {
+        let is_cut = matches!(event, Event::Cut);
+        let keeps = !is_cut || *cycle >= free;
+        if is_cut && keeps {
+            free = cycle + DECIDED;
+        }
+        keeps
+    });
 }
 
 /// A segment for the highest possible axis number, which usually does not exist.

@@ -311,6 +311,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "hours",
             "linuxcnc",
             "senders",
+            "container",
             "soak"
         ]
     );

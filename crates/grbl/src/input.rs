@@ -38,10 +38,11 @@ enum Comment {
     Rest,
 }
 
-/// A line that waits: the bytes that were sent for it, and those of its text in [`Input::text`].
+/// A line that waits: the bytes that were sent for it, and those of its text in [`Input::text`]. It
+/// has 8 bytes, because [`INPUT_BOUND`] of them may wait, all empty.
 #[derive(Debug, Clone, Copy)]
 struct Waiting {
-    sent: usize,
+    sent: u32,
     kept: u16,
     too_long: bool,
 }
@@ -54,7 +55,7 @@ pub struct Input {
     text: VecDeque<u8>,
     /// The line that is not whole.
     kept: usize,
-    sent: usize,
+    sent: u32,
     too_long: bool,
     comment: Comment,
     /// Bytes of the lines that wait.
@@ -92,7 +93,7 @@ impl Input {
     fn end_line(&mut self) {
         let sent = std::mem::take(&mut self.sent).saturating_add(1);
         let (kept, too_long) = (std::mem::take(&mut self.kept) as u16, self.too_long);
-        self.waiting = self.waiting.saturating_add(sent);
+        self.waiting = self.waiting.saturating_add(sent as usize);
         self.lines.push_back(Waiting { sent, kept, too_long });
         (self.too_long, self.comment) = (false, Comment::None);
     }
@@ -100,7 +101,7 @@ impl Input {
     /// The next whole line, which then waits no longer.
     pub fn next_line(&mut self) -> Option<Line> {
         let Waiting { sent, kept, too_long } = self.lines.pop_front()?;
-        self.waiting = self.waiting.saturating_sub(sent);
+        self.waiting = self.waiting.saturating_sub(sent as usize);
         let text: Vec<u8> = self.text.drain(..usize::from(kept).min(self.text.len())).collect();
         if too_long {
             return Some(Line::TooLong);
@@ -117,7 +118,7 @@ impl Input {
     /// Free bytes of the receive buffer, as reports name them. A sender that counts nothing may
     /// have sent more: then it is 0, and nothing is lost.
     pub fn free(&self) -> usize {
-        RECEIVE_BUFFER.saturating_sub(self.waiting.saturating_add(self.sent))
+        RECEIVE_BUFFER.saturating_sub(self.waiting.saturating_add(self.sent as usize))
     }
 
     /// Whether nothing should be read any more until a line is taken. Real-time characters behind

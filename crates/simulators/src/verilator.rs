@@ -2,8 +2,11 @@
 //! compiled simulation is kept in the user's cache directory, under the hash of everything that it
 //! was made from.
 
+mod runtime;
+
 use crate::tool::{self, VERILATOR};
 use crate::{Job, LevelError, Observer, Outcome, cache, external};
+use runtime::Runtime;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use std::process::Command;
@@ -67,22 +70,20 @@ impl Simulation<'_> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
         let cache = cache::folder()?;
-        let mut hash = Sha256::new();
         let of = [verilog, bench, top, env!("CARGO_PKG_VERSION")].into_iter();
-        for text in of.chain(options.iter().copied()).chain(OPTIONS.iter().copied()) {
-            // The length keeps texts apart that follow each other.
-            hash.update((text.len() as u64).to_le_bytes());
-            hash.update(text);
-        }
-        let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let hash = hash(of.chain(options.iter().copied()).chain(OPTIONS));
         let binary = cache.join(format!("{name}_{hash}"));
         let _one_at_a_time = COMPILER.lock();
         if !cache::holds(&binary)? {
             let folder =
                 tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
             tool::put(folder.path(), &[("core.v", verilog), ("bench.cpp", bench)])?;
+            let output = folder.path().join("obj_dir");
+            let runtime = Runtime::new(&cache, options);
+            let lent = runtime.as_ref().map(|runtime| runtime.lend(&output)).transpose();
+            let lent = lent.map_err(tool::io("cannot copy Verilator's own code"))?;
             let mut command = Command::new(VERILATOR.name);
-            command.args(OPTIONS).args(options).args([
+            command.args(lent.into_iter().flatten()).args(OPTIONS).args(options).args([
                 "--top-module",
                 top,
                 "-o",
@@ -91,7 +92,10 @@ impl Simulation<'_> {
                 "bench.cpp",
             ]);
             tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
-            let made = folder.path().join("obj_dir").join("bench");
+            if let Some(runtime) = &runtime {
+                runtime.keep(&output);
+            }
+            let made = output.join("bench");
             cache::only_ours(&made)?;
             // A rename is atomic: another process that looks for the file finds it complete or not
             // at all.
@@ -100,4 +104,15 @@ impl Simulation<'_> {
         }
         Ok(binary)
     }
+}
+
+/// The hash of these texts, in hexadecimal digits.
+fn hash<'a>(texts: impl Iterator<Item = &'a str>) -> String {
+    let mut hash = Sha256::new();
+    for text in texts {
+        // The length keeps texts apart that follow each other.
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -48,7 +48,7 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "repeats",
-        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, 300 random machines home",
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home",
         asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
         cargo: &[
             "--test",
@@ -66,6 +66,7 @@ const RUNS: &[Run] = &[
             "golden_vectors",
             "parameters_of_others",
             "random_machines",
+            "homes_from_every_start",
         ],
     },
     Run {
@@ -171,6 +172,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "command_line", "real_senders"],
     },
     Run {
+        name: "container",
+        what: "the [container recipe](senders.md) built from a clean clone, without a registry: base images made of Debian's packages and rustup's toolchain; a program streamed to what starts in it, twice",
+        asks: &[("CARRYSTEP_CONTAINER", "1")],
+        cargo: &["--test", "command_line", "container_serves"],
+    },
+    Run {
         name: "soak",
         what: "[senders](senders.md): 500 real-time characters at random times, judged by the pulses (the path, speed and acceleration); four hours of motion under a sender that misbehaves at random",
         asks: &[("CARRYSTEP_CHARACTERS", "500"), ("CARRYSTEP_SOAK", "14400")],
@@ -212,6 +219,9 @@ pub fn run(names: &[String]) -> TaskResult {
     let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
     if is_asked("senders") {
         tools::install_for_senders()?;
+    }
+    if is_asked("container") {
+        tools::install_for_container()?;
     }
     committed()?;
     let commit = shell::read("git", &["rev-parse", "--short=10", "HEAD"])?;

@@ -2,8 +2,9 @@
 //!
 //! `cargo test` runs the binaries one after another, so that one core idles while the last test of
 //! each binary ends. Here all binaries are built once, long ones are split into slices of their
-//! tests, and the slices run side by side, the longest first. Tests that mostly wait for a board in
-//! real time run beside them, one after the other. The runner is our own because cargo-nextest would
+//! tests, and the slices run side by side, the longest first. Those of the command, which wait for
+//! boards and lines for half of their time, share a core by twos. Tests that hardly do anything but
+//! wait run beside all of them, one after the other. The runner is our own because cargo-nextest would
 //! have to be compiled for many minutes before the first test.
 //!
 //! The seconds of each test are remembered in `target/test-durations.json`, and each binary's
@@ -61,9 +62,9 @@ impl Workspace {
         let mut report = TestReport::new(&self.binaries, &slices, &outputs);
         let mut running: Vec<Running> = Vec::new();
         loop {
-            let busy: usize = running.iter().map(|one| slices[one.slice].cores(cores)).sum();
+            let busy: usize = running.iter().map(|one| slices[one.slice].halves(cores)).sum();
             let waits = running.iter().any(|one| slices[one.slice].needs == Needs::Patience);
-            if let Some(slice) = schedule.next(cores.saturating_sub(busy), waits) {
+            if let Some(slice) = schedule.next((2 * cores).saturating_sub(busy), waits) {
                 running.push(self.start(&slices, slice, &outputs)?);
                 continue;
             }

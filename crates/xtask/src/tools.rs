@@ -50,6 +50,9 @@ const MODULES_OF_SENDERS: [(&str, &str); 1] = [("tkinter", "python3-tk")];
 /// The module of Python that makes a folder for packages of PyPI, and its package in Debian.
 const VENV: (&str, &str) = ("ensurepip", "python3-venv");
 
+/// The same for the long run that builds the image of a container.
+const OF_CONTAINER: &[(&str, &str)] = &[("buildah", "buildah"), ("mmdebstrap", "mmdebstrap")];
+
 /// The folder of daemons, which is not on every user's path.
 const DAEMONS: &str = "/usr/sbin";
 
@@ -95,6 +98,14 @@ pub fn install_for_senders() -> TaskResult {
         let modules = MODULES_OF_SENDERS.iter().chain([&VENV]).filter(|(module, _)| lacks(module));
         missing(OF_SENDERS).into_iter().chain(modules.map(|&(_, package)| package)).collect()
     })
+}
+
+/// Installs what the long run of the container needs beside that.
+///
+/// # Errors
+/// A tool is missing and cannot be installed.
+pub fn install_for_container() -> TaskResult {
+    install_of(|| missing(OF_CONTAINER))
 }
 
 /// Installs the packages that this names, which must name none then.

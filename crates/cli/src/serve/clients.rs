@@ -15,7 +15,8 @@ const MOST: usize = 10;
 const READ: usize = 4096;
 /// Bytes that wait for a reader from which on it gets no reports, and no line of it is taken.
 const SLOW: usize = 4096;
-/// Bytes that wait for a watcher at most; then its connection is closed.
+/// Bytes that wait for a connection at most. By then it has not read for long, and is closed. The
+/// pseudo-terminal cannot be closed: what is said to it above the bound is dropped.
 const MOST_WAITING: usize = 1 << 16;
 
 /// What has happened to a connection.
@@ -205,15 +206,13 @@ impl Clients {
         self.clients.iter().any(|client| client.id == id && client.may())
     }
 
-    /// Sends a text to a connection. A watcher or a page that reads too slowly is closed.
+    /// Sends a text to a connection, if not too much waits for it already.
     pub fn say(&mut self, to: Id, text: &str) {
-        let drives = self.driver == Some(to);
-        if let Some(client) = self.clients.iter_mut().find(|client| client.id == to) {
+        let Some(client) = self.clients.iter_mut().find(|client| client.id == to) else { return };
+        if client.out.len() + text.len() <= MOST_WAITING {
             client.out.extend(text.as_bytes());
-            if (!drives || client.is_page()) && client.out.len() > MOST_WAITING {
-                client.is_gone = !client.is_terminal();
-                client.out.clear();
-            }
+        } else if !client.is_terminal() {
+            client.is_gone = true;
         }
     }
 
@@ -241,3 +240,6 @@ impl Clients {
         client.into_iter().for_each(|client| client.is_gone = !client.is_terminal());
     }
 }
+
+#[cfg(test)]
+mod slow_readers;

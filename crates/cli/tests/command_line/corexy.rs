@@ -92,6 +92,33 @@ fn pulses_of_crossed_belts_are_those_of_simulate_on_a_board_and_pass_the_check()
 }
 
 #[test]
+fn probe_of_crossed_belts_trips_at_the_place_of_the_tool() {
+    let folder = folder();
+    let inputs = "[machine.inputs]\nprobe = \"low\"\n\n[[machine.axis]]";
+    let machine = MACHINE.replace("home =", "# home =").replace("travel =", "# travel =").replacen(
+        "[[machine.axis]]",
+        inputs,
+        1,
+    );
+    folder.write("machine.toml", machine);
+    let job = "G21 G90 F1200\nG1 X4 Y2\nG38.2 X-6 F100\nG1 X[#5061 + 1] F300\nM2\n";
+    folder.write("job.ngc", job);
+    // The probe closes where the tool is at x = -2.5 mm.
+    let board = Board::new(&folder, "--fast --probe x=-200");
+    let ran = folder.run(&format!("run job.ngc --machine machine.toml --port {}", board.port));
+    passed(&ran);
+    assert!(
+        ran.stderr.contains("line 3: the probe has tripped at machine x -2.49"),
+        "{}",
+        ran.stderr
+    );
+    let [x, y, z] = positions(&folder, &board)[..] else { panic!("three motors") };
+    // The tool has come back by 1 mm, to x = -1.5 and y = 2; the motors are at x + y and x - y.
+    assert!((40..=41).contains(&x), "{x}");
+    assert_eq!((x - y, z), (320, 0));
+}
+
+#[test]
 fn plan_shows_places_of_letters_and_limits_of_motors() {
     let folder = folder();
     let told = json(&folder.run("plan job.ngc --machine machine.toml --at x=1,y=1 --json"));

@@ -21,6 +21,8 @@ mod check_slices;
 mod ci_action;
 mod clocks;
 mod command;
+#[cfg(target_os = "linux")]
+mod container;
 mod corexy;
 mod curves;
 #[cfg(target_os = "linux")]
@@ -96,6 +98,8 @@ mod serve_limits;
 mod serve_outputs;
 #[cfg(target_os = "linux")]
 mod serve_probes;
+#[cfg(target_os = "linux")]
+mod serve_slow_readers;
 mod serve_soak;
 #[cfg(unix)]
 mod serve_states;

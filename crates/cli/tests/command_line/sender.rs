@@ -112,7 +112,12 @@ impl Sender {
 
     /// Connects by TCP, and waits for the welcome.
     pub fn tcp(served: &Served) -> Self {
-        let stream = TcpStream::connect(served.tcp).unwrap();
+        Self::at(served.tcp)
+    }
+
+    /// Connects to this address, and waits for the welcome.
+    pub fn at(address: SocketAddr) -> Self {
+        let stream = TcpStream::connect(address).unwrap();
         stream.set_nodelay(true).unwrap();
         stream.set_nonblocking(true).unwrap();
         Self::new(stream).welcomed()

@@ -5,7 +5,7 @@ use crate::sender::{Sender, Served, place};
 use crate::serve_streams::folder;
 use crate::stops::stop;
 use crate::virtual_boards::{Board, passed};
-use std::io::{Read as _, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
@@ -13,11 +13,18 @@ use std::time::Duration;
 const WAY: &str = "G21 G91 F180\nG1 X5\nG1 Y5";
 
 #[test]
-fn first_connection_drives_and_the_others_watch() {
+fn first_connection_drives_and_nine_others_watch() {
     let folder = folder();
     let served = Served::new(&folder, "");
     let mut first = Sender::tcp(&served);
-    let mut watchers: Vec<Sender> = (0..5).map(|_| Sender::tcp(&served)).collect();
+    let mut watchers: Vec<Sender> = (0..9).map(|_| Sender::tcp(&served)).collect();
+    // The eleventh is closed.
+    let mut eleventh = TcpStream::connect(served.tcp).unwrap();
+    eleventh.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+    match eleventh.read(&mut [0]) {
+        Ok(count) => assert_eq!(count, 0),
+        Err(error) => assert_eq!(error.kind(), ErrorKind::ConnectionReset),
+    }
     first.done("G0 X1");
     first.place();
     for watcher in &mut watchers {
@@ -48,7 +55,7 @@ fn http_closes_its_connection_and_does_nothing() {
         let mut said = Vec::new();
         // The connection may be reset, because not all was read.
         let ended = stream.read_to_end(&mut said);
-        assert!(!matches!(ended, Err(error) if error.kind() == std::io::ErrorKind::WouldBlock));
+        assert!(!matches!(ended, Err(error) if error.kind() == ErrorKind::WouldBlock));
     }
     let mut sender = Sender::tcp(&served);
     assert!(sender.report().starts_with("<Idle|MPos:0.000,"));
@@ -130,6 +137,21 @@ fn board_that_is_gone_is_an_alarm_and_ends_the_command() {
     sender.until(|line| line == "[MSG:the board is gone]");
     let (status, said) = served.end();
     assert_eq!(status, 1, "{said}");
+}
+
+#[test]
+fn other_computers_are_let_in_only_when_asked_and_with_a_warning() {
+    let folder = folder();
+    for (options, warned) in
+        [("", false), ("--listen 127.0.0.1", false), ("--listen 0.0.0.0", true)]
+    {
+        let served = Served::new(&folder, options);
+        assert_eq!(served.tcp.ip().is_loopback(), !warned, "{}", served.tcp);
+        let (status, said) = served.interrupt();
+        assert_eq!(status, 0, "{said}");
+        let warning = "warning: 0.0.0.0:0: raw TCP has no password";
+        assert_eq!(said.contains(warning), warned, "{said}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use tungstenite::{Message, WebSocket};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A page without a browser.
-struct Page {
+pub struct Page {
     socket: WebSocket<TcpStream>,
     rest: String,
     address: String,
@@ -47,7 +47,7 @@ impl Page {
         }
     }
 
-    fn new(served: &Served) -> Self {
+    pub fn new(served: &Served) -> Self {
         Self::try_new(served, None, None).unwrap()
     }
 
@@ -59,8 +59,13 @@ impl Page {
         page
     }
 
-    fn say(&mut self, word: &str) {
-        self.socket.send(Message::text(word)).unwrap();
+    pub fn say(&mut self, word: &str) {
+        self.try_say(word).unwrap();
+    }
+
+    /// Fails if the connection was closed.
+    pub fn try_say(&mut self, word: &str) -> Result<(), tungstenite::Error> {
+        self.socket.send(Message::text(word))
     }
 
     fn send(&mut self, bytes: &[u8]) {
@@ -91,7 +96,7 @@ impl Page {
         }
     }
 
-    fn state(&mut self) -> Value {
+    pub fn state(&mut self) -> Value {
         self.say("?");
         serde_json::from_str(&self.until(|line| line.starts_with('{'))).unwrap()
     }

@@ -239,6 +239,16 @@ pub const INPUTS: &[Inputs] = &[
             "sim/jobs/",
         ],
     ),
+    (
+        "container",
+        &[
+            ".dockerignore",
+            "crates/cli/src/serve",
+            "crates/cli/tests/command_line/container.rs",
+            "sim/container/",
+            "sim/jobs/machine.toml",
+        ],
+    ),
     ("soak", RUN),
 ];
 

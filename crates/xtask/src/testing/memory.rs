@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// Binaries that take long where nothing is remembered, with their seconds on one core.
-const KNOWN: [(&str, f64); 15] = [
+const KNOWN: [(&str, f64); 31] = [
     ("carrystep-cli::command_line", 880.0),
     ("carrystep-tests::rung_7_promises_are_proved", 320.0),
     ("carrystep-tests::a_board_is_its_verilog", 300.0),
@@ -23,6 +23,22 @@ const KNOWN: [(&str, f64); 15] = [
     ("carrystep-virtual-board::talk", 40.0),
     ("carrystep-virtual-board::bus", 35.0),
     ("carrystep-cli::clusters", 30.0),
+    ("carrystep-virtual-board::homing", 130.0),
+    ("carrystep-tests::the_link_cuts", 160.0),
+    ("carrystep-tests::a_self_test_shows_every_pin", 90.0),
+    ("carrystep-virtual-board::clocks", 60.0),
+    ("carrystep-linuxcnc::component", 55.0),
+    ("carrystep-tests::wide_frames_equal_single_ones", 50.0),
+    ("carrystep-runner::runs_over_spi", 40.0),
+    ("carrystep-tests::the_link_keeps_sessions", 40.0),
+    ("carrystep-virtual-board::corexy_homing", 35.0),
+    ("carrystep-linuxcnc::spidev", 30.0),
+    ("carrystep-linuxcnc::replay", 30.0),
+    ("carrystep-runner::holds_on_a_board", 25.0),
+    ("carrystep-runner::pulses_of_simulate", 25.0),
+    ("carrystep-virtual-board::gantry_homing", 20.0),
+    ("carrystep-hdl::golden_vectors", 15.0),
+    ("carrystep-runner::late_hosts", 15.0),
 ];
 
 /// The seconds for which a test is taken whose binary is in no list. A long binary with many tests

@@ -1,11 +1,12 @@
-//! Which slice is started next: those that take all cores first, then the longest. Slices that only
-//! wait run beside them, one after the other.
+//! Which slice is started next: those that take all cores first, then the longest. Two slices that
+//! wait for half of their time share a core. Slices that only wait run beside all of them, one after
+//! the other.
 
 use super::slices::{Needs, Slice};
 
 /// The slices that have not been started.
 pub struct Schedule {
-    /// Place of each slice and the cores that it takes; the next one is the last.
+    /// Place of each slice and the half cores that it takes; the next one is the last.
     working: Vec<(usize, usize)>,
     /// The slices that only wait; the next one is the last.
     waiting: Vec<usize>,
@@ -22,24 +23,25 @@ impl Schedule {
         });
         let waits = |place: &usize| slices[*place].needs == Needs::Patience;
         let (waiting, working): (Vec<usize>, Vec<usize>) = order.into_iter().partition(waits);
-        let working = working.into_iter().map(|place| (place, slices[place].cores(cores)));
+        let working = working.into_iter().map(|place| (place, slices[place].halves(cores)));
         Self { working: working.collect(), waiting }
     }
 
-    /// The next slice for so many cores that are free; `waits` if a slice is running that only
+    /// The next slice for so many half cores that are free; `waits` if a slice is running that only
     /// waits. A wide slice is never passed by a later one, so that it is not put off for ever.
     pub fn next(&mut self, free: usize, waits: bool) -> Option<usize> {
         let next = if waits { None } else { self.waiting.pop() };
-        next.or_else(|| self.working.pop_if(|(_, cores)| *cores <= free).map(|(place, _)| place))
+        next.or_else(|| self.working.pop_if(|(_, halves)| *halves <= free).map(|(place, _)| place))
     }
 }
 
 impl Slice {
-    /// How many of all cores it takes.
-    pub fn cores(&self, all: usize) -> usize {
+    /// How many half cores it takes of so many cores.
+    pub fn halves(&self, cores: usize) -> usize {
         match self.needs {
-            Needs::AllCores => all,
-            Needs::OneCore => 1,
+            Needs::AllCores => 2 * cores,
+            Needs::OneCore => 2,
+            Needs::HalfACore => 1,
             Needs::Patience => 0,
         }
     }
@@ -58,11 +60,20 @@ mod tests {
         let slices = [(1.0, Needs::OneCore), (9.0, Needs::OneCore), (2.0, Needs::AllCores)];
         let slices = slices.map(|(seconds, needs)| slice(seconds, needs));
         let mut schedule = Schedule::new(&slices, 2);
-        assert_eq!(schedule.next(1, false), None);
-        assert_eq!(schedule.next(2, false), Some(2));
-        assert_eq!(schedule.next(0, false), None);
-        assert_eq!([2, 1].map(|free| schedule.next(free, false)), [Some(1), Some(0)]);
         assert_eq!(schedule.next(2, false), None);
+        assert_eq!(schedule.next(4, false), Some(2));
+        assert_eq!(schedule.next(0, false), None);
+        assert_eq!([4, 2].map(|free| schedule.next(free, false)), [Some(1), Some(0)]);
+        assert_eq!(schedule.next(4, false), None);
+    }
+
+    #[test]
+    fn two_slices_that_wait_half_of_their_time_share_a_core() {
+        let slices = [(1.0, Needs::HalfACore), (9.0, Needs::OneCore), (2.0, Needs::HalfACore)];
+        let slices = slices.map(|(seconds, needs)| slice(seconds, needs));
+        let mut schedule = Schedule::new(&slices, 2);
+        assert_eq!(schedule.next(4, false), Some(1));
+        assert_eq!([2, 1].map(|free| schedule.next(free, false)), [Some(2), Some(0)]);
     }
 
     #[test]
@@ -70,11 +81,11 @@ mod tests {
         let slices = [(1.0, Needs::Patience), (2.0, Needs::AllCores), (5.0, Needs::Patience)];
         let slices = slices.map(|(seconds, needs)| slice(seconds, needs));
         let mut schedule = Schedule::new(&slices, 2);
-        assert_eq!(schedule.next(2, false), Some(2), "the longer one that waits");
-        assert_eq!(schedule.next(2, true), Some(1));
+        assert_eq!(schedule.next(4, false), Some(2), "the longer one that waits");
+        assert_eq!(schedule.next(4, true), Some(1));
         assert_eq!(schedule.next(0, true), None);
         assert_eq!(schedule.next(0, false), Some(0));
-        assert_eq!(schedule.next(2, false), None);
+        assert_eq!(schedule.next(4, false), None);
     }
 
     /// The makespan of a simulated run is near the least that is possible.
@@ -84,7 +95,7 @@ mod tests {
             (1..=40).map(|n| slice(f64::from(n * 7 % 41), Needs::OneCore)).collect();
         let mut schedule = Schedule::new(&slices, 2);
         let mut free_at = [0.0_f64; 2];
-        while let Some(place) = schedule.next(1, true) {
+        while let Some(place) = schedule.next(2, true) {
             let core = usize::from(free_at[1] < free_at[0]);
             free_at[core] += slices[place].seconds;
         }

@@ -23,6 +23,15 @@ const WAITING: [(&str, &[&str]); 5] = [
     ("carrystep-cli::command_line", &["boards::wrong_peer_on_the_port_is_named"]),
 ];
 
+/// Binaries that wait for half of their time or more, each in all of its slices: two of them share a
+/// core.
+const HALF: [&str; 4] = [
+    "carrystep-cli::command_line",
+    "carrystep-cli::bin/carrystep",
+    "carrystep-linuxcnc::component",
+    "carrystep-linuxcnc::spidev",
+];
+
 /// What a slice needs of the computer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
@@ -30,6 +39,8 @@ pub enum Needs {
     AllCores,
     /// One core.
     OneCore,
+    /// Half of one core.
+    HalfACore,
     /// Hardly anything: it runs beside others.
     Patience,
 }
@@ -37,7 +48,11 @@ pub enum Needs {
 impl Needs {
     /// What the tests of a binary need that do not wait.
     fn of(binary: &str) -> Self {
-        if WIDE.contains(&binary) { Self::AllCores } else { Self::OneCore }
+        match binary {
+            _ if WIDE.contains(&binary) => Self::AllCores,
+            _ if HALF.contains(&binary) => Self::HalfACore,
+            _ => Self::OneCore,
+        }
     }
 
     /// What a test needs.
@@ -76,7 +91,7 @@ pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -
     }
     let expected = memory.expect(id, tests);
     let mut slices = Vec::new();
-    for needs in [Needs::AllCores, Needs::OneCore, Needs::Patience] {
+    for needs in [Needs::AllCores, Needs::OneCore, Needs::HalfACore, Needs::Patience] {
         let own: Vec<usize> =
             (0..tests.len()).filter(|&test| Needs::of_test(id, &tests[test]) == needs).collect();
         let seconds: f64 = own.iter().map(|&test| expected[test]).sum();
@@ -180,7 +195,7 @@ mod tests {
             memory(id, &[(&*waiting, LONGEST), ("a::one", 1.0), ("a::two", LONGEST)]);
         let slices = of(0, &binary(id), &tests, &memory);
         let needs: Vec<_> = slices.iter().map(|slice| (slice.needs, slice.names.len())).collect();
-        assert_eq!(needs, [(Needs::OneCore, 1), (Needs::OneCore, 1), (Needs::Patience, 1)]);
+        assert_eq!(needs, [(Needs::HalfACore, 1), (Needs::HalfACore, 1), (Needs::Patience, 1)]);
         assert_eq!(slices[2].names, [waiting]);
     }
 
