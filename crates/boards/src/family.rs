@@ -122,8 +122,7 @@ impl Family {
     pub fn compared(self) -> &'static str {
         match self.facts().placer() {
             Some(Placer::Ice40) => "bitstream",
-            Some(Placer::Ecp5) => "netlist",
-            Some(Placer::Gowin) => "script only",
+            Some(Placer::Ecp5 | Placer::Gowin) => "netlist",
             None => "EDIF",
         }
     }

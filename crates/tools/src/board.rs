@@ -137,8 +137,8 @@ fn gowin_bitstream(
     Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
 }
 
-/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5 or a Gowin part. `None` for another family, whose
-/// boards need one seed only.
+/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5 or a Gowin part. `None` for another
+/// family, whose boards need one seed only.
 ///
 /// # Errors
 /// As [`build`].

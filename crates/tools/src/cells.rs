@@ -29,6 +29,28 @@ pub(crate) const XILINX: Library =
 pub(crate) const ECP5: Library =
     Library { file: "../share/yosys/ecp5/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
 
+pub(crate) const GOWIN: Library =
+    Library { file: "../share/yosys/gowin/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
+
+/// The 64 parameters of a block RAM's first contents, for a model of it in Verilog.
+pub(crate) struct FirstContents {
+    /// Their declarations.
+    pub(crate) declared: String,
+    /// Their names, the last one first, as a concatenation needs them.
+    pub(crate) all: String,
+}
+
+impl FirstContents {
+    /// Parameters whose names begin so, with so many bits each.
+    pub(crate) fn of(begin: &str, bits: u32) -> Self {
+        let names: Vec<String> = (0..64).map(|number| format!("{begin}{number:02X}")).collect();
+        let declare = |name: &String| format!("parameter [{}:0] {name} = 0", bits - 1);
+        let declared: Vec<String> = names.iter().map(declare).collect();
+        let all: Vec<String> = names.into_iter().rev().collect();
+        Self { declared: declared.join(", "), all: all.join(", ") }
+    }
+}
+
 /// A design for an iCE40, preceded by the models of its cells.
 pub(crate) fn with_models(verilog: &str) -> Result<String, SynthesisError> {
     Ok(format!("{}{verilog}", models(&ICE40, verilog)?))

@@ -1,6 +1,10 @@
 //! Turns Verilog into a Gowin bitstream with yosys, nextpnr and gowin_pack, and reads the figures of
 //! each stage. The commands are those of the boards' build scripts.
 
+mod models;
+
+pub use models::simulated;
+
 use crate::SynthesisError;
 use crate::cells::counted;
 use crate::ice40::Size;
@@ -8,9 +12,12 @@ use crate::nextpnr_log::NextpnrLog;
 use crate::tool::{self, GOWIN_PACK, NEXTPNR_GOWIN, YOSYS_OF_PIP};
 use carrystep_boards::{Mapped, Part};
 
-/// A synthesised design, in the format that nextpnr reads.
+/// A synthesised design.
 pub struct Netlist {
+    /// The design in the format that nextpnr reads.
     json: String,
+    /// The design as Verilog made of cells.
+    pub verilog: String,
 }
 
 /// A placed and routed design.
@@ -26,11 +33,6 @@ pub struct PlacedDesign {
     pub size: Size,
 }
 
-/// A board's Verilog with models of its clock cells, for simulators.
-pub fn simulated(verilog: &str) -> String {
-    format!("{}{verilog}", include_str!("gowin/cells.v"))
-}
-
 /// Synthesises Verilog.
 ///
 /// # Errors
@@ -38,9 +40,12 @@ pub fn simulated(verilog: &str) -> String {
 pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
-    let script = format!("read_verilog core.v; synth_gowin -top {top} -json core.json");
+    let script = format!(
+        "read_verilog core.v; synth_gowin -top {top} -json core.json; write_verilog -noattr netlist.v"
+    );
     tool::run(&YOSYS_OF_PIP, folder.path(), &["-q", "-p", &script])?;
-    Ok(Netlist { json: tool::read(folder.path(), "core.json")? })
+    let read = |name| tool::read(folder.path(), name);
+    Ok(Netlist { json: read("core.json")?, verilog: read("netlist.v")? })
 }
 
 /// Counts the cells to which `synth_gowin` maps a design. The LUTs are those that nextpnr counts:

@@ -89,21 +89,31 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin
-/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 and Gowin is slow, so that
-/// a test run builds for one board of each only; `cargo xtask long self-test` builds all.
+/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow,
+/// so that a test run builds for one such board only; `cargo xtask long self-test` builds all.
 #[test]
 fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
-    let is_every_board = std::env::var_os("CARRYSTEP_BOARDS").is_some();
-    for board in boards() {
-        let is_chosen = match board.family.facts().placer() {
-            Some(Placer::Ice40) => true,
-            Some(Placer::Ecp5) => is_every_board || board.name == "ulx3s",
-            Some(Placer::Gowin) => is_every_board || board.name == "tang-nano-9k",
-            None => false,
-        };
-        if !is_chosen {
-            continue;
-        }
+    run_scripts(|board| match board.family.facts().placer() {
+        Some(Placer::Ice40) => true,
+        Some(Placer::Ecp5) => is_every_board() || board.name == "ulx3s",
+        Some(Placer::Gowin) | None => false,
+    });
+}
+
+/// The same for Gowin boards: one in a test run, and all by `cargo xtask long gowin`.
+#[test]
+fn script_of_a_gowin_board_builds_a_bitstream_with_all_pins() {
+    run_scripts(|board| {
+        board.family == Family::Gowin && (is_every_board() || board.name == "tang-nano-9k")
+    });
+}
+
+fn is_every_board() -> bool {
+    std::env::var_os("CARRYSTEP_BOARDS").is_some()
+}
+
+fn run_scripts(is_chosen: impl Fn(&Board) -> bool) {
+    for board in boards().iter().filter(|board| is_chosen(board)) {
         let folder = folder(board);
         run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
         let bitstream = folder.path().join(format!("top.{}", board.bitstream));
@@ -188,8 +198,7 @@ fn constraints_of_a_gowin_part_place_every_port_on_its_pin() {
             pins.chain([(OSCILLATOR.to_owned(), oscillator.pin.clone())]).collect();
         assert_eq!(rows("IO_LOC"), known, "{}", board.name);
         let standard = |port: &str| {
-            let is_low = board.name == "tang-nano-9k" && port == "led";
-            format!("IO_TYPE={}", if is_low { "LVCMOS18" } else { "LVCMOS33" })
+            format!("IO_TYPE={}", if port == "led" { "LVCMOS18" } else { "LVCMOS33" })
         };
         let known: BTreeMap<String, String> =
             known.into_keys().map(|port| (port.clone(), standard(&port))).collect();
