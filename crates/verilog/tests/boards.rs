@@ -262,6 +262,30 @@ fn impossible_request_is_refused_with_an_alternative() {
             "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
             "icestick has pins for 6 axes, not for",
         ),
+        (
+            "tang-nano-9k",
+            "48000000",
+            "40000000",
+            "tang-nano-9k: the PLL makes no clock of 40 MHz from 27 MHz; the nearest that it makes is 40.5 MHz",
+        ),
+        (
+            "tang-nano-9k",
+            "tick_ns = 2000",
+            "tick_ns = 1000",
+            "6 axes need 13 clocks each and two to close the tick",
+        ),
+        (
+            "tang-nano-20k",
+            "\"each\"",
+            "\"pair\"",
+            "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
+        ),
+        (
+            "tang-nano-20k",
+            "[[machine.axis]]",
+            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            "tang-nano-20k has pins for 6 axes, not for",
+        ),
     ];
     for (name, was, becomes, says) in refused {
         let said = asked(name, was, becomes).unwrap_err();
