@@ -55,9 +55,17 @@ fn gowin_boards_reach_their_clock_with_each_seed() {
         assert!(least.is_some_and(|mhz| mhz * 1e6 >= board.clocks[0].clock_hz as f64));
         let found = Measured::Placed(placed(board, &built, least));
         let known = board.measured();
-        assert_eq!(known, Some(found), "run `cargo run --release -p carrystep-tools -- boards {}`", board.name);
+        assert_eq!(
+            known,
+            Some(found),
+            "run `cargo run --release -p carrystep-tools -- boards {}`",
+            board.name
+        );
         let mhz = least.unwrap_or_default();
-        said.push(format!("{}: {} LUTs, {mhz:.1} MHz or more with five seeds", board.name, built.size.logic_cells));
+        said.push(format!(
+            "{}: {} LUTs, {mhz:.1} MHz or more with five seeds",
+            board.name, built.size.logic_cells
+        ));
     }
     if is_asked {
         let _ = writeln!(std::io::stderr(), "FIGURES {}", said.join(", "));

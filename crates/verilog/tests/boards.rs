@@ -197,9 +197,8 @@ fn constraints_of_a_gowin_part_place_every_port_on_its_pin() {
         let known: BTreeMap<String, String> =
             pins.chain([(OSCILLATOR.to_owned(), oscillator.pin.clone())]).collect();
         assert_eq!(rows("IO_LOC"), known, "{}", board.name);
-        let standard = |port: &str| {
-            format!("IO_TYPE={}", if port == "led" { "LVCMOS18" } else { "LVCMOS33" })
-        };
+        let standard =
+            |port: &str| format!("IO_TYPE={}", if port == "led" { "LVCMOS18" } else { "LVCMOS33" });
         let known: BTreeMap<String, String> =
             known.into_keys().map(|port| (port.clone(), standard(&port))).collect();
         assert_eq!(rows("IO_PORT"), known, "{}", board.name);

@@ -228,9 +228,15 @@ mod tests {
         assert!(check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(), "too slow");
         rows[0] = found(&ROWS[0]);
         ecp5.luts += 1;
-        assert!(check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(), "over budget on an ECP5");
+        assert!(
+            check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(),
+            "over budget on an ECP5"
+        );
         ecp5.luts -= 1;
         gowin.luts += 1;
-        assert!(check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(), "over budget on a Gowin part");
+        assert!(
+            check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(),
+            "over budget on a Gowin part"
+        );
     }
 }
