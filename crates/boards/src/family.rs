@@ -184,6 +184,12 @@ pub enum IoStandard {
 }
 
 impl IoStandard {
+    /// The standard of this name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        let all = [Self::Lvcmos33, Self::Lvttl, Self::Lvcmos25, Self::Lvcmos18];
+        all.into_iter().find(|standard| standard.name() == name)
+    }
+
     /// The name of the standard in UCF and XDC files.
     pub fn name(self) -> &'static str {
         self.into()

@@ -109,8 +109,9 @@ struct Reserved {
 /// A table of ports and their pins.
 type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
 
-/// The electrical standard of each port whose bank has a voltage of its own.
-type Standards = BTreeMap<Spanned<String>, IoStandard>;
+/// The electrical standard of each port whose bank has a voltage of its own. This type is that of a
+/// connector's labels, so that the command contains the code that reads it once.
+type Standards = BTreeMap<Spanned<String>, String>;
 
 /// Connectors by name; each maps its labels to the package's pins.
 type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;

@@ -2,6 +2,7 @@
 
 pub mod page;
 
+use crate::flow::Flow;
 use crate::ice40::{self, NextpnrPart, Size};
 use crate::tool::{self, ICEPACK, ICETIME, NEXTPNR};
 use crate::{SynthesisError, ecp5, gowin};
@@ -55,8 +56,8 @@ impl Built {
 pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     match job.part.family().facts().placer() {
         Some(Placer::Ice40) => ice40_bitstream(job, stage),
-        Some(Placer::Ecp5) => ecp5_bitstream(job, stage),
-        Some(Placer::Gowin) => gowin_bitstream(job, stage),
+        Some(Placer::Ecp5) => bitstream_of(&ecp5::FLOW, job, stage),
+        Some(Placer::Gowin) => bitstream_of(&gowin::FLOW, job, stage),
         None => Err(SynthesisError::Tool {
             tool: NEXTPNR.name,
             message: format!("no open tool places a {}", job.part.family()),
@@ -99,40 +100,23 @@ fn ice40_bitstream(
     })
 }
 
-fn ecp5_bitstream(
+fn bitstream_of(
+    flow: &'static Flow,
     job: &BuildJob<'_>,
     stage: &mut dyn FnMut(&str),
 ) -> Result<Built, SynthesisError> {
+    let (nextpnr, pack) = flow.stages();
     stage("yosys");
-    let netlist = ecp5::synthesise(job.verilog, job.top)?;
+    let netlist = flow.synthesise(job.verilog, job.top)?;
     let (seed, placed) = first_that_reaches(
         job.clock_hz,
         |seed| {
-            stage(&format!("nextpnr-ecp5, seed {seed}"));
+            stage(&format!("{nextpnr}, seed {seed}"));
             netlist.place_on(job.part, job.constraints, job.clock_hz, seed)
         },
         |placed| placed.mhz,
     )?;
-    stage("ecppack");
-    let bitstream = placed.bitstream()?;
-    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
-}
-
-fn gowin_bitstream(
-    job: &BuildJob<'_>,
-    stage: &mut dyn FnMut(&str),
-) -> Result<Built, SynthesisError> {
-    stage("yosys");
-    let netlist = gowin::synthesise(job.verilog, job.top)?;
-    let (seed, placed) = first_that_reaches(
-        job.clock_hz,
-        |seed| {
-            stage(&format!("nextpnr-himbaechel-gowin, seed {seed}"));
-            netlist.place_on(job.part, job.constraints, job.clock_hz, seed)
-        },
-        |placed| placed.mhz,
-    )?;
-    stage("gowin_pack");
+    stage(pack);
     let bitstream = placed.bitstream()?;
     Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
 }
@@ -143,25 +127,17 @@ fn gowin_bitstream(
 /// # Errors
 /// As [`build`].
 pub fn clocks_of_seeds(job: &BuildJob<'_>) -> Result<Option<[f64; SEEDS.len()]>, SynthesisError> {
-    let each = |mhz: &dyn Fn(u32) -> Result<f64, SynthesisError>| {
-        let mut clocks = [0.0; SEEDS.len()];
-        for (clock, seed) in clocks.iter_mut().zip(SEEDS) {
-            *clock = mhz(seed)?;
-        }
-        Ok(Some(clocks))
+    let flow = match job.part.family().facts().placer() {
+        Some(Placer::Ecp5) => &ecp5::FLOW,
+        Some(Placer::Gowin) => &gowin::FLOW,
+        Some(Placer::Ice40) | None => return Ok(None),
     };
-    let (part, pins, clock_hz) = (job.part, job.constraints, job.clock_hz);
-    match part.family().facts().placer() {
-        Some(Placer::Ecp5) => {
-            let netlist = ecp5::synthesise(job.verilog, job.top)?;
-            each(&|seed| Ok(netlist.place_on(part, pins, clock_hz, seed)?.mhz))
-        }
-        Some(Placer::Gowin) => {
-            let netlist = gowin::synthesise(job.verilog, job.top)?;
-            each(&|seed| Ok(netlist.place_on(part, pins, clock_hz, seed)?.mhz))
-        }
-        Some(Placer::Ice40) | None => Ok(None),
+    let netlist = flow.synthesise(job.verilog, job.top)?;
+    let mut clocks = [0.0; SEEDS.len()];
+    for (clock, seed) in clocks.iter_mut().zip(SEEDS) {
+        *clock = netlist.place_on(job.part, job.constraints, job.clock_hz, seed)?.mhz;
     }
+    Ok(Some(clocks))
 }
 
 /// The placement of the first seed that reaches a clock, Hz, or else the best one, with its seed.

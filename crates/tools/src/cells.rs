@@ -77,12 +77,18 @@ pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, Synthes
     Ok(text)
 }
 
-/// The kinds of cells in the output of yosys' `stat`, each with its number.
+/// The kinds of cells in the output of yosys' `stat`, each with its number, which comes first from
+/// yosys 0.59 on.
 pub(crate) fn counted(stat: &str) -> impl Iterator<Item = (&str, u32)> {
     stat.lines().filter_map(|line| {
         let mut words = line.split_whitespace();
-        let (name, number) = (words.next()?, words.next()?.parse().ok()?);
-        words.next().is_none().then_some((name, number))
+        let (one, other) = (words.next()?, words.next()?);
+        let named = match (one.parse(), other.parse()) {
+            (Err(_), Ok(number)) => (one, number),
+            (Ok(number), Err(_)) => (other, number),
+            _ => return None,
+        };
+        words.next().is_none().then_some(named)
     })
 }
 

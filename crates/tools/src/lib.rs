@@ -16,6 +16,7 @@ pub mod doctor;
 pub mod ecp5;
 pub mod equivalence;
 mod error;
+pub mod flow;
 pub mod gowin;
 pub mod ice40;
 mod inverses;

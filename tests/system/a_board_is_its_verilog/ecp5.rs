@@ -9,7 +9,7 @@ use carrystep_tools::ecp5;
 fn ecp5_netlists_equal_rust_hdl_on_every_pin() {
     Netlists {
         family: Family::Ecp5,
-        made: |verilog, top| ecp5::synthesise(verilog, top).expect("a netlist").verilog,
+        made: |verilog, top| ecp5::FLOW.synthesise(verilog, top).expect("a netlist").verilog,
         simulated: |verilog| ecp5::simulated(verilog).expect("models of its cells"),
         first_words: ".INITVAL_00(320'h",
         drives_enable: |_| ".Z(enable_n)".to_owned(),

@@ -16,7 +16,7 @@ fn drives_enable(netlist: &str) -> String {
 fn gowin_netlists_equal_rust_hdl_on_every_pin() {
     Netlists {
         family: Family::Gowin,
-        made: |verilog, top| gowin::synthesise(verilog, top).expect("a netlist").verilog,
+        made: |verilog, top| gowin::FLOW.synthesise(verilog, top).expect("a netlist").verilog,
         simulated: |verilog| gowin::simulated(verilog).expect("models of its cells"),
         first_words: ".INIT_RAM_00(288'h",
         drives_enable,

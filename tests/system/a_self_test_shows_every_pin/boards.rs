@@ -73,10 +73,13 @@ fn read_back(board: &Board, session: &SelfTestSession) -> String {
         return xilinx::from_edif(&edif).expect("EDIF");
     }
     if board.family == Family::Ecp5 {
-        return ecp5::synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
+        return ecp5::FLOW.synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
     }
     if board.family == Family::Gowin {
-        return gowin::synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
+        return gowin::FLOW
+            .synthesise(&session.verilog, &session.top())
+            .expect("a netlist")
+            .verilog;
     }
     let part = &board.parts[0];
     let netlist = ice40::synthesise_for(&session.verilog, &session.top(), &part.name);

@@ -3,7 +3,7 @@
 use super::pins::Pins;
 use super::{Connectors, Ports, Reader, Standards};
 use crate::port::{BoardPort, PORTS};
-use crate::{Place, Wire};
+use crate::{IoStandard, Place, Wire};
 use carrystep_files::did_you_mean;
 use carrystep_files::error::InputError;
 use std::collections::BTreeMap;
@@ -99,6 +99,9 @@ impl Reader<'_> {
         wires: &mut [Wire],
     ) -> Result<(), InputError> {
         for (name, io) in standards {
+            let Some(io) = IoStandard::named(io) else {
+                return self.refuse(name.span(), format!("{io} is no electrical standard"));
+            };
             let port = self.port(name)?.name;
             let mut of_port = wires
                 .iter_mut()
@@ -107,7 +110,7 @@ impl Reader<'_> {
             if of_port.peek().is_none() {
                 return self.refuse(name.span(), format!("{port} has no pin on this board"));
             }
-            of_port.for_each(|wire| wire.io = Some(*io));
+            of_port.for_each(|wire| wire.io = Some(io));
         }
         Ok(())
     }

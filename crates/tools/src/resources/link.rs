@@ -2,6 +2,7 @@
 
 use super::measure::{failed, machine};
 use super::rows::{ECP5, EngineRow, GOWIN, ROWS};
+use crate::flow::Flow;
 use crate::ice40::{self, Size};
 use crate::{SynthesisError, ecp5, gowin};
 use carrystep_boards::Mapped;
@@ -24,7 +25,7 @@ pub const LINES: [&str; 2] = ["UART, 3 Mbaud", "SPI"];
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or fails.
 pub fn ecp5() -> Result<Mapped, SynthesisError> {
-    together(&ECP5.of, ecp5::cells)
+    together(&ECP5.of, &ecp5::FLOW)
 }
 
 /// Engine, link and UART of the row for a Gowin part.
@@ -32,14 +33,11 @@ pub fn ecp5() -> Result<Mapped, SynthesisError> {
 /// # Errors
 /// As [`ecp5`].
 pub fn gowin() -> Result<Mapped, SynthesisError> {
-    together(&GOWIN.of, gowin::cells)
+    together(&GOWIN.of, &gowin::FLOW)
 }
 
-/// Engine, link and UART of a row, each in the cells that `cells` counts.
-fn together(
-    row: &EngineRow,
-    cells: fn(&str, &str) -> Result<Mapped, SynthesisError>,
-) -> Result<Mapped, SynthesisError> {
+/// Engine, link and UART of a row, each in the cells of these tools.
+fn together(row: &EngineRow, flow: &Flow) -> Result<Mapped, SynthesisError> {
     let build = machine(row)?;
     let line = LineKind::Uart(Uart::new(row.clock_hz, BAUD).map_err(failed)?);
     let parts = [
@@ -49,7 +47,7 @@ fn together(
     ];
     let mut all = Mapped::default();
     for (verilog, name) in parts {
-        let found = cells(&verilog.map_err(failed)?, name)?;
+        let found = flow.cells(&verilog.map_err(failed)?, name)?;
         all.luts += found.luts;
         all.flip_flops += found.flip_flops;
         all.carries += found.carries;
