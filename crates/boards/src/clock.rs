@@ -131,7 +131,7 @@ impl ClockManagers {
         let (manager, ways): (_, Vec<Way>) = match self {
             Self::Ice40 => ("the PLL", ice40::ways(oscillator_hz).collect()),
             Self::Ecp5 => ("the PLL", ecp5::ways(oscillator_hz).collect()),
-            Self::Gowin => ("the PLL", gowin::ways(oscillator_hz).collect()),
+            Self::Gowin => ("the PLL", gowin::ways(oscillator_hz)),
             Self::Dcm { least_in, least_out, most_out } => {
                 ("the DCM", dcm::ways(oscillator_hz, least_in, least_out..=most_out).collect())
             }

@@ -10,6 +10,7 @@
 use super::{ClockManager, Way};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::cmp::Reverse;
 
 /// The dividers of an `rPLL`: IDIV_SEL and FBDIV_SEL, each plus one, and ODIV_SEL.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
@@ -36,26 +37,30 @@ const MIDDLE: u64 = (VCO.0 + VCO.1) / 2;
 
 const OUT_DIVIDERS: [u8; 11] = [2, 4, 8, 16, 32, 48, 64, 80, 96, 112, 128];
 
-/// All settings, in the order of preference: the smallest divider of the reference first, and with
-/// it the VCO that is nearest to the middle of its range, the faster one of two.
-pub(super) fn ways(oscillator_hz: u64) -> impl Iterator<Item = Way> {
+/// A setting for each clock and divider of the reference, in the order of preference: the smallest
+/// divider first. Its VCO is the nearest to the middle of its range, the faster one of two.
+pub(super) fn ways(oscillator_hz: u64) -> Vec<Way> {
     // The reference is at most 64 times the fastest frequency of the detector.
     let f = oscillator_hz.min(64 * DETECTOR.1 + 1);
     let within = |a: u64, b: u64, range: (u64, u64)| a >= range.0 * b && a <= range.1 * b;
-    let references = (1..65_u8).filter(move |&divide| within(f, u64::from(divide), DETECTOR));
-    references.flat_map(move |divide| {
+    let mut ways = Vec::new();
+    for divide in 1..65_u8 {
         let d = u64::from(divide);
-        let clocks = (1..65_u8).filter(move |&multiply| within(f * u64::from(multiply), d, OUT));
-        clocks.flat_map(move |multiply| {
+        for multiply in 1..65_u8 {
             let clock = f * u64::from(multiply);
-            let vco = move |out: u8| clock * u64::from(out);
-            let mut outs: Vec<u8> =
-                OUT_DIVIDERS.into_iter().filter(|&out| within(vco(out), d, VCO)).collect();
-            outs.sort_by_key(|&out| (vco(out).abs_diff(MIDDLE * d), std::cmp::Reverse(out)));
-            outs.into_iter().map(move |out_divide| Way {
+            if !within(f, d, DETECTOR) || !within(clock, d, OUT) {
+                continue;
+            }
+            let vco = |out: u8| clock * u64::from(out);
+            let nearest = OUT_DIVIDERS
+                .into_iter()
+                .filter(|&out| within(vco(out), d, VCO))
+                .min_by_key(|&out| (vco(out).abs_diff(MIDDLE * d), Reverse(out)));
+            ways.extend(nearest.map(|out_divide| Way {
                 manager: ClockManager::GowinPll(GowinPll { divide, multiply, out_divide }),
                 made: (clock, d),
-            })
-        })
-    })
+            }));
+        }
+    }
+    ways
 }
