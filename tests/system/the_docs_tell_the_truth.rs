@@ -305,6 +305,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "equivalence",
             "timing",
             "self-test",
+            "gowin",
             "holds",
             "kills",
             "programs",
