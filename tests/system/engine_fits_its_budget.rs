@@ -5,7 +5,7 @@
 use carrystep_boards::Mapped;
 use carrystep_tests::effort;
 use carrystep_tools::resources::{
-    self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, LINES, LINK_BUDGET, PAGE, ROWS,
+    self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, LINES, LINK_BUDGET, PAGE, ROWS,
 };
 use carrystep_tools::{kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
@@ -89,6 +89,15 @@ fn engine_and_link_with_all_options_fit_their_budget_of_an_ecp5() {
     let found = resources::ecp5().expect("cells");
     effort::say(&format!("ECP5: {found:?}"));
     assert_within(&found, &ECP5);
+    kept::say();
+}
+
+/// The same on a Gowin part.
+#[test]
+fn engine_and_link_with_all_options_fit_their_budget_of_a_gowin_part() {
+    let found = resources::gowin().expect("cells");
+    effort::say(&format!("Gowin: {found:?}"));
+    assert_within(&found, &GOWIN);
     kept::say();
 }
 

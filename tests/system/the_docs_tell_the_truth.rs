@@ -306,6 +306,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "spartans",
             "timing",
             "self-test",
+            "gowin",
             "holds",
             "kills",
             "programs",

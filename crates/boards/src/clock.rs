@@ -4,6 +4,7 @@
 //! ```text
 //! iCE40      F x (DIVF + 1) / (DIVR + 1) / 2^DIVQ         PLL
 //! ECP5       F x M / D / O                                PLL
+//! Gowin      F x M / D                                    PLL
 //! Spartan-3  F x M / D                                    DCM (3E and 6 too)
 //! Spartan-7  F x M / D / O                                MMCM
 //! ```
@@ -19,11 +20,13 @@ use thiserror::Error;
 
 mod dcm;
 mod ecp5;
+mod gowin;
 mod ice40;
 mod mmcm;
 
 pub use dcm::Dcm;
 pub use ecp5::Ecp5Pll;
+pub use gowin::GowinPll;
 pub use ice40::Ice40Pll;
 pub use mmcm::Mmcm;
 
@@ -37,6 +40,8 @@ pub enum ClockManager {
     Ice40Pll(Ice40Pll),
     /// The PLL of an ECP5.
     Ecp5Pll(Ecp5Pll),
+    /// The PLL of a Gowin part.
+    GowinPll(GowinPll),
     /// The frequency synthesiser of a Spartan's DCM.
     Dcm(Dcm),
     /// The MMCM of a Spartan-7.
@@ -53,6 +58,9 @@ impl fmt::Display for ClockManager {
             Self::Ecp5Pll(Ecp5Pll { divide, multiply, out_divide }) => {
                 write!(f, "PLL: x {multiply} / {divide} / {out_divide}")
             }
+            Self::GowinPll(GowinPll { divide, multiply, out_divide }) => {
+                write!(f, "PLL: x {multiply} / {divide}, VCO / {out_divide}")
+            }
             Self::Dcm(Dcm { multiply, divide }) => write!(f, "DCM: x {multiply} / {divide}"),
             Self::Mmcm(Mmcm { multiply, divide, out_divide }) => {
                 write!(f, "MMCM: x {multiply} / {divide} / {out_divide}")
@@ -68,6 +76,8 @@ pub enum ClockManagers {
     Ice40,
     /// The PLL of an ECP5.
     Ecp5,
+    /// The PLL of a Gowin part.
+    Gowin,
     /// A DCM, with the ranges of its input and of its synthesised clock, Hz.
     Dcm {
         /// Slowest input, Hz.
@@ -121,6 +131,7 @@ impl ClockManagers {
         let (manager, ways): (_, Vec<Way>) = match self {
             Self::Ice40 => ("the PLL", ice40::ways(oscillator_hz).collect()),
             Self::Ecp5 => ("the PLL", ecp5::ways(oscillator_hz).collect()),
+            Self::Gowin => ("the PLL", gowin::ways(oscillator_hz)),
             Self::Dcm { least_in, least_out, most_out } => {
                 ("the DCM", dcm::ways(oscillator_hz, least_in, least_out..=most_out).collect())
             }

@@ -10,6 +10,7 @@ use std::fmt;
 use strum::IntoStaticStr;
 
 mod ecp5;
+mod gowin;
 mod ice40;
 mod pull_ups;
 mod spartan3;
@@ -29,6 +30,8 @@ pub enum Family {
     Ice40,
     /// Lattice ECP5.
     Ecp5,
+    /// Gowin GW1N and GW2A.
+    Gowin,
     /// Xilinx Spartan-3.
     Spartan3,
     /// Xilinx Spartan-3E.
@@ -109,6 +112,11 @@ pub trait FpgaFamily: Sync {
         Vec::new()
     }
 
+    /// The name of the die within a part; no family but Gowin's has one of its own.
+    fn die(&self, part: &Part) -> String {
+        part.name.clone()
+    }
+
     /// The order name of a part, as the toolchain uses it.
     fn ordered(&self, part: &Part) -> String {
         format!("{}-{}{}", part.name, part.package, part.speed_suffix())
@@ -120,7 +128,7 @@ impl Family {
     pub fn compared(self) -> &'static str {
         match self.facts().placer() {
             Some(Placer::Ice40) => "bitstream",
-            Some(Placer::Ecp5) => "netlist",
+            Some(Placer::Ecp5 | Placer::Gowin) => "netlist",
             None => "EDIF",
         }
     }
@@ -130,6 +138,7 @@ impl Family {
         match self {
             Self::Ice40 => &ice40::Ice40,
             Self::Ecp5 => &ecp5::Ecp5,
+            Self::Gowin => &gowin::Gowin,
             Self::Spartan3 => &spartan3::Spartan3,
             Self::Spartan3e => &spartan3e::Spartan3e,
             Self::Spartan6 => &spartan6::Spartan6,
@@ -151,6 +160,16 @@ pub enum Placer {
     Ice40,
     /// `synth_ecp5`, nextpnr-ecp5 and ecppack.
     Ecp5,
+    /// `synth_gowin`, nextpnr-himbaechel-gowin and gowin_pack.
+    Gowin,
+}
+
+impl Placer {
+    /// Whether a board must reach its clock with each seed, and not with one of them: parts of
+    /// these families have so much room that a clock which depends on the seed is too fast.
+    pub fn needs_each_seed(self) -> bool {
+        self != Self::Ice40
+    }
 }
 
 /// Electrical standard of a pin, which is determined by the voltage of its bank.
@@ -171,6 +190,12 @@ pub enum IoStandard {
 }
 
 impl IoStandard {
+    /// The standard of this name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        let all = [Self::Lvcmos33, Self::Lvttl, Self::Lvcmos25, Self::Lvcmos18];
+        all.into_iter().find(|standard| standard.name() == name)
+    }
+
     /// The name of the standard in UCF and XDC files.
     pub fn name(self) -> &'static str {
         self.into()

@@ -113,10 +113,10 @@ pub struct Part {
     pub name: String,
     /// Package, such as `tq144` or `ft256`.
     pub package: String,
-    /// Speed grade of a Spartan or an ECP5.
+    /// Speed grade; an iCE40 has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<u8>,
-    /// Logic cells of an iCE40, or LUTs of an ECP5.
+    /// Logic cells of an iCE40, or LUTs of another family.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub logic_cells: Option<u32>,
     /// Number of block RAMs.
@@ -159,6 +159,9 @@ pub struct Wire {
     /// Place of the pin on a connector, if it is on one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Place>,
+    /// Electrical standard of the pin, if it differs from that of the board.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub io: Option<IoStandard>,
     /// Whether the pin may be that of an SPI port, so that the port exists only if the host uses
     /// the UART.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -369,7 +372,8 @@ impl Part {
     }
 
     /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`; that of
-    /// Lattice for an ECP5: `LFE5U-25F-6BG381C`. For an iCE40, its name and package.
+    /// Lattice for an ECP5: `LFE5U-25F-6BG381C`; that of Gowin: `GW1NR-LV9QN88PC6/I5`. For an
+    /// iCE40, its name and package.
     pub fn ordered(&self) -> String {
         self.family.facts().ordered(self)
     }
@@ -377,6 +381,11 @@ impl Part {
     /// The options with which nextpnr is told the part: `--hx1k --package tq144`.
     pub fn nextpnr(&self) -> Vec<String> {
         self.family.facts().nextpnr(self)
+    }
+
+    /// The name of the die within a Gowin part, such as `GW1N-9C`; otherwise that of the part.
+    pub fn die(&self) -> String {
+        self.family.facts().die(self)
     }
 
     /// The family of the part.

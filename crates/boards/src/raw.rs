@@ -54,6 +54,8 @@ struct RawBoard {
     #[serde(default)]
     onboard: Ports,
     #[serde(default)]
+    standards: Standards,
+    #[serde(default)]
     tie: Vec<RawTie>,
     #[serde(default)]
     reserved: Vec<Reserved>,
@@ -107,6 +109,10 @@ struct Reserved {
 /// A table of ports and their pins.
 type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
 
+/// The electrical standard of each port whose bank has a voltage of its own. This type is that of a
+/// connector's labels, so that the command contains the code that reads it once.
+type Standards = BTreeMap<Spanned<String>, String>;
+
 /// Connectors by name; each maps its labels to the package's pins.
 type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;
 
@@ -143,7 +149,8 @@ impl Reader<'_> {
             }
             ties.push(Tie { port, pin: pin.into_inner(), level: level.into_inner(), why });
         }
-        let wires = self.wires(raw.pins, raw.pins_beside_uart, raw.onboard, &raw.connectors)?;
+        let mut wires = self.wires(raw.pins, raw.pins_beside_uart, raw.onboard, &raw.connectors)?;
+        self.standards(&raw.standards, &mut wires)?;
         let gate = raw.gate.map(|gate| self.gate(gate, &wires)).transpose()?;
         let (shared, configuration_sources) =
             self.configuration(&raw.package, &raw.configured, &raw.exception, &raw.part, &parts)?;
@@ -269,7 +276,7 @@ impl Reader<'_> {
             if speed.is_some() != family.facts().has_speed_grades() {
                 return self.refuse(
                     spanned.span(),
-                    "a Spartan or an ECP5 needs a `speed` grade, an iCE40 has none",
+                    "all parts but an iCE40 need a `speed` grade, and an iCE40 has none",
                 );
             }
             if parts.iter().any(|part| part.name == *name) {

@@ -114,7 +114,7 @@ fn mistake_in_a_board_file_is_refused_at_its_place() {
             "estop = \"96\"",
         ),
         (PAPILIO_PRO, "vccaux = \"3.3\"\n", "", "a Spartan-6 needs `vccaux`", "\"spartan6\""),
-        (PAPILIO_PRO, "\nspeed = 2", "", "a Spartan or an ECP5 needs a `speed` grade", "[[part]]"),
+        (PAPILIO_PRO, "\nspeed = 2", "", "all parts but an iCE40 need a `speed` grade", "[[part]]"),
         (
             PAPILIO_PRO,
             "step = [\"C4\"",

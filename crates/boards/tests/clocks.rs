@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::clock::{ClockManager, ClockManagers, Dcm, Ecp5Pll, Ice40Pll, Mmcm};
+use carrystep_boards::clock::{
+    ClockManager, ClockManagers, Dcm, Ecp5Pll, GowinPll, Ice40Pll, Mmcm,
+};
 use std::process::Command;
 
 /// Converts the MHz of a golden line, or of icepll's output, to Hz.
@@ -105,10 +107,26 @@ fn ecp5_settings_equal_those_computed_by_hand() {
     assert_eq!(solve(25_000_000, 48_000_000).unwrap_err().nearest_hz, Some(47_656_250));
 }
 
+/// 48 / 27 is 16 / 9, so that the phase detector has 3 MHz, its least frequency. Of 48 MHz, only 16
+/// times it, 768 MHz, is a clock that the VCO has. 54 MHz needs no divider of the reference; 864
+/// MHz is nearer to the middle, 850 MHz, than 432 MHz, which the VCO does not have.
+#[test]
+fn gowin_settings_equal_those_computed_by_hand() {
+    let pll = |divide, multiply, out_divide| {
+        Ok(ClockManager::GowinPll(GowinPll { divide, multiply, out_divide }))
+    };
+    let solve = |from, to| ClockManagers::Gowin.solve(from, to);
+    assert_eq!(solve(27_000_000, 48_000_000), pll(9, 16, 16));
+    assert_eq!(solve(27_000_000, 54_000_000), pll(1, 2, 16));
+    // 40 / 27 would need a phase detector of 1 MHz.
+    assert_eq!(solve(27_000_000, 40_000_000).unwrap_err().nearest_hz, Some(40_500_000));
+}
+
 #[test]
 fn extreme_frequencies_do_not_panic() {
     let spartan6 = carrystep_boards::Family::Spartan6.facts().clock_managers();
-    for managers in [ClockManagers::Ice40, ClockManagers::Ecp5, ClockManagers::Mmcm, spartan6] {
+    let plls = [ClockManagers::Ice40, ClockManagers::Ecp5, ClockManagers::Gowin];
+    for managers in plls.into_iter().chain([ClockManagers::Mmcm, spartan6]) {
         for oscillator in [0, 1, 12_000_000, u64::MAX] {
             for wanted in [1, 48_000_000, u64::MAX - 1] {
                 assert!(

@@ -2,9 +2,10 @@
 
 pub mod page;
 
+use crate::flow::Flow;
 use crate::ice40::{self, NextpnrPart, Size};
 use crate::tool::{self, ICEPACK, ICETIME, NEXTPNR};
-use crate::{SynthesisError, ecp5};
+use crate::{SynthesisError, ecp5, gowin};
 use carrystep_boards::{Part, Placer};
 
 /// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
@@ -55,7 +56,8 @@ impl Built {
 pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     match job.part.family().facts().placer() {
         Some(Placer::Ice40) => ice40_bitstream(job, stage),
-        Some(Placer::Ecp5) => ecp5_bitstream(job, stage),
+        Some(Placer::Ecp5) => bitstream_of(&ecp5::FLOW, job, stage),
+        Some(Placer::Gowin) => bitstream_of(&gowin::FLOW, job, stage),
         None => Err(SynthesisError::Tool {
             tool: NEXTPNR.name,
             message: format!("no open tool places a {}", job.part.family()),
@@ -98,38 +100,42 @@ fn ice40_bitstream(
     })
 }
 
-fn ecp5_bitstream(
+fn bitstream_of(
+    flow: &'static Flow,
     job: &BuildJob<'_>,
     stage: &mut dyn FnMut(&str),
 ) -> Result<Built, SynthesisError> {
+    let (nextpnr, pack) = flow.stages();
     stage("yosys");
-    let netlist = ecp5::synthesise(job.verilog, job.top)?;
+    let netlist = flow.synthesise(job.verilog, job.top)?;
     let (seed, placed) = first_that_reaches(
         job.clock_hz,
         |seed| {
-            stage(&format!("nextpnr-ecp5, seed {seed}"));
+            stage(&format!("{nextpnr}, seed {seed}"));
             netlist.place_on(job.part, job.constraints, job.clock_hz, seed)
         },
         |placed| placed.mhz,
     )?;
-    stage("ecppack");
+    stage(pack);
     let bitstream = placed.bitstream()?;
     Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: None, bitstream })
 }
 
-/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5. `None` for another family, whose
-/// boards need one seed only.
+/// The clock, MHz, that each of the [`SEEDS`] reaches on an ECP5 or a Gowin part. `None` for another
+/// family, whose boards need one seed only.
 ///
 /// # Errors
 /// As [`build`].
 pub fn clocks_of_seeds(job: &BuildJob<'_>) -> Result<Option<[f64; SEEDS.len()]>, SynthesisError> {
-    if job.part.family().facts().placer() != Some(Placer::Ecp5) {
-        return Ok(None);
-    }
-    let netlist = ecp5::synthesise(job.verilog, job.top)?;
+    let flow = match job.part.family().facts().placer() {
+        Some(Placer::Ecp5) => &ecp5::FLOW,
+        Some(Placer::Gowin) => &gowin::FLOW,
+        Some(Placer::Ice40) | None => return Ok(None),
+    };
+    let netlist = flow.synthesise(job.verilog, job.top)?;
     let mut clocks = [0.0; SEEDS.len()];
-    for (mhz, seed) in clocks.iter_mut().zip(SEEDS) {
-        *mhz = netlist.place_on(job.part, job.constraints, job.clock_hz, seed)?.mhz;
+    for (clock, seed) in clocks.iter_mut().zip(SEEDS) {
+        *clock = netlist.place_on(job.part, job.constraints, job.clock_hz, seed)?.mhz;
     }
     Ok(Some(clocks))
 }

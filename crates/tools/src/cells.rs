@@ -29,6 +29,28 @@ pub(crate) const XILINX: Library =
 pub(crate) const ECP5: Library =
     Library { file: "../share/yosys/ecp5/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
 
+pub(crate) const GOWIN: Library =
+    Library { file: "../share/yosys/gowin/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
+
+/// The 64 parameters of a block RAM's first contents, for a model of it in Verilog.
+pub(crate) struct FirstContents {
+    /// Their declarations.
+    pub(crate) declared: String,
+    /// Their names, the last one first, as a concatenation needs them.
+    pub(crate) all: String,
+}
+
+impl FirstContents {
+    /// Parameters whose names begin so, with so many bits each.
+    pub(crate) fn of(begin: &str, bits: u32) -> Self {
+        let names: Vec<String> = (0..64).map(|number| format!("{begin}{number:02X}")).collect();
+        let declare = |name: &String| format!("parameter [{}:0] {name} = 0", bits - 1);
+        let declared: Vec<String> = names.iter().map(declare).collect();
+        let all: Vec<String> = names.into_iter().rev().collect();
+        Self { declared: declared.join(", "), all: all.join(", ") }
+    }
+}
+
 /// A design for an iCE40, preceded by the models of its cells.
 pub(crate) fn with_models(verilog: &str) -> Result<String, SynthesisError> {
     Ok(format!("{}{verilog}", models(&ICE40, verilog)?))
@@ -55,12 +77,18 @@ pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, Synthes
     Ok(text)
 }
 
-/// The kinds of cells in the output of yosys' `stat`, each with its number.
+/// The kinds of cells in the output of yosys' `stat`, each with its number, which comes first from
+/// yosys 0.59 on.
 pub(crate) fn counted(stat: &str) -> impl Iterator<Item = (&str, u32)> {
     stat.lines().filter_map(|line| {
         let mut words = line.split_whitespace();
-        let (name, number) = (words.next()?, words.next()?.parse().ok()?);
-        words.next().is_none().then_some((name, number))
+        let (one, other) = (words.next()?, words.next()?);
+        let named = match (one.parse(), other.parse()) {
+            (Err(_), Ok(number)) => (one, number),
+            (Ok(number), Err(_)) => (other, number),
+            _ => return None,
+        };
+        words.next().is_none().then_some(named)
     })
 }
 

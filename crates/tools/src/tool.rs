@@ -2,7 +2,8 @@
 
 use crate::programs::Tool;
 pub(crate) use crate::programs::{
-    ECPPACK, ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, NEXTPNR_ECP5, PYTHON, YOSYS,
+    ECPPACK, GOWIN_PACK, ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, NEXTPNR_ECP5,
+    NEXTPNR_GOWIN, PYTHON, YOSYS, YOSYS_OF_PIP,
 };
 use crate::{SynthesisError, kept};
 use std::path::Path;

@@ -2,9 +2,10 @@
 //! clock, and its figures must be those of the table.
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_boards::{AllMeasured, Measured, board, boards};
-use carrystep_tools::board::page::{PAGE, built, page, placed};
+use carrystep_boards::{AllMeasured, Family, Measured, board, boards};
+use carrystep_tools::board::page::{PAGE, built, least_clock, page, placed};
 use carrystep_tools::kept;
+use std::io::Write as _;
 use std::path::Path;
 
 /// Builds a board and compares the result with its figures.
@@ -39,4 +40,34 @@ fn icestick_holds_engine_and_link() {
 #[test]
 fn up5k_holds_engine_and_link() {
     builds("icesugar");
+}
+
+/// A long run builds all of them; the command that is named writes their figures.
+#[test]
+fn gowin_boards_reach_their_clock_with_each_seed() {
+    let is_asked = std::env::var_os("CARRYSTEP_BOARDS").is_some();
+    let gowins = boards().iter().filter(|board| is_asked && board.family == Family::Gowin);
+    let mut said = Vec::new();
+    for board in gowins {
+        let built = built(board).expect("a bitstream");
+        assert!(built.bitstream.len() > 30_000, "{}", board.name);
+        let least = least_clock(board).expect("clocks");
+        assert!(least.is_some_and(|mhz| mhz * 1e6 >= board.clocks[0].clock_hz as f64));
+        let found = Measured::Placed(placed(board, &built, least));
+        let known = board.measured();
+        assert_eq!(
+            known,
+            Some(found),
+            "run `cargo run --release -p carrystep-tools -- boards {}`",
+            board.name
+        );
+        let mhz = least.unwrap_or_default();
+        said.push(format!(
+            "{}: {} LUTs, {mhz:.1} MHz or more with five seeds",
+            board.name, built.size.logic_cells
+        ));
+    }
+    if is_asked {
+        let _ = writeln!(std::io::stderr(), "FIGURES {}", said.join(", "));
+    }
 }

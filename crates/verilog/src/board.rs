@@ -71,7 +71,7 @@ impl Design<'_> {
     /// [`ExportError::Board`] if the board cannot make the clock.
     pub fn clock(&self) -> Result<TextFile, ExportError> {
         let name = self.prefix.name(CLOCK_NAME);
-        let text = clock::verilog(self.board, self.clock_hz, &name)?;
+        let text = clock::verilog(self.board, self.part, self.clock_hz, &name)?;
         Ok(TextFile::new(format!("{name}.v"), text))
     }
 
@@ -119,6 +119,7 @@ impl Design<'_> {
                 ordered => part.ordered(),
                 synthesis => Part::synthesis(&part.name),
                 nextpnr => part.nextpnr().join(" "),
+                die => part.die(),
             },
             top,
             sources => sources.iter().map(|&source| Value::from(source)).collect::<Vec<_>>(),
@@ -155,7 +156,8 @@ impl Design<'_> {
         let angles = port.replace('[', "<").replace(']', ">");
         let pulled_up = known.is_some_and(|known| known.way == Way::PulledUp);
         let what = known.map_or("", |known| known.what);
-        Ok(context! { port, angles, pin => &wire.pin, connector, label, pulled_up, what })
+        let io = wire.io.unwrap_or(self.board.io).name();
+        Ok(context! { port, angles, pin => &wire.pin, io, connector, label, pulled_up, what })
     }
 
     /// The wire of a port. If a bus has one bit only, its port name has no number.

@@ -89,20 +89,31 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin
-/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow, so that a
-/// test run builds for one of those boards only; `cargo xtask long self-test` builds all.
+/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow,
+/// so that a test run builds for one such board only; `cargo xtask long self-test` builds all.
 #[test]
 fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
-    let is_every_board = std::env::var_os("CARRYSTEP_BOARDS").is_some();
-    for board in boards() {
-        let is_chosen = match board.family.facts().placer() {
-            Some(Placer::Ice40) => true,
-            Some(Placer::Ecp5) => is_every_board || board.name == "ulx3s",
-            None => false,
-        };
-        if !is_chosen {
-            continue;
-        }
+    run_scripts(|board| match board.family.facts().placer() {
+        Some(Placer::Ice40) => true,
+        Some(Placer::Ecp5) => is_every_board() || board.name == "ulx3s",
+        Some(Placer::Gowin) | None => false,
+    });
+}
+
+/// The same for Gowin boards: one in a test run, and all by `cargo xtask long gowin`.
+#[test]
+fn script_of_a_gowin_board_builds_a_bitstream_with_all_pins() {
+    run_scripts(|board| {
+        board.family == Family::Gowin && (is_every_board() || board.name == "tang-nano-9k")
+    });
+}
+
+fn is_every_board() -> bool {
+    std::env::var_os("CARRYSTEP_BOARDS").is_some()
+}
+
+fn run_scripts(is_chosen: impl Fn(&Board) -> bool) {
+    for board in boards().iter().filter(|board| is_chosen(board)) {
         let folder = folder(board);
         run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
         let bitstream = folder.path().join(format!("top.{}", board.bitstream));
@@ -165,6 +176,35 @@ fn constraints_of_an_ecp5_place_every_port_on_its_pin() {
     }
 }
 
+/// The constraints of every Gowin board place each port on the pin that the board's file gives it,
+/// with the voltage of its bank, and nothing else.
+#[test]
+fn constraints_of_a_gowin_part_place_every_port_on_its_pin() {
+    for board in boards().iter().filter(|board| board.family == Family::Gowin) {
+        let files = files(board, &ports(board)).unwrap();
+        let text = &files.iter().find(|file| file.name.ends_with(".cst")).unwrap().text;
+        let rows = |kind: &str| -> BTreeMap<String, String> {
+            let row = |line: &str| {
+                let (port, rest) =
+                    line.strip_prefix(kind)?.strip_prefix(" \"")?.split_once("\" ")?;
+                Some((port.to_owned(), rest.split([' ', ';']).next()?.to_owned()))
+            };
+            text.lines().filter_map(row).collect()
+        };
+        let wires = || board.wires.iter().filter(|wire| !wire.beside_uart);
+        let oscillator = &board.oscillator;
+        let pins = wires().map(|wire| (wire.port.clone(), wire.pin.clone()));
+        let known: BTreeMap<String, String> =
+            pins.chain([(OSCILLATOR.to_owned(), oscillator.pin.clone())]).collect();
+        assert_eq!(rows("IO_LOC"), known, "{}", board.name);
+        let standard =
+            |port: &str| format!("IO_TYPE={}", if port == "led" { "LVCMOS18" } else { "LVCMOS33" });
+        let known: BTreeMap<String, String> =
+            known.into_keys().map(|port| (port.clone(), standard(&port))).collect();
+        assert_eq!(rows("IO_PORT"), known, "{}", board.name);
+    }
+}
+
 /// The error for a board with one thing changed in the shipped machine file.
 fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let board = board(name).unwrap();
@@ -220,6 +260,30 @@ fn impossible_request_is_refused_with_an_alternative() {
             "[[machine.axis]]",
             "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
             "icestick has pins for 6 axes, not for",
+        ),
+        (
+            "tang-nano-9k",
+            "48000000",
+            "40000000",
+            "tang-nano-9k: the PLL makes no clock of 40 MHz from 27 MHz; the nearest that it makes is 40.5 MHz",
+        ),
+        (
+            "tang-nano-9k",
+            "tick_ns = 2000",
+            "tick_ns = 1000",
+            "6 axes need 13 clocks each and two to close the tick",
+        ),
+        (
+            "tang-nano-20k",
+            "\"each\"",
+            "\"pair\"",
+            "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
+        ),
+        (
+            "tang-nano-20k",
+            "[[machine.axis]]",
+            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            "tang-nano-20k has pins for 6 axes, not for",
         ),
     ];
     for (name, was, becomes, says) in refused {

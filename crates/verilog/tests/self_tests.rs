@@ -81,7 +81,9 @@ fn constraints_name_exactly_the_ports_of_the_top_level() {
             if is_icestorm {
                 return line.strip_prefix("set_io")?.rsplit(' ').nth(1).map(str::to_owned);
             }
-            line.strip_prefix("LOCATE COMP \"")?.split('"').next().map(str::to_owned)
+            let placed = ["LOCATE COMP \"", "IO_LOC \""];
+            let rest = placed.into_iter().find_map(|start| line.strip_prefix(start))?;
+            rest.split('"').next().map(str::to_owned)
         });
         assert_eq!(named.collect::<BTreeSet<_>>(), declared, "{}", board.name);
     }

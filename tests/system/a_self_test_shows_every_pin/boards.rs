@@ -2,12 +2,12 @@
 //! alone, with its name on the UART; every input that a jumper pulls to ground is reported; a byte
 //! from the terminal comes back with a list of all pins; `enable_n` is high in every clock.
 
-use carrystep_boards::{Board, Family, board, boards};
+use carrystep_boards::{Board, Family, Placer, board, boards};
 use carrystep_tests::self_test_board::SelfTestSession;
 use carrystep_tests::{board_clock, effort, jobs};
 use carrystep_tools::board::{BuildJob, build};
 use carrystep_tools::ice40::{self, NextpnrPart};
-use carrystep_tools::{ecp5, kept, xilinx};
+use carrystep_tools::{ecp5, gowin, kept, xilinx};
 use carrystep_verilog::SelfTestGateware;
 
 /// A whole session; every assertion is about the recorded pins.
@@ -60,19 +60,26 @@ fn simulated(board: &Board, verilog: &str) -> String {
     match board.family {
         Family::Ice40 => board_clock::with_bench_pll(verilog),
         Family::Ecp5 => ecp5::simulated(verilog).expect("models of its cells"),
+        Family::Gowin => gowin::simulated(verilog).expect("models of its cells"),
         _ => xilinx::simulated(verilog).expect("models of its cells"),
     }
 }
 
 /// What the tools make of a session's Verilog: the bitstream of an iCE40 and the EDIF of a Spartan's
-/// cells, read back, and the netlist of an ECP5.
+/// cells, read back, and the netlist of an ECP5 or a Gowin part.
 fn read_back(board: &Board, session: &SelfTestSession) -> String {
     if let Some(family) = board.family.facts().yosys() {
         let edif = xilinx::to_edif(&session.verilog, &session.top(), family).expect("EDIF");
         return xilinx::from_edif(&edif).expect("EDIF");
     }
     if board.family == Family::Ecp5 {
-        return ecp5::synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
+        return ecp5::FLOW.synthesise(&session.verilog, &session.top()).expect("a netlist").verilog;
+    }
+    if board.family == Family::Gowin {
+        return gowin::FLOW
+            .synthesise(&session.verilog, &session.top())
+            .expect("a netlist")
+            .verilog;
     }
     let part = &board.parts[0];
     let netlist = ice40::synthesise_for(&session.verilog, &session.top(), &part.name);
@@ -89,7 +96,8 @@ fn on_the_pins(board: &'static Board, spi: bool) {
     let compare = |verilog: &str| session.difference(&simulated(board, verilog));
     let name = &board.name;
     assert_eq!(compare(&session.verilog), None, "{name}: the Verilog");
-    if effort::is_every_board() || name == "icestick" || board.family == Family::Ecp5 {
+    let is_netlist = matches!(board.family, Family::Ecp5 | Family::Gowin);
+    if effort::is_every_board() || name == "icestick" || is_netlist {
         assert_eq!(compare(&read_back(board, &session)), None, "{name}: read back");
     }
     let last_input = format!("assign pins[{}]", session.test.last_input());
@@ -110,11 +118,23 @@ fn on_the_pins(board: &'static Board, spi: bool) {
 /// The self-test of an iCE40 or ECP5 board, with its real times, fits and reaches its clock.
 #[test]
 fn self_test_of_a_board_becomes_a_bitstream() {
-    let is_chosen = |board: &&Board| {
-        let is_placed = board.family.facts().placer().is_some();
+    become_bitstreams(|board| {
+        let is_placed = board.family.facts().placer().is_some_and(|placer| placer != Placer::Gowin);
         is_placed && (effort::is_every_board() || board.name == "icestick")
-    };
-    let placed: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
+    });
+}
+
+/// The same for Gowin boards, in a long run.
+#[test]
+fn gowin_self_tests_become_bitstreams() {
+    become_bitstreams(|board| board.family == Family::Gowin && effort::is_every_board());
+}
+
+fn become_bitstreams(is_chosen: impl Fn(&Board) -> bool) {
+    let placed: Vec<&'static Board> = boards().iter().filter(|board| is_chosen(board)).collect();
+    if placed.is_empty() {
+        return effort::say("none: the long runs cover all");
+    }
     jobs::each(&placed, |board| {
         let part = &board.parts[0];
         let gateware = SelfTestGateware::new(board, part, false).expect("a self-test");
@@ -146,8 +166,22 @@ fn self_test_of_a_board_becomes_a_bitstream() {
 #[test]
 fn every_pin_of_a_board_is_what_its_self_test_says() {
     let some = ["icestick", "mojo-v3", "orangecrab"];
-    let is_chosen = |board: &&Board| effort::is_every_board() || some.contains(&&*board.name);
-    let chosen: Vec<&'static Board> = boards().iter().filter(is_chosen).collect();
+    show_every_pin(|board| {
+        let is_asked = effort::is_every_board() && board.family != Family::Gowin;
+        is_asked || some.contains(&&*board.name)
+    });
+}
+
+#[test]
+fn gowin_self_tests_show_every_pin() {
+    show_every_pin(|board| {
+        let is_asked = effort::is_every_board() || board.name == "tang-nano-9k";
+        board.family == Family::Gowin && is_asked
+    });
+}
+
+fn show_every_pin(is_chosen: impl Fn(&Board) -> bool) {
+    let chosen: Vec<&'static Board> = boards().iter().filter(|board| is_chosen(board)).collect();
     jobs::each(&chosen, |board| on_the_pins(board, false));
     effort::figures(&format!(
         "{} self-tests from their pins, as Verilog and as bitstream, EDIF or netlist, three \

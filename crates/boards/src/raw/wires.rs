@@ -1,9 +1,9 @@
 //! Gives every port of the gateware its pins, and every pin of the package at most one use.
 
 use super::pins::Pins;
-use super::{Connectors, Ports, Reader};
+use super::{Connectors, Ports, Reader, Standards};
 use crate::port::{BoardPort, PORTS};
-use crate::{Place, Wire};
+use crate::{IoStandard, Place, Wire};
 use carrystep_files::did_you_mean;
 use carrystep_files::error::InputError;
 use std::collections::BTreeMap;
@@ -82,7 +82,7 @@ impl Reader<'_> {
                 } else {
                     self.take(&Spanned::new(spanned.span(), pin.clone()), &bit)?;
                 }
-                wires.push(Wire { port: bit, pin, at, beside_uart });
+                wires.push(Wire { port: bit, pin, at, beside_uart, io: None });
             }
         }
         let place = |wire: &Wire| {
@@ -90,6 +90,29 @@ impl Reader<'_> {
         };
         wires.sort_by_key(place);
         Ok(wires)
+    }
+
+    /// Gives the wires of some ports an electrical standard of their own.
+    pub(super) fn standards(
+        &self,
+        standards: &Standards,
+        wires: &mut [Wire],
+    ) -> Result<(), InputError> {
+        for (name, io) in standards {
+            let Some(io) = IoStandard::named(io) else {
+                return self.refuse(name.span(), format!("{io} is no electrical standard"));
+            };
+            let port = self.port(name)?.name;
+            let mut of_port = wires
+                .iter_mut()
+                .filter(|wire| wire.port.split('[').next() == Some(port))
+                .peekable();
+            if of_port.peek().is_none() {
+                return self.refuse(name.span(), format!("{port} has no pin on this board"));
+            }
+            of_port.for_each(|wire| wire.io = Some(io));
+        }
+        Ok(())
     }
 
     fn port(&self, name: &Spanned<String>) -> Result<&'static BoardPort, InputError> {

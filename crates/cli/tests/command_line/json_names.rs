@@ -90,6 +90,10 @@ const ECP5: &str = "boards[].clocks[].made_by.ecp5_pll boards[].clocks[].made_by
     boards[].clocks[].made_by.ecp5_pll.multiply boards[].clocks[].made_by.ecp5_pll.out_divide
     boards[].measured.least_mhz";
 
+const GOWIN: &str = "boards[].clocks[].made_by.gowin_pll boards[].clocks[].made_by.gowin_pll.divide
+    boards[].clocks[].made_by.gowin_pll.multiply boards[].clocks[].made_by.gowin_pll.out_divide
+    boards[].wires[].io";
+
 const SPARTANS: &str =
     "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
     boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
@@ -178,7 +182,7 @@ fn linuxcnc_document_keeps_its_field_names() {
 #[test]
 fn boards_document_keeps_its_field_names() {
     let folder = Folder::new();
-    document(&folder, "boards", 0, &[BOARDS, ICE40, ECP5, TIES, SHARED, SPARTANS]);
+    document(&folder, "boards", 0, &[BOARDS, ICE40, ECP5, GOWIN, TIES, SHARED, SPARTANS]);
     let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
     assert_eq!(one["boards"][0]["clocks"][0]["clock_hz"], 37_500_000);
     assert_eq!(one["tried_on_hardware"], false);

@@ -72,8 +72,14 @@ pub fn placed(board: &Board, built: &Built, least_mhz: Option<f64>) -> Placed {
     }
 }
 
-/// Builds the boards of these names, or all if there is none, as many at a time as the computer has
-/// cores. The others keep their figures. `say` is called with a line for each board that is built.
+/// Whether a board is measured where no name is given. Those of Gowin are named, because
+/// `cargo xtask long gowin` builds them.
+pub fn is_measured_unasked(board: &Board) -> bool {
+    board.family.facts().placer() != Some(Placer::Gowin)
+}
+
+/// Builds the boards of these names, or those of [`is_measured_unasked`] if there is none, as many
+/// at a time as the computer has cores. The others keep their figures. `say` is called with a line for each board that is built.
 ///
 /// # Errors
 /// As [`built`], or if there is no board of a name.
@@ -84,7 +90,10 @@ pub fn measure(
     if let Some(error) = names.iter().find_map(|name| board(name).err()) {
         return Err(failed(error));
     }
-    let is_asked = |board: &&Board| names.is_empty() || names.contains(&board.name);
+    let is_asked = |board: &&Board| match names {
+        [] => is_measured_unasked(board),
+        names => names.contains(&board.name),
+    };
     let asked = Mutex::new(boards().iter().filter(is_asked));
     let next = || asked.lock().ok().and_then(|mut asked| asked.next());
     let worker = || {
@@ -152,13 +161,14 @@ pub fn row(board: &Board, measured: &Measured) -> String {
 
 /// The whole page.
 pub fn page(all: &AllMeasured) -> String {
-    let (mut ice40, mut ecp5, mut spartan) = (String::new(), String::new(), String::new());
+    let [mut ice40, mut ecp5, mut gowin, mut spartan] = [const { String::new() }; 4];
     for (board, measured) in
         boards().iter().filter_map(|board| Some((board, all.get(&board.name)?)))
     {
         let rows = match board.family.facts().placer() {
             Some(Placer::Ice40) => &mut ice40,
             Some(Placer::Ecp5) => &mut ecp5,
+            Some(Placer::Gowin) => &mut gowin,
             None => &mut spartan,
         };
         rows.push_str(&row(board, measured));
@@ -187,6 +197,12 @@ No way back from a bitstream of this family to Verilog is known to us: what is c
 | board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
 |---|---|---|---|---|---|---|---|---|---|---|
 {ecp5}
+The same on a Gowin part, by yosys 0.70, nextpnr 0.11 and apycula 0.32. Such a board must reach its clock with each of the five seeds, too. What is compared is the netlist again: what `gowin_unpack` reads from a bitstream lacks the kinds and contents of block RAMs.
+`cargo xtask long gowin` builds these boards.
+
+| board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
+|---|---|---|---|---|---|---|---|---|---|---|
+{gowin}
 What yosys makes of it for the Spartans. Their own tools place it, which nobody here has done: whether the clock is reached is not known. A Spartan-3 or 3E cannot write single bits of a block RAM,
 so on {in_luts} the engine's wheel of events, the one memory that is written bit by bit, lies in LUTs.
 

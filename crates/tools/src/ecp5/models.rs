@@ -2,7 +2,7 @@
 //! block RAM.
 
 use crate::SynthesisError;
-use crate::cells::{self, ECP5, pattern};
+use crate::cells::{self, ECP5, FirstContents, pattern};
 use regex::Captures;
 
 const CELLS: &str = include_str!("cells.v");
@@ -34,9 +34,6 @@ fn own() -> String {
     let text = pattern(r"\bALL\((\w+), (\d+)\)").replace_all(&text, |found: &Captures<'_>| {
         bits(found).into_iter().rev().collect::<Vec<_>>().join(", ")
     });
-    let names: Vec<String> = (0..64).map(|number| format!("INITVAL_{number:02X}")).collect();
-    let declared: Vec<String> =
-        names.iter().map(|name| format!("parameter [319:0] {name} = 0")).collect();
-    let together: Vec<String> = names.into_iter().rev().collect();
-    text.replace("ALL_INITVALS", &together.join(", ")).replace("INITVALS", &declared.join(", "))
+    let first = FirstContents::of("INITVAL_", 320);
+    text.replace("ALL_INITVALS", &first.all).replace("INITVALS", &first.declared)
 }

@@ -1,9 +1,10 @@
 //! The resources of the host link with its line.
 
 use super::measure::{failed, machine};
-use super::rows::{ECP5, ROWS};
+use super::rows::{ECP5, EngineRow, GOWIN, ROWS};
+use crate::flow::Flow;
 use crate::ice40::{self, Size};
-use crate::{SynthesisError, ecp5};
+use crate::{SynthesisError, ecp5, gowin};
 use carrystep_boards::Mapped;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_verilog::{
@@ -24,7 +25,19 @@ pub const LINES: [&str; 2] = ["UART, 3 Mbaud", "SPI"];
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or fails.
 pub fn ecp5() -> Result<Mapped, SynthesisError> {
-    let row = &ECP5.of;
+    together(&ECP5.of, &ecp5::FLOW)
+}
+
+/// Engine, link and UART of the row for a Gowin part.
+///
+/// # Errors
+/// As [`ecp5`].
+pub fn gowin() -> Result<Mapped, SynthesisError> {
+    together(&GOWIN.of, &gowin::FLOW)
+}
+
+/// Engine, link and UART of a row, each in the cells of these tools.
+fn together(row: &EngineRow, flow: &Flow) -> Result<Mapped, SynthesisError> {
     let build = machine(row)?;
     let line = LineKind::Uart(Uart::new(row.clock_hz, BAUD).map_err(failed)?);
     let parts = [
@@ -34,7 +47,7 @@ pub fn ecp5() -> Result<Mapped, SynthesisError> {
     ];
     let mut all = Mapped::default();
     for (verilog, name) in parts {
-        let found = ecp5::cells(&verilog.map_err(failed)?, name)?;
+        let found = flow.cells(&verilog.map_err(failed)?, name)?;
         all.luts += found.luts;
         all.flip_flops += found.flip_flops;
         all.carries += found.carries;

@@ -4,15 +4,22 @@
 use super::link::{LINES, LINK_BUDGET};
 use super::measure::RowMeasurement;
 use super::peers::PEERS;
-use super::rows::{ECP5, EngineRow, FAMILIES, FamilyRow, ROWS, SEEDS};
+use super::rows::{ECP5, EngineRow, FAMILIES, FamilyRow, GOWIN, ROWS, SEEDS};
 use crate::ice40::Size;
 use carrystep_boards::Mapped;
 
 /// Path of the page, from the root of the workspace.
 pub const PAGE: &str = "hdl-out/resources.md";
 
-/// The page, from the measurements of the [`ROWS`], the [`LINES`], the [`FAMILIES`] and [`ECP5`].
-pub fn page(rows: &[RowMeasurement], links: &[Size], families: &[Mapped], ecp5: &Mapped) -> String {
+/// The page, from the measurements of the [`ROWS`], the [`LINES`], the [`FAMILIES`], [`ECP5`] and
+/// [`GOWIN`].
+pub fn page(
+    rows: &[RowMeasurement],
+    links: &[Size],
+    families: &[Mapped],
+    ecp5: &Mapped,
+    gowin: &Mapped,
+) -> String {
     let mut text = format!(
         "# What the engine costs\n\n\
          Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/system/engine_fits_its_budget.rs` fails where a change goes \
@@ -51,6 +58,13 @@ pub fn page(rows: &[RowMeasurement], links: &[Size], families: &[Mapped], ecp5: 
         ECP5.of.queue,
         ECP5.of.clock_hz / 1_000_000,
         cells_line(&ECP5, ecp5)
+    );
+    text += &format!(
+        "\n## Gowin\n\n\
+         The same by yosys 0.70 (`synth_gowin`), at {} MHz. LUTs as nextpnr counts them: with one for each carry cell.\n\n\
+         | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n{}",
+        GOWIN.of.clock_hz / 1_000_000,
+        cells_line(&GOWIN, gowin)
     );
     text += "\n## Beside others\n\n\
          Six axes on one flow: yosys 0.23, nextpnr 0.4, HX8K, three seeds, median, the core alone; none of the others has limits or a guard \
@@ -173,7 +187,7 @@ pub fn check(page: &str) -> Result<(), String> {
             ));
         }
     }
-    for family in FAMILIES.iter().chain([&ECP5]) {
+    for family in FAMILIES.iter().chain([&ECP5, &GOWIN]) {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {} |", family.name)));
         let luts =
             rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
@@ -205,15 +219,24 @@ mod tests {
         let mut rows = ROWS.map(|row| found(&row));
         let families = FAMILIES.map(|family| family.budget);
         let links = [LINK_BUDGET; LINES.len()];
-        let mut ecp5 = ECP5.budget;
-        assert_eq!(check(&page(&rows, &links, &families, &ecp5)), Ok(()));
+        let (mut ecp5, mut gowin) = (ECP5.budget, GOWIN.budget);
+        assert_eq!(check(&page(&rows, &links, &families, &ecp5, &gowin)), Ok(()));
         rows[0].size = Size { logic_cells: rows[0].size.logic_cells + 1, ..rows[0].size };
-        assert!(check(&page(&rows, &links, &families, &ecp5)).is_err(), "over budget");
+        assert!(check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(), "over budget");
         rows[0] = found(&ROWS[0]);
         rows[0].mhz = [1.0; 3];
-        assert!(check(&page(&rows, &links, &families, &ecp5)).is_err(), "too slow");
+        assert!(check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(), "too slow");
         rows[0] = found(&ROWS[0]);
         ecp5.luts += 1;
-        assert!(check(&page(&rows, &links, &families, &ecp5)).is_err(), "over budget on an ECP5");
+        assert!(
+            check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(),
+            "over budget on an ECP5"
+        );
+        ecp5.luts -= 1;
+        gowin.luts += 1;
+        assert!(
+            check(&page(&rows, &links, &families, &ecp5, &gowin)).is_err(),
+            "over budget on a Gowin part"
+        );
     }
 }

@@ -170,3 +170,11 @@ pub const ECP5: FamilyRow = FamilyRow {
     of: EngineRow { queue: QUEUE_DEPTHS[2], ..ALL_ONE },
     budget: Mapped { luts: 1850, flip_flops: 630, carries: 140, block_rams: 17 },
 };
+
+/// The same in the cells of a Gowin part, with a tick of 2 us at 48 MHz. Its budget of LUTs is that
+/// of a GW1NR-9.
+pub const GOWIN: FamilyRow = FamilyRow {
+    name: "gowin",
+    of: EngineRow { queue: QUEUE_DEPTHS[2], ..ALL_TWO },
+    budget: Mapped { luts: 1950, flip_flops: 630, carries: 400, block_rams: 17 },
+};

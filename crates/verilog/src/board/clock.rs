@@ -1,7 +1,7 @@
 //! Generates the module that makes a board's clock: a PLL, a DCM, an MMCM, or a wire.
 
 use crate::ExportError;
-use carrystep_boards::Board;
+use carrystep_boards::{Board, Part};
 use carrystep_core::tick::mhz;
 use minijinja::value::Serde;
 use minijinja::{Value, context};
@@ -11,7 +11,12 @@ use minijinja::{Value, context};
 /// (YosysHQ/icestorm issue 76: 36 clocks are too few at 25 MHz).
 const WAIT_BITS: u32 = 10;
 
-pub(super) fn verilog(board: &Board, clock_hz: u64, name: &str) -> Result<String, ExportError> {
+pub(super) fn verilog(
+    board: &Board,
+    part: &Part,
+    clock_hz: u64,
+    name: &str,
+) -> Result<String, ExportError> {
     let family = board.family.facts();
     let values = context! {
         name,
@@ -20,6 +25,7 @@ pub(super) fn verilog(board: &Board, clock_hz: u64, name: &str) -> Result<String
         title => &board.title,
         from => mhz(board.oscillator.hz),
         to => mhz(clock_hz),
+        part => part.name.to_uppercase(),
         period_ns => super::period_ns(board.oscillator.hz),
         cell => family.clock_cell(board.pll),
         // "oscillator", or the settings under the name of the clock manager.

@@ -178,6 +178,26 @@ pub const INPUTS: &[Inputs] = &[
         ],
     ),
     (
+        "gowin",
+        &[
+            "crates/core/",
+            "crates/boards/",
+            "crates/model/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/tools/",
+            "crates/simulators/",
+            "hdl-out/core/",
+            "hdl-out/tang-nano-20k/",
+            "hdl-out/tang-nano-9k/",
+            "tests/support/board_session.rs",
+            "tests/support/self_test_bench.rs",
+            "tests/support/self_test_board.rs",
+            "tests/system/a_board_is_its_verilog/",
+            "tests/system/a_self_test_shows_every_pin/",
+        ],
+    ),
+    (
         "holds",
         &[
             "crates/core/",

@@ -1,0 +1,5 @@
+carrystep_tang_nano_9k_top.v
+carrystep_clock.v
+../core/carrystep_uart.v
+../core/carrystep_link.v
+../core/carrystep_engine.v
