@@ -9,7 +9,9 @@ use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tests::engine_programs::{build, parameter_sets, run_programs, with_latches};
+use carrystep_tests::engine_programs::{
+    build, on_adders, parameter_sets, run_programs, with_latches,
+};
 use carrystep_tests::golden::{self, Case, Edge};
 use proptest::prelude::*;
 use std::cell::Cell;
@@ -123,6 +125,23 @@ fn random_programs_with_two_and_with_four_latches() {
             let is_much = level == Level::Icarus || (seen.records > 0 && seen.shared > 0);
             assert!(is_much, "too little happens: {seen:?}");
         }
+    }
+}
+
+#[test]
+fn random_programs_of_six_axes_on_six_adders_in_verilator() {
+    let six = build(6, 16_000_000, 4, StartPhase::Half, LimitWiring::Pair);
+    in_verilog(Level::Verilator, &on_adders(six, 6), 3_000_000).assert_everything();
+}
+
+#[test]
+fn random_programs_on_two_and_on_eight_adders() {
+    let two = build(6, 42_000_000, 1, StartPhase::Zero, LimitWiring::Each);
+    let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
+    for build in [on_adders(two, 2), on_adders(with_latches(eight, 2), 8)] {
+        let seen = in_verilog(Level::Verilator, &build, 1_000_000);
+        assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
+        in_verilog(Level::Icarus, &build, 20_000);
     }
 }
 

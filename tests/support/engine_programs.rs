@@ -392,6 +392,11 @@ pub fn with_latches(mut build: EngineBuild, count: usize) -> EngineBuild {
     build
 }
 
+/// The same build on this number of adders.
+pub fn on_adders(build: EngineBuild, adders: usize) -> EngineBuild {
+    EngineBuild { adders, ..build }
+}
+
 /// Runs random programs until they have taken the required number of clocks.
 ///
 /// # Panics
