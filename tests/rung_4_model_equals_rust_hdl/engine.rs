@@ -128,7 +128,7 @@ fn random_programs_of_six_axes_on_two_adders_in_the_shortest_tick() {
 #[test]
 fn random_programs_of_eight_axes_on_eight_adders_with_clocks_to_spare() {
     let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
-    in_rust_hdl(&on_adders(with_latches(eight, 2), 8), 50_000);
+    in_rust_hdl(&on_adders(eight, 8), 50_000);
 }
 
 /// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same

@@ -9,14 +9,12 @@ use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tests::engine_programs::{
-    build, on_adders, parameter_sets, run_programs, with_latches,
-};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs, with_latches};
 use carrystep_tests::golden::{self, Case, Edge};
 use proptest::prelude::*;
 use std::cell::Cell;
 
-fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
+pub fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     let verilog = carrystep_verilog::engine_verilog(build, "a test").expect("a fine build");
     in_this_verilog(level, &verilog, build, usual)
 }
@@ -37,16 +35,16 @@ fn in_this_verilog(level: Level, verilog: &str, build: &EngineBuild, usual: u64)
 /// Counts of what happened in random programs, because a lock-step in which nothing happens would
 /// prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
-struct Seen {
-    clocks: u64,
-    edges: u64,
+pub struct Seen {
+    pub clocks: u64,
+    pub edges: u64,
     /// Clocks in which several axes have an edge.
-    together: u64,
+    pub together: u64,
     /// Number of stops by each cause.
     causes: [u64; CAUSES.len()],
     /// Edges after the call of a stop, which belong to ramps.
     ramped: u64,
-    cleared: u64,
+    pub cleared: u64,
     /// Hits of seeks.
     hits: u64,
     /// Edges of latches that they did not latch.
@@ -91,7 +89,7 @@ impl Seen {
         self
     }
 
-    fn assert_everything(&self) {
+    pub fn assert_everything(&self) {
         let Self { clocks, edges, together, causes, ramped, cleared, hits, further, .. } = *self;
         let Self { switched, modulated, cuts, refused, .. } = *self;
         let moved = [clocks, edges, together, ramped, cleared, hits, further];
@@ -125,23 +123,6 @@ fn random_programs_with_two_and_with_four_latches() {
             let is_much = level == Level::Icarus || (seen.records > 0 && seen.shared > 0);
             assert!(is_much, "too little happens: {seen:?}");
         }
-    }
-}
-
-#[test]
-fn random_programs_of_six_axes_on_six_adders_in_verilator() {
-    let six = build(6, 16_000_000, 4, StartPhase::Half, LimitWiring::Pair);
-    in_verilog(Level::Verilator, &on_adders(six, 6), 3_000_000).assert_everything();
-}
-
-#[test]
-fn random_programs_on_two_and_on_eight_adders() {
-    let two = build(6, 42_000_000, 1, StartPhase::Zero, LimitWiring::Each);
-    let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
-    for build in [on_adders(two, 2), on_adders(with_latches(eight, 2), 8)] {
-        let seen = in_verilog(Level::Verilator, &build, 1_000_000);
-        assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
-        in_verilog(Level::Icarus, &build, 20_000);
     }
 }
 

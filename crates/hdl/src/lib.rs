@@ -62,11 +62,6 @@ pub enum HdlError {
     /// counter.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// A host link for several adders cannot have several latches.
-    #[error(
-        "several latches on {0} adders: the host link of an engine with several adders has at most one latch"
-    )]
-    LatchesOfAdders(usize),
     /// The check that Rust-HDL makes of every module has failed; the text is its message.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),

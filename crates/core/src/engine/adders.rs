@@ -15,8 +15,9 @@ use alloc::vec::Vec;
 /// The numbers of adders that an engine of so many axes can have: one, two if the axes are an even
 /// number, and one for each axis.
 pub fn adder_counts(axes: usize) -> impl Iterator<Item = usize> {
-    (1..=axes)
-        .filter(move |&adders| adders == 1 || adders == axes || (adders == 2 && axes % 2 == 0))
+    (1..=axes).filter(move |&adders| {
+        adders == 1 || adders == axes || (adders == 2 && axes.is_multiple_of(2))
+    })
 }
 
 /// A number of adders for a number of axes.

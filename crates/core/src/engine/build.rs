@@ -204,6 +204,9 @@ impl EngineBuild {
             }
         }
         self.check_latches()?;
+        if self.adders > 1 && self.has_several_latches() {
+            return Err(EngineError::LatchesOfAdders(self.adders));
+        }
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
         }

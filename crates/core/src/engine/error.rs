@@ -20,6 +20,9 @@ pub enum EngineError {
     /// No engine of so many axes has this number of adders.
     #[error("{} adders: an engine of {} has {}", .0.adders, .0.axes_said(), .0.possible())]
     Adders(Adders),
+    /// An engine with several adders cannot have several latches.
+    #[error("several latches on {0} adders: an engine with several adders has at most one latch")]
+    LatchesOfAdders(usize),
     /// A tick has too few clocks for the time slots of all axes.
     #[error(
         "{}, {needed} in all, but a tick of {tick_ns} ns \

@@ -57,25 +57,17 @@ pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
 
 /// As [`engine`], for several adders; the build has been checked.
 fn wide_engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
-    macro_rules! of {
-        ($axes:literal, $adders:literal) => {
-            match build.has_several_latches() {
-                false => WideEngine::<$axes, $adders, 0>::new(build)? as Box<dyn AnyEngine>,
-                true => WideEngine::<$axes, $adders, 1>::new(build)?,
-            }
-        };
-    }
     Ok(match (build.axes(), build.adders) {
-        (2, 2) => of!(2, 2),
-        (3, 3) => of!(3, 3),
-        (4, 2) => of!(4, 2),
-        (4, 4) => of!(4, 4),
-        (5, 5) => of!(5, 5),
-        (6, 2) => of!(6, 2),
-        (6, 6) => of!(6, 6),
-        (7, 7) => of!(7, 7),
-        (8, 2) => of!(8, 2),
-        (8, 8) => of!(8, 8),
+        (2, 2) => WideEngine::<2, 2>::new(build)?,
+        (3, 3) => WideEngine::<3, 3>::new(build)?,
+        (4, 2) => WideEngine::<4, 2>::new(build)?,
+        (4, 4) => WideEngine::<4, 4>::new(build)?,
+        (5, 5) => WideEngine::<5, 5>::new(build)?,
+        (6, 2) => WideEngine::<6, 2>::new(build)?,
+        (6, 6) => WideEngine::<6, 6>::new(build)?,
+        (7, 7) => WideEngine::<7, 7>::new(build)?,
+        (8, 2) => WideEngine::<8, 2>::new(build)?,
+        (8, 8) => WideEngine::<8, 8>::new(build)?,
         (axes, adders) => return Err(EngineError::Adders(Adders { adders, axes }).into()),
     })
 }
@@ -114,9 +106,7 @@ macro_rules! any_engine {
                 self.inputs_0.next = Word::from(u64::from(inputs.inputs[0]));
                 self.inputs_1.next = Word::from(u64::from(inputs.inputs[1]));
                 self.latch.next = inputs.latch & 1 == 1;
-                let (pins, arm) = (inputs.latch >> 1 & 7, inputs.latch_arm >> 1 & 7);
-                self.more_latches.iter_mut().for_each(|port| port.next = Word::from(u64::from(pins)));
-                self.more_latch_arm.iter_mut().for_each(|port| port.next = Word::from(u64::from(arm)));
+                self.settle_latches(inputs);
                 settle(self);
                 let cause = CAUSES[self.cause.val().value() as usize];
                 EngineOutputs {
@@ -156,34 +146,39 @@ macro_rules! any_engine {
                 self.store_of(axis).segments.word(axis << 6 | item << 3 | 7).value() as u32
             }
         }
-
-        impl<$($generics)*> $type {
-            /// The latches that wait for their edges.
-            fn latches_armed(&self) -> u8 {
-                let more = |port: &Signal<Out, Word<MORE>>| (port.val().value() as u8) << 1;
-                u8::from(self.latch_armed.val()) | self.more_latch_armed.iter().map(more).sum::<u8>()
-            }
-
-            /// The edges that each latch has counted.
-            fn latches_edges(&self) -> [u8; MAX_LATCHES] {
-                let more = |port: &Signal<Out, Word<12>>| port.val().value() as u16;
-                let all = self.more_latch_edges.iter().map(more).sum::<u16>() << 4
-                    | self.latch_edges.val().value() as u16;
-                std::array::from_fn(|latch| (all >> (4 * latch) & 15) as u8)
-            }
-
-            /// The records of all latches, two bits each.
-            fn records(&self) -> u8 {
-                self.latch_records.iter().map(|port| port.val().value() as u8).sum()
-            }
-        }
     };
 }
 
 any_engine!([const N: usize, const S: usize] Engine<N, S>);
-any_engine!([const N: usize, const K: usize, const S: usize] WideEngine<N, K, S>);
+any_engine!([const N: usize, const K: usize] WideEngine<N, K>);
 
 impl<const N: usize, const S: usize> Engine<N, S> {
+    /// The latches that wait for their edges.
+    fn latches_armed(&self) -> u8 {
+        let more = |port: &Signal<Out, Word<MORE>>| (port.val().value() as u8) << 1;
+        u8::from(self.latch_armed.val()) | self.more_latch_armed.iter().map(more).sum::<u8>()
+    }
+
+    /// The edges that each latch has counted.
+    fn latches_edges(&self) -> [u8; MAX_LATCHES] {
+        let more = |port: &Signal<Out, Word<12>>| port.val().value() as u16;
+        let all = self.more_latch_edges.iter().map(more).sum::<u16>() << 4
+            | self.latch_edges.val().value() as u16;
+        std::array::from_fn(|latch| (all >> (4 * latch) & 15) as u8)
+    }
+
+    /// The records of all latches, two bits each.
+    fn records(&self) -> u8 {
+        self.latch_records.iter().map(|port| port.val().value() as u8).sum()
+    }
+
+    /// Applies the pins of further latches, and which of them the host arms.
+    fn settle_latches(&mut self, inputs: &EngineInputs) {
+        let (pins, arm) = (inputs.latch >> 1 & 7, inputs.latch_arm >> 1 & 7);
+        self.more_latches.iter_mut().for_each(|port| port.next = Word::from(u64::from(pins)));
+        self.more_latch_arm.iter_mut().for_each(|port| port.next = Word::from(u64::from(arm)));
+    }
+
     const fn store_of(&self, _: usize) -> &Store {
         &self.store
     }
@@ -204,17 +199,32 @@ impl<const N: usize, const S: usize> Engine<N, S> {
     }
 }
 
-impl<const N: usize, const K: usize, const S: usize> WideEngine<N, K, S> {
+impl<const N: usize, const K: usize> WideEngine<N, K> {
+    /// There is at most one latch.
+    const fn settle_latches(&mut self, _: &EngineInputs) {}
+
+    fn latches_armed(&self) -> u8 {
+        self.latch_armed.val().into()
+    }
+
+    fn latches_edges(&self) -> [u8; MAX_LATCHES] {
+        let first = self.latch_edges.val().value() as u8;
+        std::array::from_fn(|latch| if latch == 0 { first } else { 0 })
+    }
+
+    const fn records(&self) -> u8 {
+        0
+    }
+
     fn store_of(&self, axis: usize) -> &Store {
         &self.store[axis % K]
     }
 
     fn words_of_state(&self) -> StateWords {
-        let record = self.state_record.iter().map(|port| port.val().value() as u8).sum();
         StateWords::of(|adder| {
             (adder < K && self.state_valid[adder].val()).then(|| {
                 word_of_state(
-                    record,
+                    0,
                     self.state_page[adder].val(),
                     self.state_axis[adder].val(),
                     self.state_item[adder].val(),

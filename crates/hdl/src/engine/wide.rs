@@ -32,7 +32,6 @@ use super::adder::Adder;
 use super::cut_control::CutControl;
 use super::edge_latch::EdgeLatch;
 use super::event_wheel::EventWheel;
-use super::latch_bank::{LatchBank, MORE};
 use super::output_control::OutputControl;
 use super::pulse_width::PulseWidth;
 use super::pulser::Pulser;
@@ -68,9 +67,9 @@ use lane_counts::LaneCounts;
 use lane_seek::LaneSeek;
 use lane_slots::LaneSlots;
 
-/// The engine of N axes on K adders, 2 to N. S is 1 in a build with several latches, otherwise 0.
+/// The engine of N axes on K adders, 2 to N. It has at most one latch.
 #[derive(LogicBlock, Default)]
-pub struct WideEngine<const N: usize, const K: usize, const S: usize> {
+pub struct WideEngine<const N: usize, const K: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
@@ -211,21 +210,6 @@ pub struct WideEngine<const N: usize, const K: usize, const S: usize> {
     pub latch_edges: Signal<Out, Word<4>>,
     /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
-    /// The pins of latches 1 to 3; asynchronous. `LATCH_LOOKS_1` and the following tell which of
-    /// them are used.
-    pub more_latches: PerAxis<Input<Word<MORE>>, S>,
-    /// The host arms each of these latches for one edge, and sets the count of its further edges to
-    /// 0; bit 0 is latch 1. A latch that the build does not have must not be armed.
-    pub more_latch_arm: PerAxis<Input<Word<MORE>>, S>,
-    /// These latches wait for their edges; bit 0 is latch 1.
-    pub more_latch_armed: PerAxis<Signal<Out, Word<MORE>>, S>,
-    /// The edges since each of them was armed that it did not latch, at most 15, in four bits each,
-    /// those of latch 1 lowest.
-    pub more_latch_edges: PerAxis<Signal<Out, Word<12>>, S>,
-    /// The number of the record that each latch holds, in two bits each, that of latch 0 lowest.
-    pub latch_records: PerAxis<Signal<Out, Word<8>>, S>,
-    /// The number of the record to which the words of page 3 belong in this tick.
-    pub state_record: PerAxis<Signal<Out, Word<2>>, S>,
     lane_slots: LaneSlots<N>,
     adder: PerLane<Adder, K>,
     queue: PerLane<Queue, K>,
@@ -242,7 +226,6 @@ pub struct WideEngine<const N: usize, const K: usize, const S: usize> {
     output_control: OutputControl,
     pulse_width: PulseWidth,
     edge_latch: EdgeLatch,
-    latch_bank: PerAxis<LatchBank, S>,
     stops: Stops<N>,
     resets: Resets,
     supervisor: Supervisor,
@@ -311,9 +294,6 @@ pub struct WideEngine<const N: usize, const K: usize, const S: usize> {
     samples: Signal<Local, Bit>,
     events: Signal<Local, Word<N>>,
     backward: Signal<Local, Word<N>>,
-    comes: Signal<Local, Bit>,
-    latches: Signal<Local, Bit>,
-    absent: Signal<Local, Bit>,
     outputs_off: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
@@ -345,9 +325,9 @@ pub struct WideEngine<const N: usize, const K: usize, const S: usize> {
     clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
-impl<const N: usize, const K: usize, const S: usize> WideEngine<N, K, S> {
-    /// Makes the engine of a build. The caller has checked the build and ensures that it has N axes,
-    /// K adders, and several latches if S is 1.
+impl<const N: usize, const K: usize> WideEngine<N, K> {
+    /// Makes the engine of a build. The caller has checked the build and ensures that it has N axes
+    /// and K adders.
     ///
     /// It is made on the heap, by a function of its own for each size: the stack of a thread does not
     /// hold one of each.
@@ -379,7 +359,6 @@ impl<const N: usize, const K: usize, const S: usize> WideEngine<N, K, S> {
         self.output_control = OutputControl::new(&build.outputs, slots);
         self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
         self.edge_latch = EdgeLatch::new(build.guard.latches.first());
-        self.latch_bank = PerAxis::from_fn(|_| LatchBank::new(&build.guard));
         self.stops = Stops::new(&build.guard);
         self.supervisor = Supervisor::new(&build.guard);
         self.axes = Parameter::new(N as u64);

@@ -56,9 +56,6 @@ pub fn link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlErr
 
 /// As [`link`], for several adders; the build has been checked.
 fn wide_link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlError> {
-    if build.has_several_latches() {
-        return Err(HdlError::LatchesOfAdders(build.adders));
-    }
     Ok(match (build.axes(), build.adders) {
         (2, 2) => Box::new(WideLink::<2, 2>::new(build, id)),
         (3, 3) => Box::new(WideLink::<3, 3>::new(build, id)),

@@ -60,19 +60,15 @@ impl<T: Block, const N: usize> Block for PerAxis<T, N> {
     }
 }
 
-/// An array of N elements, one for each adder, on the heap: a part of a large engine exists several
-/// times, and the stack of a thread is small. Kernels and Verilog see an array.
+/// N elements, one for each adder, on the heap: a part of a large engine exists several times, and the
+/// stack of a thread is small. Kernels and Verilog see an array. Its code is the same for every N.
 #[derive(Debug)]
-pub struct PerLane<T, const N: usize>(Box<[T; N]>);
+pub struct PerLane<T, const N: usize>(Vec<T>);
 
 impl<T, const N: usize> PerLane<T, N> {
     /// Makes each element by calling `make` with its number, 0 to N - 1.
     pub fn from_fn(make: impl FnMut(usize) -> T) -> Self {
-        let elements: Box<[T]> = (0..N).map(make).collect();
-        match elements.try_into() {
-            Ok(array) => Self(array),
-            Err(_) => unreachable!("N elements were made"),
-        }
+        Self((0..N).map(make).collect())
     }
 }
 
@@ -83,16 +79,16 @@ impl<T: Default, const N: usize> Default for PerLane<T, N> {
 }
 
 impl<T, const N: usize> Deref for PerLane<T, N> {
-    type Target = [T; N];
+    type Target = Vec<T>;
     #[inline]
-    fn deref(&self) -> &[T; N] {
+    fn deref(&self) -> &Vec<T> {
         &self.0
     }
 }
 
 impl<T, const N: usize> DerefMut for PerLane<T, N> {
     #[inline]
-    fn deref_mut(&mut self) -> &mut [T; N] {
+    fn deref_mut(&mut self) -> &mut Vec<T> {
         &mut self.0
     }
 }

@@ -15,6 +15,7 @@
 //!
 //! Cost: three flip-flops per lane, one per time slot and three others.
 
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
@@ -73,7 +74,9 @@ impl<const N: usize, const K: usize> Findings<N, K> {
     }
 }
 
-impl<const N: usize, const K: usize> Logic for Findings<N, K> {
+compiled_once::logic!(Findings<N = 8, K = 6>);
+
+impl<const N: usize, const K: usize> compiled_once::Kernel for Findings<N, K> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, ended, again, slot, ran, fast, limits, dries);

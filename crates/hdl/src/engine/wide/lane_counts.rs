@@ -4,6 +4,7 @@
 //!
 //! Cost: six cells per axis of the lane; synthesis removes the others.
 
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
@@ -41,7 +42,9 @@ impl<const N: usize> Default for LaneCounts<N> {
     }
 }
 
-impl<const N: usize> Logic for LaneCounts<N> {
+compiled_once::logic!(LaneCounts<N = 8>);
+
+impl<const N: usize> compiled_once::Kernel for LaneCounts<N> {
     #[hdl_gen]
     fn update(&mut self) {
         self.found.next = self.none.val();

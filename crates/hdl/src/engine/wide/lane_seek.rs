@@ -13,6 +13,7 @@
 //! Cost: two flip-flops per axis, one per lane, seven for the source, and two others.
 
 use crate::engine::layout::{SOURCE_AXIS, SOURCE_LEVEL, SOURCE_OWN, SOURCE_ROW};
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
@@ -114,7 +115,9 @@ impl<const N: usize, const K: usize> LaneSeek<N, K> {
     }
 }
 
-impl<const N: usize, const K: usize> Logic for LaneSeek<N, K> {
+compiled_once::logic!(LaneSeek<N = 8, K = 6>);
+
+impl<const N: usize, const K: usize> compiled_once::Kernel for LaneSeek<N, K> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, origin, waiting, slowing, released, common, lanes_slow);

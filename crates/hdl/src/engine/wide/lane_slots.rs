@@ -16,6 +16,7 @@
 //! of the axis.
 
 use crate::engine::layout::BEAT_LAST;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -70,7 +71,9 @@ impl<const N: usize> LaneSlots<N> {
     }
 }
 
-impl<const N: usize> Logic for LaneSlots<N> {
+compiled_once::logic!(LaneSlots<N = 8>);
+
+impl<const N: usize> compiled_once::Kernel for LaneSlots<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, beats, number, one_hot);

@@ -10,9 +10,9 @@ use crate::primitives::compiled_once;
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
-compiled_once::logic!(WideEngine<N = 8, K = 6, S = 1>);
+compiled_once::logic!(WideEngine<N = 8, K = 6>);
 
-impl<const N: usize, const K: usize, const S: usize> compiled_once::Kernel for WideEngine<N, K, S> {
+impl<const N: usize, const K: usize> compiled_once::Kernel for WideEngine<N, K> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
@@ -193,29 +193,6 @@ impl<const N: usize, const K: usize, const S: usize> compiled_once::Kernel for W
         }
         self.rests.next = self.rest_2.q.val() & !self.waits.q.val() & !self.pins_busy.val();
 
-        // The latches. In a build that has several, their bank replaces what the only latch of
-        // another build outputs.
-        self.comes.next = self.edge_latch.comes.val();
-        self.latches.next = self.edge_latch.latches.val();
-        self.absent.next = false;
-        for i in 0..S {
-            self.latch_bank[i].clock.next = self.clock.val();
-            self.latch_bank[i].strobe.next = self.strobe.val();
-            self.latch_bank[i].pins.next = self.more_latches[i].val();
-            self.latch_bank[i].arm.next = self.more_latch_arm[i].val();
-            self.latch_bank[i].resetting.next = self.resets.resetting.val();
-            self.latch_bank[i].first_armed.next = self.edge_latch.armed.val();
-            self.latch_bank[i].first_comes.next = self.edge_latch.comes.val();
-            self.latch_bank[i].first_latches.next = self.edge_latch.latches.val();
-            self.comes.next = self.latch_bank[i].comes.val();
-            self.latches.next = self.latch_bank[i].latches.val();
-            self.absent.next = self.latch_bank[i].absent.val();
-            self.more_latch_armed[i].next = self.latch_bank[i].armed.val();
-            self.more_latch_edges[i].next = self.latch_bank[i].edges.val();
-            self.latch_records[i].next = self.latch_bank[i].records.val();
-            self.state_record[i].next = self.latch_bank[i].record.val();
-        }
-
         // The lanes.
         self.fresh.next = self.no_slot.val();
         self.live.next = self.no_slot.val();
@@ -319,8 +296,8 @@ impl<const N: usize, const K: usize, const S: usize> compiled_once::Kernel for W
             self.readout[k].met.next = self.queue[k].met.val();
             self.readout[k].sweeps.next = self.lane_seek.sweeps.val();
             // A hit in any lane delays a snapshot, as the latch does.
-            self.readout[k].comes.next = self.comes.val() | self.meeting.q.val();
-            self.readout[k].latches.next = self.latches.val();
+            self.readout[k].comes.next = self.edge_latch.comes.val() | self.meeting.q.val();
+            self.readout[k].latches.next = self.edge_latch.latches.val();
             self.readout[k].samples.next = self.switches[k].samples.val();
             self.readout[k].row.next = self.supervisor.row.val();
             self.readout[k].earlier.next = self.switches[k].earlier.val();
@@ -461,8 +438,7 @@ impl<const N: usize, const K: usize, const S: usize> compiled_once::Kernel for W
         self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
             | self.broken.val()
             | self.misplaced.val()
-            | self.output_control.stray.val()
-            | self.absent.val())
+            | self.output_control.stray.val())
             & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val() & !self.drops.q.val());
         self.stops.missed.next = self.supervisor.missed.val() & !self.rest_2.q.val();
