@@ -36,15 +36,15 @@ fn in_this_verilog(level: Level, verilog: &str, build: &EngineBuild, usual: u64)
 /// prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Seen {
-    pub clocks: u64,
+    clocks: u64,
     pub edges: u64,
     /// Clocks in which several axes have an edge.
-    pub together: u64,
+    together: u64,
     /// Number of stops by each cause.
     causes: [u64; CAUSES.len()],
     /// Edges after the call of a stop, which belong to ramps.
     ramped: u64,
-    pub cleared: u64,
+    cleared: u64,
     /// Hits of seeks.
     hits: u64,
     /// Edges of latches that they did not latch.
