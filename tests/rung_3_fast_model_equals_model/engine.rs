@@ -64,6 +64,21 @@ fn an_engine_of_eight_axes() {
 }
 
 #[test]
+fn an_engine_with_several_adders() {
+    for (axes, adders, clock_hz, phases, limits) in [
+        (6, 6, 16_000_000, 4, LimitWiring::Pair),
+        (6, 2, 42_000_000, 1, LimitWiring::Each),
+        (8, 8, 48_000_000, 16, LimitWiring::One),
+    ] {
+        let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
+        let build = engine_programs::on_adders(build, adders);
+        let came = engines(&build, 40, engine_programs::program(axes));
+        assert!(came.taken > 300 && came.edges > 1000, "{came:?}");
+        assert!(came.leapt > came.clocks / 3, "{came:?}");
+    }
+}
+
+#[test]
 fn an_engine_with_several_latches() {
     for count in [2, 4] {
         let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);

@@ -6,7 +6,9 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::engine_programs::{build, parameter_sets, run_programs, with_latches};
+use carrystep_tests::engine_programs::{
+    build, on_adders, parameter_sets, run_programs, with_latches,
+};
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
@@ -109,6 +111,24 @@ fn random_programs_with_two_and_with_four_latches() {
     in_rust_hdl(&with_latches(two, 2), 150_000);
     let four = build(1, 32_000_000, 4, StartPhase::Zero, LimitWiring::One);
     in_rust_hdl(&with_latches(four, 4), 150_000);
+}
+
+#[test]
+fn random_programs_of_six_axes_on_six_adders_in_the_shortest_tick() {
+    let six = build(6, 16_000_000, 4, StartPhase::Half, LimitWiring::Pair);
+    in_rust_hdl(&on_adders(six, 6), 100_000);
+}
+
+#[test]
+fn random_programs_of_six_axes_on_two_adders_in_the_shortest_tick() {
+    let two = build(6, 42_000_000, 1, StartPhase::Zero, LimitWiring::Each);
+    in_rust_hdl(&on_adders(two, 2), 100_000);
+}
+
+#[test]
+fn random_programs_of_eight_axes_on_eight_adders_with_clocks_to_spare() {
+    let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
+    in_rust_hdl(&on_adders(eight, 8), 50_000);
 }
 
 /// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same

@@ -14,7 +14,7 @@ use carrystep_tests::golden::{self, Case, Edge};
 use proptest::prelude::*;
 use std::cell::Cell;
 
-fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
+pub fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     let verilog = carrystep_verilog::engine_verilog(build, "a test").expect("a fine build");
     in_this_verilog(level, &verilog, build, usual)
 }
@@ -35,9 +35,9 @@ fn in_this_verilog(level: Level, verilog: &str, build: &EngineBuild, usual: u64)
 /// Counts of what happened in random programs, because a lock-step in which nothing happens would
 /// prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
-struct Seen {
+pub struct Seen {
     clocks: u64,
-    edges: u64,
+    pub edges: u64,
     /// Clocks in which several axes have an edge.
     together: u64,
     /// Number of stops by each cause.
@@ -89,7 +89,7 @@ impl Seen {
         self
     }
 
-    fn assert_everything(&self) {
+    pub fn assert_everything(&self) {
         let Self { clocks, edges, together, causes, ramped, cleared, hits, further, .. } = *self;
         let Self { switched, modulated, cuts, refused, .. } = *self;
         let moved = [clocks, edges, together, ramped, cleared, hits, further];

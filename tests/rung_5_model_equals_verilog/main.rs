@@ -2,5 +2,6 @@
 //! demo and every profile, every output in every clock; the golden vectors to the last edge and
 //! phase.
 
+mod adders;
 mod engine;
 mod parallel;

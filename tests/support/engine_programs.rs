@@ -392,6 +392,27 @@ pub fn with_latches(mut build: EngineBuild, count: usize) -> EngineBuild {
     build
 }
 
+/// The same build on this number of adders.
+pub fn on_adders(build: EngineBuild, adders: usize) -> EngineBuild {
+    EngineBuild { adders, ..build }
+}
+
+/// Programs and events are made for ticks of 80 clocks. The same ones for an engine with several
+/// adders, with its ticks: otherwise most events would happen long after its axes have come to rest.
+fn in_ticks_of(build: &EngineBuild, program: Program, events: Events) -> (Program, Events) {
+    if build.adders == 1 {
+        return (program, events);
+    }
+    let scaled = |clocks: u64| clocks * u64::from(build.timebase.clocks_per_tick()) / 80;
+    let waits = |command| match command {
+        Command::Wait { clocks } => Command::Wait { clocks: (scaled(clocks.into()) as u32).max(1) },
+        other => other,
+    };
+    let program = program.into_iter().map(waits).collect();
+    let events = events.into_iter().map(|(at, event)| (scaled(at), event)).collect();
+    (program, events)
+}
+
 /// Runs random programs until they have taken the required number of clocks.
 ///
 /// # Panics
@@ -421,6 +442,7 @@ pub fn run_programs(
             if clocks.get() >= enough {
                 return Ok(());
             }
+            let (program, events) = in_ticks_of(build, program, events);
             clocks.set(clocks.get() + one(&program, &events)?);
             Ok(())
         });

@@ -63,6 +63,28 @@ pub fn nudge() -> (EngineBuild, Plan) {
     (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))
 }
 
+/// Six axes on six adders out and back at 1.9 million steps/s each, in ticks of 250 ns at 64 MHz.
+pub fn six_fast_axes() -> (MoveFile, Plan) {
+    let mut text =
+        "[machine]\nclock_hz = 64_000_000\ntick_ns = 250\nphases = 4\nadders = 6\n".to_owned();
+    for name in ["x", "y", "z", "a", "b", "c"] {
+        text += &format!(
+            "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = 1\nspeed_limit = 1.9e6\n\
+             accel_limit = 1.5e9\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 200\nhold_ns = 200\n"
+        );
+    }
+    for to in ["6000, y = -6000, z = 5000", "-6000, y = 6000, z = -5000"] {
+        let others = if to.starts_with('-') { "a = 1, b = -5999" } else { "a = -1, b = 5999" };
+        text += &format!(
+            "[[move]]\nprofile = \"trapezoid\"\nto = {{ x = {to}, {others}, c = 6000 }}\n"
+        );
+    }
+    let source = SourceText { path: "fast.toml".into(), text: text.into() };
+    let file = MoveFile::from_source(source).expect("a fine move file");
+    let plan = carrystep_plan::plan::<f64>(&file).expect("a plan");
+    (file, plan)
+}
+
 /// The engine of a move file that is shipped in `sim/`, and the plan.
 pub fn on_the_engine(name: &str) -> (EngineBuild, Plan) {
     let (file, plan) = shipped(name);

@@ -293,6 +293,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
         [
             "lockstep",
             "rust-hdl",
+            "adders",
             "repeats",
             "proofs",
             "mutants",

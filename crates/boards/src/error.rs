@@ -39,6 +39,18 @@ pub enum BoardError {
         /// Number of axes of the machine.
         wanted: usize,
     },
+    /// The machine has several adders, and the board's family keeps one.
+    #[error(
+        "{board}: an engine in a part of the family {family} has one adder, not {adders}: leave out `adders` in [machine], with a longer tick, or take a board with an ECP5 or a Spartan-7"
+    )]
+    Adders {
+        /// Name of the board.
+        board: String,
+        /// Name of its family.
+        family: &'static str,
+        /// Number of adders of the machine.
+        adders: usize,
+    },
     /// The machine has more limit switches than the board has pins for.
     #[error(
         "{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}"

@@ -76,6 +76,12 @@ pub trait FpgaFamily: Sync {
     /// What its pins are until it is configured.
     fn pull_ups(&self) -> PullUps;
 
+    /// Whether engines of this family may have several adders. The small and old families keep one:
+    /// it fits them, and they do not reach the clocks for which several are made.
+    fn has_several_adders(&self) -> bool {
+        true
+    }
+
     /// The family's clock manager. The DCM's ranges are intended to be those of the slowest speed
     /// grade in the low-frequency mode, but they were written from memory. Look them up in the data
     /// sheets (DS099, DS312, DS162) before you rely on a clock near their ends.

@@ -316,6 +316,18 @@ impl Board {
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 
+    /// Checks that engines of the board's family may have this number of adders.
+    ///
+    /// # Errors
+    /// [`BoardError::Adders`] if not.
+    pub fn has_adders(&self, adders: usize) -> Result<(), BoardError> {
+        let facts = self.family.facts();
+        if adders == 1 || facts.has_several_adders() {
+            return Ok(());
+        }
+        Err(BoardError::Adders { board: self.name.clone(), family: facts.title(), adders })
+    }
+
     /// Checks that the board has pins for all inputs and outputs of this build besides e-stop and
     /// limits. `uart` says whether the host uses the UART: then they may be the pins of the SPI.
     ///

@@ -13,6 +13,7 @@
 use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
 use crate::tick::Ticks;
 
+mod adders;
 mod build;
 mod cause;
 mod commit;
@@ -24,6 +25,7 @@ mod ports;
 mod seek;
 mod state;
 
+pub use adders::{Adders, adder_counts};
 pub use build::{EngineBuild, Guard, InputRow, LimitWiring};
 pub use cause::{CAUSE_BITS, CAUSES, Cause, CauseFacts, StopKind};
 pub use commit::{Commit, MAX_PWM_DIVIDER, Outputs, PWM_STEPS};
@@ -34,11 +36,12 @@ pub use ports::{ENGINE_PORTS, MORE_LATCH_PORTS, engine_ports, is_recorded, ports
 pub use seek::SeekSource;
 pub use state::{
     AxisStatus, STATE_AXIS_BITS, STATE_ITEM_BITS, STATUS_BITS, SWITCH_LEVEL, SWITCH_STATE,
-    StateItem, StatePage, StateWord, address as state_address, commanded_steps,
+    StateItem, StatePage, StateWord, StateWords, address as state_address, commanded_steps,
 };
 
 pub use crate::schedule::{
-    MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS, clocks_of_time_slots, least_clocks,
+    MIN_CLOCKS_PER_PHASE, TIME_SLOT_CLOCKS, clocks_of_adders, clocks_of_time_slots, least_clocks,
+    least_clocks_of_adders, time_slots,
 };
 
 /// Greatest number of axes of an engine.
@@ -86,18 +89,40 @@ pub const SWITCH_ROWS: u8 = 4;
 /// [`EngineError::Schedule`] says what is needed and what there is, [`EngineError::ShortPhase`]
 /// that phases are too many; both the shortest tick and the slowest clock that would do.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
-    let needed = clocks_of_time_slots(axes);
+    check_schedule_of_adders(axes, 1, timebase)
+}
+
+/// As [`check_schedule`], for an engine with this number of adders, which must be at least 1.
+///
+/// # Errors
+/// As [`check_schedule`].
+pub fn check_schedule_of_adders(
+    axes: usize,
+    adders: usize,
+    timebase: &Timebase,
+) -> Result<(), EngineError> {
+    let needed = clocks_of_adders(axes, adders);
     let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());
     let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
-    let least_tick_ns = Ticks::for_engine(clock_hz, phases, axes);
-    let least_hz = Ticks::clock_for_engine(tick_ns, phases, axes);
+    let least = least_clocks_of_adders(axes, adders, phases);
+    let least_tick_ns = Ticks::of(clock_hz, phases).and_then(|ticks| ticks.shortest(least));
+    let least_hz = Ticks::clock_for(tick_ns, phases, least);
     if clocks >= needed {
         return match timebase.clocks_per_phase() {
             MIN_CLOCKS_PER_PHASE.. => Ok(()),
             _ => Err(EngineError::ShortPhase { phases, clocks, least_tick_ns, least_hz }),
         };
     }
-    Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_tick_ns, least_hz })
+    let adders = Adders { adders, axes };
+    Err(EngineError::Schedule {
+        adders,
+        needed,
+        clocks,
+        tick_ns,
+        clock_hz,
+        least_tick_ns,
+        least_hz,
+    })
 }
 
 /// Checks that the pin timers can count the times of all axes, 1 to [`MAX_CLOCKS`] clocks.
@@ -258,8 +283,8 @@ pub struct EngineOutputs {
     pub latch_edges: [u8; MAX_LATCHES],
     /// Number of the record that each latch holds; 0 in a build with at most one latch.
     pub latch_records: [u8; MAX_LATCHES],
-    /// The word of state that is output in this cycle, if any.
-    pub state: Option<StateWord>,
+    /// The words of state that are output in this cycle, at most one of the axes of each adder.
+    pub state: StateWords,
     /// The live words of all axes have been output in this tick; 1 in one cycle of it.
     pub refreshed: bool,
     /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in

@@ -27,12 +27,20 @@ pub enum Width {
     Axes,
     /// 32 bits for each axis of the build; axis 0 is in the lowest bits.
     WordPerAxis,
+    /// This number of bits for each adder of the engine; those of adder 0 are the lowest.
+    PerAdder(u32),
 }
 
 impl Width {
-    /// Number of bits in a build with this number of axes.
+    /// Number of bits in a build with this number of axes and one adder.
     pub const fn of(self, axes: usize) -> u32 {
+        self.with_adders(axes, 1)
+    }
+
+    /// Number of bits in a build with these numbers of axes and of adders.
+    pub const fn with_adders(self, axes: usize, adders: usize) -> u32 {
         match self {
+            Self::PerAdder(bits) => bits * adders as u32,
             Self::Bits(bits) => bits,
             Self::Axes => axes as u32,
             Self::WordPerAxis => 32 * axes as u32,

@@ -5,7 +5,7 @@
 //! smallest tick, the grain, of `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
 
 use crate::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
-use crate::schedule::least_clocks;
+use crate::schedule::{least_clocks, least_clocks_of_adders};
 use alloc::borrow::ToOwned;
 use alloc::format;
 use alloc::string::String;
@@ -80,6 +80,12 @@ impl Ticks {
     /// The slowest clock, Hz, at which an engine of so many axes takes this tick, ns; `None` where
     /// no clock does.
     pub fn clock_for_engine(tick_ns: u64, phases: u32, axes: usize) -> Option<u64> {
+        Self::clock_for(tick_ns, phases, least_clocks(axes, phases))
+    }
+
+    /// The slowest clock, Hz, at which this tick, ns, has at least so many clocks; `None` where no
+    /// clock does.
+    pub fn clock_for(tick_ns: u64, phases: u32, least: u32) -> Option<u64> {
         const NS: u64 = 1_000_000_000;
         if tick_ns == 0 {
             return None;
@@ -89,7 +95,7 @@ impl Ticks {
         let common = gcd(tick_ns, NS);
         let (whole, per_phase) = (tick_ns / common, u64::from(phases).max(1));
         let grain = (whole / gcd(whole, per_phase)).checked_mul(per_phase)?;
-        let needed = least_clocks(axes, phases).max(MIN_CLOCKS_PER_TICK);
+        let needed = least.max(MIN_CLOCKS_PER_TICK);
         let clocks = u64::from(needed).div_ceil(grain) * grain;
         if clocks > u64::from(MAX_CLOCKS) {
             return None;
@@ -118,6 +124,8 @@ pub struct ChosenTick {
     pub phases: u32,
     /// Number of axes of the machine.
     pub axes: usize,
+    /// Number of adders of its engine.
+    pub adders: usize,
     /// The tick, ns, that fewer phases would allow, if this tick is long and that one is shorter.
     pub fewer_phases_ns: Option<u64>,
 }
@@ -125,12 +133,19 @@ pub struct ChosenTick {
 impl ChosenTick {
     /// Chooses the shortest tick for an engine; `None` if the clock allows no tick.
     pub fn new(clock_hz: u64, phases: u32, axes: usize) -> Option<Self> {
-        let tick_ns = Ticks::for_engine(clock_hz, phases, axes)?;
-        let fewer = (tick_ns > LONG_NS && phases > FEWER_PHASES)
-            .then(|| Ticks::for_engine(clock_hz, FEWER_PHASES, axes))
-            .flatten();
+        Self::with_adders(clock_hz, phases, axes, 1)
+    }
+
+    /// As [`ChosenTick::new`], for an engine with this number of adders, which is at least 1.
+    pub fn with_adders(clock_hz: u64, phases: u32, axes: usize, adders: usize) -> Option<Self> {
+        let shortest = |phases| {
+            Ticks::of(clock_hz, phases)?.shortest(least_clocks_of_adders(axes, adders, phases))
+        };
+        let tick_ns = shortest(phases)?;
+        let fewer =
+            (tick_ns > LONG_NS && phases > FEWER_PHASES).then(|| shortest(FEWER_PHASES)).flatten();
         let fewer_phases_ns = fewer.filter(|&shorter| shorter < tick_ns);
-        Some(Self { clock_hz, tick_ns, phases, axes, fewer_phases_ns })
+        Some(Self { clock_hz, tick_ns, phases, axes, adders, fewer_phases_ns })
     }
 
     /// A sentence that proposes fewer phases, if they would shorten a long tick.
@@ -144,13 +159,16 @@ impl ChosenTick {
 
 impl fmt::Display for ChosenTick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { clock_hz, tick_ns, phases, axes, .. } = self;
+        let Self { clock_hz, tick_ns, phases, axes, adders, .. } = self;
         let axes = counted(*axes);
         write!(
             f,
             "tick_ns = {tick_ns}, the shortest at {} MHz in {phases} phases with {axes}",
             mhz(*clock_hz)
         )?;
+        if *adders > 1 {
+            write!(f, " on {adders} adders")?;
+        }
         self.proposal().map_or(Ok(()), |proposal| write!(f, "; {proposal}"))
     }
 }
@@ -162,6 +180,21 @@ pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Opt
     if clock_hz == FIXED_CLOCK_HZ && chosen.is_none_or(|chosen| chosen.tick_ns <= FIXED_TICK_NS) {
         return Some((FIXED_TICK_NS, None));
     }
+    chosen.map(|chosen| (chosen.tick_ns, Some(chosen)))
+}
+
+/// As [`default_tick`], for an engine with this number of adders: with several of them the shortest
+/// tick, at any clock.
+pub fn default_tick_of_adders(
+    clock_hz: u64,
+    phases: u32,
+    axes: usize,
+    adders: usize,
+) -> Option<(u64, Option<ChosenTick>)> {
+    if adders <= 1 {
+        return default_tick(clock_hz, phases, axes);
+    }
+    let chosen = ChosenTick::with_adders(clock_hz, phases, axes, adders);
     chosen.map(|chosen| (chosen.tick_ns, Some(chosen)))
 }
 

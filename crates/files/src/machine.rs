@@ -11,7 +11,7 @@ use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, Timebase
 use carrystep_core::engine::{Guard, MAX_AXES, Outputs};
 use carrystep_core::fixed::StartPhase;
 use carrystep_core::link::{BaudError, LineKind, Uart};
-use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
+use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick_of_adders, nearest_ticks};
 use guard::RawGuard;
 use home::{RawOrder, RawPlace};
 use inputs::RawInputs;
@@ -24,6 +24,7 @@ use std::path::Path;
 use thiserror::Error;
 use toml::Spanned;
 
+mod adders;
 mod axis;
 mod gantry;
 mod guard;
@@ -62,6 +63,8 @@ pub struct Machine {
     pub queue: usize,
     /// Whether a host can cut queues.
     pub cuts: bool,
+    /// Number of adders of the engine.
+    pub adders: usize,
     /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
     /// together.
     pub home_order: Vec<Vec<usize>>,
@@ -130,6 +133,7 @@ impl Machine {
             outputs: self.outputs,
             queue: self.queue,
             cuts: self.cuts,
+            adders: self.adders,
         }
     }
 
@@ -264,6 +268,7 @@ pub(crate) struct RawMachine {
     queue_depth: Option<Spanned<usize>>,
     #[serde(default)]
     cuts: bool,
+    adders: Option<Spanned<usize>>,
     home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
@@ -275,7 +280,9 @@ impl RawMachine {
     }
 
     pub(crate) fn check(self, source: &SourceText) -> Result<Machine, InputError> {
-        let (timebase, chosen_tick) = self.timebase(source)?;
+        let adders = adders::check(source, self.adders.as_ref(), self.axis.as_ref().len())?;
+        let (timebase, chosen_tick) = self.timebase(source, adders)?;
+        adders::check_tick(source, self.adders.as_ref(), self.axis.as_ref().len(), &timebase)?;
         let span = self.axis.span();
         let raw = self.axis.into_inner();
         if raw.is_empty() {
@@ -338,6 +345,7 @@ impl RawMachine {
             output_uses: self.outputs.uses(source, outputs)?,
             queue: queue::check(source, self.queue_depth.as_ref())?,
             cuts: self.cuts,
+            adders,
             home_order,
             baud,
             spi,
@@ -345,15 +353,20 @@ impl RawMachine {
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.
-    fn timebase(&self, source: &SourceText) -> Result<(Timebase, Option<ChosenTick>), InputError> {
+    fn timebase(
+        &self,
+        source: &SourceText,
+        adders: usize,
+    ) -> Result<(Timebase, Option<ChosenTick>), InputError> {
         let clock_hz = self.clock_hz.as_ref().map_or(FIXED_CLOCK_HZ, |v| *v.as_ref());
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
         let axes = self.axis.as_ref().len().clamp(1, MAX_AXES);
         let given = self.tick_ns.as_ref().map(|v| (*v.as_ref(), None));
         // If the clock allows no tick, the tick of 1 ns makes the check below fail with the
         // matching error.
-        let (tick_ns, chosen) =
-            given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
+        let (tick_ns, chosen) = given
+            .or_else(|| default_tick_of_adders(clock_hz, phases, axes, adders))
+            .unwrap_or((1, None));
         let timebase = Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
             let tick = self.tick_ns.as_ref().map(Spanned::span);
             let clock = self.clock_hz.as_ref().map(Spanned::span);

@@ -65,6 +65,7 @@ pub mod store;
 pub mod supervisor;
 pub mod switches;
 pub mod time_slot;
+pub mod wide;
 mod wiring;
 
 pub use sim::{AnyEngine, EngineSim, engine};

@@ -39,6 +39,7 @@ pub mod latch_view;
 pub mod processor;
 pub mod register_mirror;
 mod sim;
+pub mod wide;
 
 pub use sim::{AnyLink, LinkSim, link};
 

@@ -112,7 +112,7 @@ fn leaps_that_end_in_any_clock_leave_the_registers_and_words_of_every_clock() {
             met.hits += u64::from(next.hits & !now.hits != 0);
             met.edges_of_the_latch += u64::from(next.latch_edges > now.latch_edges);
             met.records += u64::from(next.latch_records != now.latch_records);
-            match now.state {
+            match now.state.of_adder(0) {
                 Some(word) if word.item == StateItem::Switch => met.switches += 1,
                 Some(word) => met.pages[word.page as usize] += 1,
                 None => {}

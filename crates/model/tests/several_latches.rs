@@ -47,7 +47,7 @@ impl Bench {
             let latch_arm = if clock == 0 { arm } else { 0 };
             let inputs = EngineInputs { latch, latch_arm, ..EngineInputs::default() };
             self.outputs = self.engine.outputs(&inputs);
-            if let Some(word) = self.outputs.state
+            if let Some(word) = self.outputs.state.of_adder(0)
                 && word.page == StatePage::Latch
             {
                 let record = &mut self.records[usize::from(word.record)];

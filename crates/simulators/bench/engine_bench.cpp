@@ -21,20 +21,30 @@ unsigned __int128 outputs(const Vcarrystep_engine& core) {
     return all;
 }
 
+// The state of an adder in the words of the port `state`, which is one number or, if it is wider than
+// 64 bits, an array.
+uint32_t word_of(uint32_t state, int) { return state; }
+uint32_t word_of(uint64_t state, int adder) { return static_cast<uint32_t>(state >> 32 * adder); }
+template <typename Wide> uint32_t word_of(const Wide& state, int adder) { return state[adder]; }
+
 // The checksum of the words of state up to this cycle; `sum` is that of the cycles before.
 uint64_t checksum(const Vcarrystep_engine& core, uint64_t sum) {
-    if (!core.state_valid && !core.refreshed) return sum;
-    uint64_t word = 0;
-    if (core.state_valid) {
-        const unsigned address = core.state_page << 6 | core.state_item << 3 | core.state_axis;
-        const uint64_t meant = core.state_item == {{ status }} ? {{ status_meant }}u
-                             : core.state_item == {{ switch }} ? {{ switch_meant }}u : ~0u;
-        word = uint64_t{address} << 32 | (core.state & meant);
+    uint64_t refreshed = core.refreshed;
+    for (int adder = 0; adder < {{ adders }}; ++adder) {
+        if (!(core.state_valid >> adder & 1)) continue;
+        const unsigned item = core.state_item >> 3 * adder & 7;
+        const unsigned address =
+            (core.state_page >> 2 * adder & 3) << 6 | item << 3 | (core.state_axis >> 3 * adder & 7);
+        const uint64_t meant = item == {{ status }} ? {{ status_meant }}u
+                             : item == {{ switch }} ? {{ switch_meant }}u : ~0u;
+        uint64_t word = uint64_t{address} << 32 | (word_of(core.state, adder) & meant);
 {% if several %}
         word |= uint64_t{core.state_record} << 41;
 {% endif %}
+        sum = (sum << 7 | sum >> 57) ^ (refreshed << 40 | word);
+        refreshed = 0;
     }
-    return (sum << 7 | sum >> 57) ^ (uint64_t{core.refreshed} << 40 | word);
+    return refreshed ? (sum << 7 | sum >> 57) ^ uint64_t{1} << 40 : sum;
 }
 
 void tick(Vcarrystep_engine& core) {

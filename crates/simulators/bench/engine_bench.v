@@ -27,11 +27,12 @@ module engine_bench;
     reg [BITS-1:0] before;
     integer file, fields;
     reg [63:0] cycle, count, sum;
-    wire [31:0] mask = state_item == {{ status }} ? 32'd{{ status_meant }}
-                     : state_item == {{ switch }} ? 32'd{{ switch_meant }} : 32'hffffffff;
-    wire [31:0] meant = state & mask;
+    integer adder;
+    wire [{{ adders - 1 }}:0] valid = state_valid;
+    reg first;
+    reg [2:0] item;
+    reg [31:0] mask, meant;
     wire [1:0] record = {{ "state_record" if several else "2'd0" }};
-    wire [42:0] said = state_valid ? {record, 1'b0, state_page, state_item, state_axis, meant} : 43'b0;
     reg [8*256-1:0] name;
 
     task tick;
@@ -58,7 +59,18 @@ module engine_bench;
                 #1;
                 if (recorded !== before) $display("%0d %h %h", cycle, recorded, sum);
                 before = recorded;
-                if (state_valid | refreshed) sum = {sum[56:0], sum[63:57]} ^ {21'b0, said} ^ {23'b0, refreshed, 40'b0};
+                first = refreshed;
+                for (adder = 0; adder < {{ adders }}; adder = adder + 1) if (valid[adder]) begin
+                    item = state_item[3*adder +: 3];
+                    mask = item == {{ status }} ? 32'd{{ status_meant }}
+                         : item == {{ switch }} ? 32'd{{ switch_meant }} : 32'hffffffff;
+                    meant = state[32*adder +: 32] & mask;
+                    sum = {sum[56:0], sum[63:57]}
+                        ^ {21'b0, record, 1'b0, state_page[2*adder +: 2], item, state_axis[3*adder +: 3], meant}
+                        ^ {23'b0, first, 40'b0};
+                    first = 0;
+                end
+                if (first) sum = {sum[56:0], sum[63:57]} ^ {23'b0, 1'b1, 40'b0};
                 tick;
                 cycle = cycle + 1;
                 count = count - 1;

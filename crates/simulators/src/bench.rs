@@ -16,24 +16,24 @@ const BOARD: &str = include_str!("../bench/board_bench.v");
 const BOARD_PROCESS: &str = include_str!("../bench/board_bench.cpp");
 
 /// The bench that replays a recording in Icarus. `several` is true for the engine of a build with
-/// several latches, which has further ports.
-pub(crate) fn icarus(several: bool) -> Result<String, LevelError> {
-    rendered(ICARUS, several)
+/// several latches, which has further ports; `adders` is the number of its adders.
+pub(crate) fn icarus(several: bool, adders: usize) -> Result<String, LevelError> {
+    rendered(ICARUS, several, adders)
 }
 
 /// The bench that replays a recording in Verilator.
-pub(crate) fn verilator(several: bool) -> Result<String, LevelError> {
-    rendered(VERILATOR, several)
+pub(crate) fn verilator(several: bool, adders: usize) -> Result<String, LevelError> {
+    rendered(VERILATOR, several, adders)
 }
 
 /// Line, link and engine of a board as one module.
-pub(crate) fn board(several: bool) -> Result<String, LevelError> {
-    rendered(BOARD, several)
+pub(crate) fn board(several: bool, adders: usize) -> Result<String, LevelError> {
+    rendered(BOARD, several, adders)
 }
 
 /// The bench that runs a board in Verilator as a process.
-pub(crate) fn board_process(several: bool) -> Result<String, LevelError> {
-    rendered(BOARD_PROCESS, several)
+pub(crate) fn board_process(several: bool, adders: usize) -> Result<String, LevelError> {
+    rendered(BOARD_PROCESS, several, adders)
 }
 
 /// True if an engine has this port.
@@ -41,7 +41,8 @@ pub(crate) fn has(several: bool, port: &Port) -> bool {
     several || !MORE_LATCH_PORTS.contains(port)
 }
 
-fn rendered(template: &str, several: bool) -> Result<String, LevelError> {
+fn rendered(template: &str, several: bool, adders: usize) -> Result<String, LevelError> {
+    let row = |port: &Port| row(port, adders);
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(
@@ -58,6 +59,7 @@ fn rendered(template: &str, several: bool) -> Result<String, LevelError> {
     let values = context! {
         ports => all.map(row).collect::<Vec<_>>(),
         several,
+        adders,
         bytes => BYTE_PORTS.iter().map(row).collect::<Vec<_>>(),
         inputs => rows(Direction::Input),
         pins => of(Direction::Input)
@@ -76,10 +78,14 @@ fn rendered(template: &str, several: bool) -> Result<String, LevelError> {
 }
 
 /// The values of a port in the templates.
-fn row(port: &Port) -> Value {
+fn row(port: &Port, adders: usize) -> Value {
     let (width, range) = match port.width {
         Width::Axes => ("AXES".to_owned(), "[AXES-1:0] ".to_owned()),
         Width::WordPerAxis => ("32 * AXES".to_owned(), "[32*AXES-1:0] ".to_owned()),
+        Width::PerAdder(bits) => match bits * adders as u32 {
+            1 => ("1".to_owned(), String::new()),
+            bits => (bits.to_string(), format!("[{}:0] ", bits - 1)),
+        },
         Width::Bits(1) => ("1".to_owned(), String::new()),
         Width::Bits(bits) => (bits.to_string(), format!("[{}:0] ", bits - 1)),
     };

@@ -86,7 +86,7 @@ impl BoardProcess {
         ];
         // The exported files are Verilog-2005; the top level of the bench uses more.
         let several = build.has_several_latches();
-        let top = bench::board(several)?;
+        let top = bench::board(several, build.adders)?;
         let mut verilog = format!("{top}`begin_keywords \"1364-2005\"\n");
         for part in parts {
             verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
@@ -95,7 +95,7 @@ impl BoardProcess {
         let axes = format!("-GAXES={}", build.axes());
         let define = if line == LineKind::Spi { "-DSPI" } else { "-DUART" };
         let options: &[&str] = &[&axes, define];
-        let bench = bench::board_process(several)?;
+        let bench = bench::board_process(several, build.adders)?;
         let board = Simulation { name: "board", top: "board_bench", bench: &bench, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -89,13 +89,17 @@ fn field(line: &str) -> Option<(&str, &str)> {
 }
 
 fn is_port(kind: &str) -> bool {
-    let kind = kind.trim_start_matches("PerAxis<").trim_start_matches('[');
+    let kind = ["PerAxis<", "PerLane<", "["]
+        .iter()
+        .fold(kind, |kind, begin| kind.trim_start_matches(begin));
     kind.starts_with("Input<") || kind.starts_with("Signal<Out,")
 }
 
 /// The type of the elements of an array, or the type itself, without its arguments.
 fn element(kind: &str) -> &str {
-    let kind = kind.trim_start_matches("PerAxis<").trim_start_matches('[');
+    let kind = ["PerAxis<", "PerLane<", "["]
+        .iter()
+        .fold(kind, |kind, begin| kind.trim_start_matches(begin));
     kind.split(['<', ',', ';', '>']).next().unwrap_or(kind).trim()
 }
 

@@ -108,7 +108,8 @@ pub(crate) fn engine_of(
 ) -> Result<Exported, ExportError> {
     let facts =
         Facts::of_axes(&build.timebase, build.phase, build.pins.iter(), &guard::lines(build));
-    let top = Top { name: ENGINE_NAME, kind: "Engine", waivers: Some(ENGINE_WAIVERS) };
+    let kind = if build.adders > 1 { "WideEngine" } else { "Engine" };
+    let top = Top { name: ENGINE_NAME, kind, waivers: Some(ENGINE_WAIVERS) };
     Exported::new(engine(build)?.as_mut(), top, prefix, &facts, description)
 }
 
@@ -125,7 +126,8 @@ pub(crate) fn link_of(
         build.timebase.clock_hz()
     );
     let facts = Facts { title: "the host link of an engine".to_owned(), notes: MOTION, lines };
-    let top = Top { name: LINK_NAME, kind: "Link", waivers: Some(LINK_WAIVERS) };
+    let kind = if build.adders > 1 { "WideLink" } else { "Link" };
+    let top = Top { name: LINK_NAME, kind, waivers: Some(LINK_WAIVERS) };
     Exported::new(link(build, id)?.as_mut(), top, prefix, &facts, description)
 }
 

@@ -25,9 +25,15 @@ pub(crate) fn lines(build: &EngineBuild) -> String {
         let (level, stop) = (figures.limit_level, figures.limit_stop);
         format!("{wiring}, active {level}, debounced for {}: {stop}", between(time, "us"))
     });
+    let adders = match build.adders {
+        1 => String::new(),
+        adders => {
+            format!("// Adders       {adders}: axis i is computed by the adder i % {adders}\n")
+        }
+    };
     let mut text = format!(
         "\
-// Guard        counts in rounds of {} ticks, {} us
+{adders}// Guard        counts in rounds of {} ticks, {} us
 //   watchdog   {watchdog}
 //   enable     {enable}
 //   e-stop     active {}: freeze

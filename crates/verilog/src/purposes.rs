@@ -21,7 +21,7 @@ pub const LINK_NAME: &str = "carrystep_link";
 pub const SELF_TEST_NAME: &str = "carrystep_self_test";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 51] = [
+const PURPOSES: [(&str, &str); 56] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -173,6 +173,23 @@ const PURPOSES: [(&str, &str); 51] = [
     (
         SELF_TEST_NAME,
         "The self-test of a board: outputs become active one by one, and inputs are reported.",
+    ),
+    (
+        "carrystep_lane_slots",
+        "The schedule of several adders: the axes of a time slot, one of each adder, share thirteen clocks.",
+    ),
+    (
+        "carrystep_count_place",
+        "Puts the counts of one pulser at their place in the word of the counts of all pulsers.",
+    ),
+    ("carrystep_lane_counts", "Selects the counts of the pulser of the axis of a time slot."),
+    (
+        "carrystep_findings",
+        "Tells the stop control what the axes of a time slot have found, the lowest axis first.",
+    ),
+    (
+        "carrystep_lane_seek",
+        "Seek with several adders: its source, the axes that wait for it, and those that have hit it.",
     ),
     (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
 ];

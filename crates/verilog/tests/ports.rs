@@ -102,6 +102,19 @@ fn exported_modules_have_the_ports_of_their_tables() {
             "{axes} axes"
         );
     }
+    for (axes, adders) in [(2, 2), (6, 2), (6, 6), (8, 8)] {
+        let build = EngineBuild { adders, ..engine_of(axes) };
+        let width = |port: &Port| {
+            let width = port.width.with_adders(axes, adders);
+            (port.name.to_owned(), (port.direction == Direction::Input, width))
+        };
+        let engine = declared(&engine_verilog(&build, "a test").unwrap(), ENGINE_NAME);
+        let table: Ports = engine_ports(&build).map(width).collect();
+        assert_eq!(engine.into_iter().collect::<Ports>(), table, "{axes} axes, {adders} adders");
+        let link = declared(&link_verilog(&build, uart, "a test").unwrap(), LINK_NAME);
+        let table: Ports = link_ports(&build).map(|port| width(&port)).collect();
+        assert_eq!(link.into_iter().collect::<Ports>(), table, "{axes} axes, {adders} adders");
+    }
     for line in [uart, LineKind::Spi] {
         let found = declared(&line_verilog(line, "a test").unwrap(), line_name(line));
         assert_eq!(found.into_iter().collect::<Ports>(), tabled(line_ports(line), AXES), "{line}");
@@ -116,7 +129,7 @@ fn outputs_are_valid_with_outputs_of_their_own_table() {
     for table in [&PARALLEL_PORTS[..], ENGINE_PORTS, &engine, &link] {
         for name in table.iter().filter_map(|port| port.valid_with) {
             let with = table.iter().find(|port| port.name == name).unwrap();
-            assert_eq!(with.width, Width::Bits(1), "{name}");
+            assert!([Width::Bits(1), Width::PerAdder(1)].contains(&with.width), "{name}");
         }
     }
 }
@@ -209,6 +222,8 @@ fn page_has_the_ports_of_the_tables() {
                 Width::Bits(bits) => bits.to_string(),
                 Width::Axes => "N".to_owned(),
                 Width::WordPerAxis => "32N".to_owned(),
+                // The table is that of one adder.
+                Width::PerAdder(bits) => bits.to_string(),
             };
             (port.name.to_owned(), (port.direction == Direction::Input, width))
         };

@@ -47,6 +47,19 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "rung_4_model_equals_rust_hdl", "engine::random_programs_at_16_phases"],
     },
     Run {
+        name: "adders",
+        what: "engines with [several adders](clock-by-clock.md#several-adders), as *lockstep* and *rust-hdl*: six axes on two and on six, eight on eight; planted bugs; a move at 1.9 million steps/s on six axes",
+        asks: &[("CARRYSTEP_CLOCKS", "5000000")],
+        cargo: &[
+            "--test",
+            "rung_4_model_equals_rust_hdl",
+            "--test",
+            "rung_5_model_equals_verilog",
+            "--",
+            "adders",
+        ],
+    },
+    Run {
         name: "repeats",
         what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home",
         asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],

@@ -21,6 +21,10 @@ impl FpgaFamily for Ice40 {
         "iCE40"
     }
 
+    fn has_several_adders(&self) -> bool {
+        false
+    }
+
     fn toolchain(&self) -> &'static Toolchain {
         &TOOLCHAIN
     }

@@ -11,6 +11,10 @@ impl FpgaFamily for Spartan3e {
         "Spartan-3E"
     }
 
+    fn has_several_adders(&self) -> bool {
+        false
+    }
+
     fn toolchain(&self) -> &'static Toolchain {
         &ISE
     }

@@ -11,6 +11,10 @@ impl FpgaFamily for Spartan6 {
         "Spartan-6"
     }
 
+    fn has_several_adders(&self) -> bool {
+        false
+    }
+
     fn toolchain(&self) -> &'static Toolchain {
         &ISE
     }

@@ -3,8 +3,9 @@
 //! axes.
 
 use super::{
-    EngineError, Latch, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
-    Outputs, QUEUE_DEPTHS, check_pins, check_schedule,
+    Adders, EngineError, Latch, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_PWM_DIVIDER, MAX_ROUND,
+    MAX_ROUNDS, Outputs, QUEUE_DEPTHS, TIME_SLOT_CLOCKS, adder_counts, check_pins,
+    check_schedule_of_adders, time_slots,
 };
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
@@ -31,6 +32,8 @@ pub struct EngineBuild {
     pub queue: usize,
     /// Whether a host can cut queues.
     pub cuts: bool,
+    /// Number of adders, one of [`adder_counts`]. Axis i is computed by the adder i % adders.
+    pub adders: usize,
 }
 
 /// Settings of the guard: what it watches, and how it stops the axes.
@@ -143,6 +146,7 @@ impl EngineBuild {
             outputs,
             queue,
             cuts: false,
+            adders: 1,
         }
     }
 
@@ -156,6 +160,16 @@ impl EngineBuild {
         self.pins.len()
     }
 
+    /// The number of time slots of a tick.
+    pub fn time_slots(&self) -> usize {
+        time_slots(self.axes(), self.adders)
+    }
+
+    /// The first clock of a tick that belongs to the time slot of an axis.
+    pub const fn first_clock_of(&self, axis: usize) -> u32 {
+        (axis / self.adders) as u32 * TIME_SLOT_CLOCKS
+    }
+
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
@@ -165,7 +179,10 @@ impl EngineBuild {
         if !(1..=MAX_AXES).contains(&axes) {
             return Err(EngineError::Axes(axes));
         }
-        check_schedule(axes, &self.timebase)?;
+        if !adder_counts(axes).any(|adders| adders == self.adders) {
+            return Err(EngineError::Adders(Adders { adders: self.adders, axes }));
+        }
+        check_schedule_of_adders(axes, self.adders, &self.timebase)?;
         check_pins(&self.pins)?;
         if !(2..=MAX_ROUND).contains(&guard.round) || !guard.round.is_power_of_two() {
             return Err(EngineError::Round(guard.round));
@@ -187,6 +204,9 @@ impl EngineBuild {
             }
         }
         self.check_latches()?;
+        if self.adders > 1 && self.has_several_latches() {
+            return Err(EngineError::LatchesOfAdders(self.adders));
+        }
         if self.outputs.pwm_divider > MAX_PWM_DIVIDER {
             return Err(EngineError::PwmDivider(self.outputs.pwm_divider));
         }

@@ -2,8 +2,8 @@
 //! are possible.
 
 use super::{
-    MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LATCHES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND, MAX_ROUNDS,
-    MIN_CLOCKS_PER_PHASE, PWM_STEPS, TIME_SLOT_CLOCKS,
+    Adders, MAX_AXES, MAX_DEBOUNCE_SAMPLES, MAX_LATCHES, MAX_LOOKS, MAX_PWM_DIVIDER, MAX_ROUND,
+    MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, PWM_STEPS,
 };
 use crate::build::MAX_CLOCKS;
 use alloc::borrow::ToOwned;
@@ -17,14 +17,21 @@ pub enum EngineError {
     /// The number of axes is 0 or more than [`MAX_AXES`].
     #[error("{0} axes: an engine has 1 to {MAX_AXES}")]
     Axes(usize),
+    /// No engine of so many axes has this number of adders.
+    #[error("{} adders: an engine of {} has {}", .0.adders, .0.axes_said(), .0.possible())]
+    Adders(Adders),
+    /// An engine with several adders cannot have several latches.
+    #[error("several latches on {0} adders: an engine with several adders has at most one latch")]
+    LatchesOfAdders(usize),
     /// A tick has too few clocks for the time slots of all axes.
     #[error(
-        "{axes} axes need {TIME_SLOT_CLOCKS} clocks each and two to close the tick, {needed} in all, but a tick of {tick_ns} ns \
-         at {clock_hz} Hz has {clocks}: {}, {} or fewer axes would do", tick_said(.least_tick_ns), clock_said(.least_hz)
+        "{}, {needed} in all, but a tick of {tick_ns} ns \
+         at {clock_hz} Hz has {clocks}: {}, {} or {} would do", adders.need(), tick_said(.least_tick_ns),
+        clock_said(.least_hz), adders.way_out()
     )]
     Schedule {
-        /// Number of axes.
-        axes: usize,
+        /// Numbers of axes and of adders.
+        adders: Adders,
         /// Clocks that their time slots need.
         needed: u32,
         /// Clocks that the tick has.

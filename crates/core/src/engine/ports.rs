@@ -1,9 +1,13 @@
 //! The ports of the engine, and which field of [`EngineInputs`] or [`EngineOutputs`] is at each.
 
-use super::{CAUSE_BITS, EngineBuild, EngineInputs, EngineOutputs, STATE_ITEM_BITS};
+use super::{
+    CAUSE_BITS, EngineBuild, EngineInputs, EngineOutputs, STATE_AXIS_BITS, STATE_ITEM_BITS,
+    StateWord, StateWords,
+};
 use crate::ports::{CLOCK, Direction, Peer, Port, Width, input, output};
 
 const BIT: Width = Width::Bits(1);
+const PER_ADDER: Width = Width::PerAdder(1);
 const AXIS: Width = Width::Bits(3);
 const WORD: Width = Width::Bits(32);
 
@@ -39,23 +43,24 @@ pub const ENGINE_PORTS: &[Port] = &[
     input("inputs_0", Width::Axes, Peer::Pins, "bit 0 the probe, general inputs, asynchronous"),
     input("inputs_1", Width::Axes, Peer::Pins, "bit 0 the interlock, general inputs, asynchronous"),
     input("latch", BIT, Peer::Pins, "the pin of the latch, asynchronous"),
-    output("state_valid", BIT, Peer::Host, "the engine outputs a word of state in this clock"),
+    output("state_valid", PER_ADDER, Peer::Host, "a word of state is output in this clock"),
     output(
         "state_page",
-        Width::Bits(2),
+        Width::PerAdder(2),
         Peer::Host,
         "its page: 0 hit of a seek, 1 live, 2 snapshot, 3 latch",
     )
     .valid_with("state_valid"),
-    output("state_axis", AXIS, Peer::Host, "its axis").valid_with("state_valid"),
+    output("state_axis", Width::PerAdder(STATE_AXIS_BITS), Peer::Host, "its axis")
+        .valid_with("state_valid"),
     output(
         "state_item",
-        Width::Bits(STATE_ITEM_BITS),
+        Width::PerAdder(STATE_ITEM_BITS),
         Peer::Host,
         "0 discarded, 1 left, 2 switch, 3 ticks, 4 5 P, 6 position, 7 status",
     )
     .valid_with("state_valid"),
-    output("state", WORD, Peer::Host, "the word; of the status bits 15 to 0 only")
+    output("state", Width::PerAdder(32), Peer::Host, "the word; of the status bits 15 to 0 only")
         .valid_with("state_valid"),
     output("refreshed", BIT, Peer::Host, "all live words of this tick have been output"),
     output(
@@ -176,7 +181,7 @@ impl EngineInputs {
 
 impl EngineOutputs {
     /// Name and value of each output in the order of [`ports_of`]. `None` is a value that is
-    /// not valid in this cycle.
+    /// not valid in this cycle. Of the words of state it gives that of the first adder.
     pub fn at_ports(&self) -> [(&'static str, Option<u64>); 34] {
         let Self {
             put_ready,
@@ -199,11 +204,12 @@ impl EngineOutputs {
             latch_armed,
             latch_edges,
             latch_records,
-            state,
+            state: words,
             refreshed,
             room,
             started,
         } = *self;
+        let state = words.of_adder(0);
         [
             ("put_ready", Some(put_ready.into())),
             ("start_ready", Some(start_ready.into())),
@@ -252,11 +258,14 @@ impl EngineOutputs {
     /// These outputs as benches print them: without the words of state.
     #[must_use]
     pub const fn recorded(self) -> Self {
-        Self { state: None, refreshed: false, ..self }
+        Self { state: StateWords::NONE, refreshed: false, ..self }
     }
 
     /// The checksum of all words of state up to this cycle, `sum` being that of the cycles before.
     /// A cycle without a word and without `refreshed` does not change it.
+    ///
+    /// With several adders the words of a cycle follow each other in the order of the adders;
+    /// `refreshed` counts with the first of these steps.
     ///
     /// ```text
     /// sum <= rotate_left(sum, 7) ^ (record 2 | refreshed 1 | page 2 | item 3 | axis 3 | word 32)
@@ -265,11 +274,13 @@ impl EngineOutputs {
         if self.state.is_none() && !self.refreshed {
             return sum;
         }
-        let word = self.state.map_or(0, |state| {
+        let bits = |state: StateWord| {
             let (record, address) = (u64::from(state.record), u64::from(state.address()));
             record << 41 | address << 32 | u64::from(state.word)
-        });
-        sum.rotate_left(7) ^ (u64::from(self.refreshed) << 40 | word)
+        };
+        let mut words = self.state.iter().map(bits);
+        let first = u64::from(self.refreshed) << 40 | words.next().unwrap_or(0);
+        words.fold(sum.rotate_left(7) ^ first, |sum, word| sum.rotate_left(7) ^ word)
     }
 }
 

@@ -8,6 +8,8 @@
 //!
 //! "What the host reads" in docs/clock-by-clock.md says in which clock each word is output.
 
+use super::MAX_AXES;
+
 /// Number of bits of an axis at the port `state_axis`, and of the axis in a word's address.
 pub const STATE_AXIS_BITS: u32 = 3;
 
@@ -135,6 +137,43 @@ impl AxisStatus {
     }
 }
 
+/// The words of state that the engine outputs in one clock: at most one of the axes of each adder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StateWords([Option<StateWord>; MAX_AXES]);
+
+impl StateWords {
+    /// No word.
+    pub const NONE: Self = Self([None; MAX_AXES]);
+
+    /// The words of the adders; `of` gives that of an adder, whose number is less than [`MAX_AXES`].
+    pub fn of(of: impl FnMut(usize) -> Option<StateWord>) -> Self {
+        Self(core::array::from_fn(of))
+    }
+
+    /// The word of this adder.
+    pub fn of_adder(&self, adder: usize) -> Option<StateWord> {
+        self.0.get(adder).copied().flatten()
+    }
+
+    /// True if no word is output.
+    pub fn is_none(&self) -> bool {
+        self.0.iter().all(Option::is_none)
+    }
+
+    /// The words, in the order of the adders.
+    pub fn iter(&self) -> impl Iterator<Item = StateWord> + use<> {
+        self.0.into_iter().flatten()
+    }
+}
+
+impl IntoIterator for StateWords {
+    type Item = StateWord;
+    type IntoIter = core::iter::Flatten<core::array::IntoIter<Option<StateWord>, MAX_AXES>>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter().flatten()
+    }
+}
+
 impl StateWord {
     /// Address of the register from which a host reads the word.
     pub const fn address(self) -> u8 {
@@ -160,7 +199,7 @@ pub const fn commanded_steps(position: i32, status: AxisStatus) -> i32 {
     position.wrapping_add(status.on_way as i32)
 }
 
-const _: () = assert!(super::MAX_AXES <= 1 << STATE_AXIS_BITS && super::QUEUE_DEPTHS[2] < 32);
+const _: () = assert!(MAX_AXES <= 1 << STATE_AXIS_BITS && super::QUEUE_DEPTHS[2] < 32);
 
 #[cfg(test)]
 mod tests {

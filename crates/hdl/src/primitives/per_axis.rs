@@ -59,3 +59,57 @@ impl<T: Block, const N: usize> Block for PerAxis<T, N> {
         self.0.accept(name, probe);
     }
 }
+
+/// N elements, one for each adder, on the heap: a part of a large engine exists several times, and the
+/// stack of a thread is small. Kernels and Verilog see an array. Its code is the same for every N.
+#[derive(Debug)]
+pub struct PerLane<T, const N: usize>(Vec<T>);
+
+impl<T, const N: usize> PerLane<T, N> {
+    /// Makes each element by calling `make` with its number, 0 to N - 1.
+    pub fn from_fn(make: impl FnMut(usize) -> T) -> Self {
+        Self((0..N).map(make).collect())
+    }
+}
+
+impl<T: Default, const N: usize> Default for PerLane<T, N> {
+    fn default() -> Self {
+        Self::from_fn(|_| T::default())
+    }
+}
+
+impl<T, const N: usize> Deref for PerLane<T, N> {
+    type Target = Vec<T>;
+    #[inline]
+    fn deref(&self) -> &Vec<T> {
+        &self.0
+    }
+}
+
+impl<T, const N: usize> DerefMut for PerLane<T, N> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut Vec<T> {
+        &mut self.0
+    }
+}
+
+impl<T: Logic, const N: usize> Logic for PerLane<T, N> {
+    fn update(&mut self) {}
+}
+
+impl<T: Block, const N: usize> Block for PerLane<T, N> {
+    fn connect_all(&mut self) {
+        self.0.connect_all();
+    }
+    #[inline]
+    fn update_all(&mut self) {
+        self.0.update_all();
+    }
+    #[inline]
+    fn has_changed(&self) -> bool {
+        self.0.has_changed()
+    }
+    fn accept(&self, name: &str, probe: &mut dyn Probe) {
+        self.0.accept(name, probe);
+    }
+}

@@ -33,7 +33,7 @@ use crate::parts::shaper;
 use axis_model::{AxisModel, Queued, Tick};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
-    COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put,
+    COMMIT, CUT_WORD, Cause, Commit, EngineInputs, EngineOutputs, PUT_BEAT, Put, StateWords,
 };
 use cut::Cut;
 use guard::{Stop, Supervisor};
@@ -42,6 +42,7 @@ pub(crate) use observed::Ending;
 use outputs::OutputState;
 use reset::Reset;
 use seek::Seek;
+use std::ops::Range;
 use std::sync::Arc;
 use strobe::Decision;
 use switches::LAST_BEAT;
@@ -155,12 +156,9 @@ impl Motion {
             latch_armed: self.latch.armed(),
             latch_edges: self.latch.edges(),
             latch_records: self.latch.records(),
-            state: None,
+            state: StateWords::NONE,
             refreshed: false,
-            room: self
-                .time_slot_at(PUT_BEAT)
-                .filter(|axis| *axis == put_axis)
-                .map(|axis| self.axis_models[axis].room()),
+            room: self.is_at(PUT_BEAT, put_axis).then(|| self.axis_models[put_axis].room()),
             // Without an armed start there is no decision, and no need for the tick.
             started: strobe
                 && self.armed.is_some()
@@ -275,16 +273,21 @@ impl Motion {
     fn takes(&self, axis: usize, names: bool) -> bool {
         self.axis_models.get(axis).is_none_or(|axis_model| {
             if names {
-                self.time_slot_at(LAST_BEAT) == Some(axis) && !self.cut.checks
+                self.is_at(LAST_BEAT, axis) && !self.cut.checks
             } else {
-                self.time_slot_at(PUT_BEAT) == Some(axis) && axis_model.room() > 0
+                self.is_at(PUT_BEAT, axis) && axis_model.room() > 0
             }
         })
     }
 
-    /// The axis whose time slot it is, if this clock is the given beat of the time slot.
-    fn time_slot_at(&self, beat: u32) -> Option<usize> {
-        self.time_slot().filter(|(_, now)| *now == beat).map(|(axis, _)| axis)
+    /// The axes whose time slot it is, if this clock is the given beat of the time slot; else none.
+    fn axes_at(&self, beat: u32) -> Range<usize> {
+        self.time_slot().filter(|(_, now)| *now == beat).map_or(0..0, |(axes, _)| axes)
+    }
+
+    /// True if this clock is the given beat of the time slot of an axis.
+    fn is_at(&self, beat: u32, axis: usize) -> bool {
+        self.axes_at(beat).contains(&axis)
     }
 
     /// Takes a word. Returns false if it is not the next word of its axis' segment.

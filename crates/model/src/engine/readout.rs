@@ -19,9 +19,10 @@ use super::motion::{Ending, Motion};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{
     AxisStatus, EngineInputs, EngineOutputs, SWITCH_LEVEL, SWITCH_STATE, StateItem, StatePage,
-    StateWord, TIME_SLOT_CLOCKS,
+    StateWord, StateWords, TIME_SLOT_CLOCKS,
 };
 use counts::Counts;
+use std::ops::Range;
 
 /// The beat of a time slot in which the level of a switch is read, and the one in which it is
 /// output.
@@ -43,28 +44,40 @@ pub struct Readout {
     takes: bool,
     /// The axes whose state at the hit of a seek is to be output, one bit each.
     captures: u8,
-    /// The level of the switch of this time slot, from the beat in which it is read to the one in
-    /// which it is output; else false.
-    level: bool,
+    /// The levels of the switches of this time slot, one bit for each adder, from the beat in which
+    /// they are read to the one in which they are output; else 0.
+    levels: u8,
+    /// Number of adders.
+    adders: usize,
 }
 
 impl Readout {
     /// The readout at configuration.
     pub(crate) fn new(build: &EngineBuild) -> Self {
         let counts = vec![Counts::default(); build.axes()];
-        Self { counts, ticks: 0, asked: false, takes: false, captures: 0, level: false }
+        let adders = build.adders;
+        Self { counts, ticks: 0, asked: false, takes: false, captures: 0, levels: 0, adders }
     }
 
     /// The outputs of an engine with this motion in this cycle.
     pub(crate) fn outputs(&self, motion: &Motion, inputs: &EngineInputs) -> EngineOutputs {
-        let slot = motion.time_slot();
         let last = self.counts.len() - 1;
-        EngineOutputs {
-            state: slot.and_then(|(axis, beat)| match beat {
-                SWITCH_BEAT => switch_word(motion, axis, motion.row()?, self.level),
+        let slot = motion.time_slot();
+        let word = |adder| {
+            let (axis, beat) = slot
+                .as_ref()
+                .and_then(|(axes, beat)| axes.clone().nth(adder).map(|axis| (axis, *beat)))?;
+            match beat {
+                SWITCH_BEAT => {
+                    switch_word(motion, axis, motion.row()?, self.levels >> adder & 1 == 1)
+                }
                 _ => self.word(motion, axis, beat),
-            }),
-            refreshed: slot == Some((last, LAST_BEAT))
+            }
+        };
+        let ends = |(axes, beat): &(Range<usize>, u32)| axes.contains(&last) && *beat == LAST_BEAT;
+        EngineOutputs {
+            state: StateWords::of(word),
+            refreshed: slot.as_ref().is_some_and(ends)
                 && self.page(motion, last) == StatePage::Live,
             ..motion.outputs(inputs)
         }
@@ -123,7 +136,7 @@ impl Readout {
         (0..self.counts.len()).flat_map(move |axis| {
             (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {
                 let word = self.word(motion, axis, beat)?;
-                Some((axis as u32 * TIME_SLOT_CLOCKS + beat, word))
+                Some((motion.build().first_clock_of(axis) + beat, word))
             })
         })
     }
@@ -131,14 +144,14 @@ impl Readout {
     /// Observes the motion before a clock with these inputs. The result is for
     /// [`Readout::clock`].
     pub(crate) fn observe(&mut self, motion: &Motion, inputs: &EngineInputs) -> Option<Ending> {
-        if let Some((axis, beat)) = motion.time_slot() {
-            let runs = motion.axis_state(axis).left.is_some();
-            self.counts[axis].compare(beat, motion.shaper(axis), runs);
+        if let Some((axes, beat)) = motion.time_slot() {
+            for axis in axes.clone() {
+                let runs = motion.axis_state(axis).left.is_some();
+                self.counts[axis].compare(beat, motion.shaper(axis), runs);
+            }
             match beat {
-                LOOK_BEAT => {
-                    self.level = motion.row().is_some_and(|row| motion.pin(inputs, axis, row));
-                }
-                SWITCH_BEAT => self.level = false,
+                LOOK_BEAT => self.levels = levels(motion, inputs, axes),
+                SWITCH_BEAT => self.levels = 0,
                 _ => {}
             }
         }
@@ -171,6 +184,15 @@ impl Readout {
         self.takes = asked && !taken;
         self.asked = inputs.snapshot || (asked && taken);
     }
+}
+
+/// The levels of the switches of these axes in the row of this tick, the first axis lowest; 0 if the
+/// tick has no row.
+fn levels(motion: &Motion, inputs: &EngineInputs, axes: Range<usize>) -> u8 {
+    let Some(row) = motion.row() else { return 0 };
+    (0..)
+        .zip(axes)
+        .fold(0, |bits, (adder, axis)| bits | u8::from(motion.pin(inputs, axis, row)) << adder)
 }
 
 /// The word of a switch, if it is output: the row, and the level that was read.

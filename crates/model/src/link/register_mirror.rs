@@ -2,7 +2,7 @@
 //! state that the engine outputs the last value.
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{STATUS_BITS, StateItem, StateWord};
+use carrystep_core::engine::{STATUS_BITS, StateItem, StateWord, StateWords};
 use carrystep_core::link::{self, BuildId};
 
 /// Number of words in the memory.
@@ -35,9 +35,9 @@ impl RegisterMirror {
     }
 
     /// Reads the word at this address, and then stores the word that the engine outputs.
-    pub(super) fn clock(&mut self, address: u8, state: Option<StateWord>) {
+    pub(super) fn clock(&mut self, address: u8, states: StateWords) {
         self.read = self.word(address);
-        if let Some(state) = state {
+        for state in states {
             self.store(state);
         }
     }

@@ -26,7 +26,7 @@ pub struct AxisWords {
 pub fn of_tick(tick: &[Cycle], axes: usize) -> Vec<AxisWords> {
     let mut all = Vec::new();
     for axis in 0..axes {
-        let beat = |beat: usize| tick[13 * axis + beat].1.state;
+        let beat = |beat: usize| tick[13 * axis + beat].1.state.of_adder(0);
         let word = |at: usize, item| {
             let word = beat(at).unwrap_or_else(|| panic!("axis {axis}: no word in beat {at}"));
             assert_eq!((word.axis, word.item), (axis as u8, item));

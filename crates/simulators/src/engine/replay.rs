@@ -38,6 +38,8 @@ pub struct Recording {
     pub kept: Kept,
     /// Whether the engine has several latches, and their ports.
     several: bool,
+    /// Number of adders of the engine.
+    adders: usize,
 }
 
 impl Recording {
@@ -64,6 +66,7 @@ impl Recording {
             clocks: 0,
             kept: Kept::default(),
             several: build.has_several_latches(),
+            adders: build.adders,
         };
         let settle = settle(build);
         let mut quiet = 0;
@@ -241,7 +244,7 @@ fn parsed(line: &str) -> Option<(u64, u128, u64)> {
 
 fn icarus(folder: &Path, verilog: &str, recording: &Recording) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
-    let bench = bench::icarus(recording.several)?;
+    let bench = bench::icarus(recording.several, recording.adders)?;
     tool::put(folder, &[("core.v", verilog), ("bench.v", &bench)])?;
     let parameter = format!("-Pengine_bench.AXES={}", recording.axes());
     let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
@@ -255,6 +258,6 @@ fn icarus(folder: &Path, verilog: &str, recording: &Recording) -> Result<Command
 fn verilated(verilog: &str, recording: &Recording) -> Result<PathBuf, LevelError> {
     let flags = format!("-DAXES={}", recording.axes());
     let options: &[&str] = &["-CFLAGS", &flags];
-    let bench = &bench::verilator(recording.several)?;
+    let bench = &bench::verilator(recording.several, recording.adders)?;
     Simulation { name: "engine", top: "carrystep_engine", bench, options }.compiled(verilog)
 }

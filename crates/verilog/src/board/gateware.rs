@@ -51,6 +51,7 @@ impl<'a> Gateware<'a> {
         let read = Machine::from_source(&machine)?;
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
+        board.has_adders(build.adders)?;
         board.carries(build.axes(), build.guard.limits)?;
         board.connects(&build, matches!(line, LineKind::Uart(_)))?;
         if let LineKind::Uart(uart) = line {

@@ -36,7 +36,8 @@ impl EveryClock {
         while self.cycle < end {
             let inputs = self.link.outputs().engine.with_pins(&self.pins);
             let engine = self.engine.outputs(&inputs);
-            self.kept += u64::from(engine.state.is_some_and(|word| word.page != StatePage::Live));
+            self.kept +=
+                engine.state.iter().filter(|word| word.page != StatePage::Live).count() as u64;
             let Driven { rx, spi, .. } = self.wire.drive(self.cycle);
             let axes = self.engine.motion().build().axes();
             let before: Vec<_> = (0..axes).map(|axis| *self.engine.shaper(axis)).collect();

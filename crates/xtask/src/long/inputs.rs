@@ -58,6 +58,7 @@ const GATEWARE: &[&str] = &[
 pub const INPUTS: &[Inputs] = &[
     ("lockstep", LOCKSTEP),
     ("rust-hdl", LOCKSTEP),
+    ("adders", LOCKSTEP),
     (
         "repeats",
         &[

@@ -2,6 +2,7 @@
 
 use super::Motion;
 use carrystep_core::engine::TIME_SLOT_CLOCKS;
+use std::ops::Range;
 
 /// The state of an axis after the last strobe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,11 +29,13 @@ pub(crate) struct Ending {
 }
 
 impl Motion {
-    /// The axis whose time slot it is, and the beat.
-    pub(crate) fn time_slot(&self) -> Option<(usize, u32)> {
-        let (axis, beat) =
+    /// The axes whose time slot it is, one of each adder, and the beat.
+    pub(crate) fn time_slot(&self) -> Option<(Range<usize>, u32)> {
+        let (slot, beat) =
             ((self.clock / TIME_SLOT_CLOCKS) as usize, self.clock % TIME_SLOT_CLOCKS);
-        (self.time_slots && axis < self.axis_models.len()).then_some((axis, beat))
+        let first = slot * self.build.adders;
+        (self.time_slots && first < self.axis_models.len())
+            .then(|| (first..first + self.build.adders, beat))
     }
 
     /// The state of an axis, which must exist.

@@ -14,7 +14,7 @@ use super::switches::{INTERLOCK_ROW, SAMPLE_BEAT, Switch};
 use super::{Motion, bits};
 use crate::parts::cubic::Cubic;
 use crate::parts::moving::Moving;
-use carrystep_core::engine::{EngineInputs, LimitWiring, SWITCH_ROWS, TIME_SLOT_CLOCKS};
+use carrystep_core::engine::{EngineInputs, LimitWiring, SWITCH_ROWS};
 
 /// Strobes before the first event, and ticks before the first tick with an event that comes before
 /// its strobe.
@@ -145,7 +145,7 @@ impl Motion {
     fn plain_samples(&self, inputs: &EngineInputs) -> Plain {
         let now = self.row();
         let is_resampled = |axis| {
-            self.clock > sample_clock(axis)
+            self.clock > self.build.first_clock_of(axis) + SAMPLE_BEAT
                 && now.is_some_and(|row| self.pins[axis] != self.pin(inputs, axis, row))
         };
         if (0..self.axis_models.len()).any(is_resampled) {
@@ -205,7 +205,7 @@ impl Motion {
                 let pin = self.pin(inputs, axis, row);
                 self.axis_models[axis].switches[usize::from(row)].pass(pin, samples);
             }
-            let at = u64::from(sample_clock(axis));
+            let at = u64::from(self.build.first_clock_of(axis) + SAMPLE_BEAT);
             let seen = end.checked_sub(at + 1).map(|since| since / per_tick);
             if let Some(tick) = seen.filter(|tick| tick * per_tick + at >= begin) {
                 let tick_of_round =
@@ -238,11 +238,6 @@ impl Motion {
             .zip(moved)
             .for_each(|(axis_model, moved)| axis_model.moved(moved, ramp, strobes));
     }
-}
-
-/// The clock of a tick in which an axis samples a switch.
-const fn sample_clock(axis: usize) -> u32 {
-    axis as u32 * TIME_SLOT_CLOCKS + SAMPLE_BEAT
 }
 
 impl AxisModel {

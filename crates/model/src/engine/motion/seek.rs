@@ -57,8 +57,11 @@ impl Motion {
         if strobe {
             self.end_tick_of_seek();
         }
-        if let Some(axis) = self.time_slot_at(LAST_BEAT) {
-            self.end_slot_of_seek(axis);
+        // The axes of several adders end their time slots together: a hit of one of them is no
+        // hit before the others end theirs.
+        let released = self.seek.released;
+        for axis in self.axes_at(LAST_BEAT) {
+            self.end_slot_of_seek(axis, released);
         }
         if let Some(mask) = inputs.seek {
             for (axis, axis_model) in self.axis_models.iter_mut().enumerate() {
@@ -69,8 +72,8 @@ impl Motion {
         self.seek.source = inputs.seek_source.unwrap_or(self.seek.source);
     }
 
-    /// The last beat of the time slot of an axis.
-    fn end_slot_of_seek(&mut self, axis: usize) {
+    /// The last beat of the time slot of an axis, in a clock that began with this `released`.
+    fn end_slot_of_seek(&mut self, axis: usize, released: bool) {
         let sample = self.sample_of(axis);
         let awaited = sample.is_some_and(|sample| self.is_awaited(axis, sample.row));
         let axis_model = &self.axis_models[axis];
@@ -89,7 +92,7 @@ impl Motion {
         let rests = ramps && next.running.is_none();
         self.axis_models[axis].seek = AxisSeek {
             waits: waits && !hits,
-            slows: hits || (slows && !(rests && self.seek.released)),
+            slows: hits || (slows && !(rests && released)),
             ramps,
             hits,
             is_excused: found == Some(Cause::Limit) && is_source.is_some() && (waits || slows),

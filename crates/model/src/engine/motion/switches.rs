@@ -115,9 +115,9 @@ impl Motion {
         self.axis_models[axis].switches[usize::from(row)].active
     }
 
-    /// Samples the pin of the switch whose time slot it is.
+    /// Samples the pins of the switches whose time slot it is.
     pub(super) fn sample(&mut self, inputs: &EngineInputs) {
-        if let Some(axis) = self.time_slot_at(SAMPLE_BEAT) {
+        for axis in self.axes_at(SAMPLE_BEAT) {
             self.pins[axis] = self.row().is_some_and(|row| self.pin(inputs, axis, row));
         }
     }
@@ -130,10 +130,7 @@ impl Motion {
     /// Samples the state of the interlock in the last beat of its time slot.
     pub(super) fn watch_interlock(&mut self) {
         let guard = &self.build.guard;
-        if self.time_slot_at(LAST_BEAT) == Some(0)
-            && guard.has_interlock()
-            && self.row() == Some(INTERLOCK_ROW)
-        {
+        if self.is_at(LAST_BEAT, 0) && guard.has_interlock() && self.row() == Some(INTERLOCK_ROW) {
             let switch = self.axis_models[0].switches[usize::from(INTERLOCK_ROW)];
             self.interlock = switch.after(self.pins[0], guard.debounce);
         }

@@ -12,7 +12,7 @@
 
 use super::Motion;
 use super::switches::LAST_BEAT;
-use carrystep_core::engine::{COMMIT, CUT_WORD, MAX_AXES, PUT_BEAT, Put, TIME_SLOT_CLOCKS};
+use carrystep_core::engine::{COMMIT, CUT_WORD, MAX_AXES, PUT_BEAT, Put};
 
 impl Motion {
     /// Returns how many clocks, at most `most`, may be skipped before a word causes an event, and
@@ -43,7 +43,7 @@ impl Motion {
                 return (end, taken);
             }
             let beat = if names { LAST_BEAT } else { PUT_BEAT };
-            let beat = u64::from(u32::from(put.axis) * TIME_SLOT_CLOCKS + beat);
+            let beat = u64::from(self.build.first_clock_of(axis) + beat);
             let at = from + (beat + per_tick - (begin + from) % per_tick) % per_tick;
             if at >= end {
                 return (end, taken);

@@ -4,7 +4,7 @@
 //! runs goes on running.
 
 use super::counts::{DISCARDED_BEAT, POSITION_BEAT};
-use super::{LOOK_BEAT, Readout, SWITCH_BEAT, switch_word};
+use super::{LOOK_BEAT, Readout, SWITCH_BEAT, levels, switch_word};
 use crate::engine::Motion;
 use crate::parts::shaper::ShaperState;
 use carrystep_core::engine::{EngineInputs, StateWord, TIME_SLOT_CLOCKS};
@@ -28,13 +28,15 @@ impl Readout {
     /// Passes the counts of one axis through clocks in which the position and the discarded steps
     /// of its shaper are constant.
     pub(crate) fn follow(&mut self, axis: usize, shaper: &ShaperState, runs: bool, span: Span) {
+        let adders = self.adders;
         let counts = &mut self.counts[axis];
         let strobes = span.strobes();
         if strobes > 0 {
             counts.commit();
         }
         for beat in [DISCARDED_BEAT, POSITION_BEAT] {
-            let compares = axis as u64 * u64::from(TIME_SLOT_CLOCKS) + u64::from(beat);
+            let slot = (axis / adders) as u64;
+            let compares = slot * u64::from(TIME_SLOT_CLOCKS) + u64::from(beat);
             let compared = span.clock > compares;
             // The first strobe has committed what had been compared before.
             let ticks = strobes.saturating_sub(compared.into());
@@ -61,17 +63,15 @@ impl Readout {
         }
     }
 
-    /// Advances the level of a switch that is read in one clock and output in a later one by
+    /// Advances the levels of switches that are read in one clock and output in a later one by
     /// this many clocks. `motion` is the motion after them.
     pub(crate) fn pass_level(&mut self, motion: &Motion, inputs: &EngineInputs, clocks: u64) {
-        self.level = match motion.time_slot() {
+        self.levels = match motion.time_slot() {
             Some((_, beat @ LEVEL_FROM..=SWITCH_BEAT)) if clocks < u64::from(beat - LOOK_BEAT) => {
-                self.level
+                self.levels
             }
-            Some((axis, LEVEL_FROM..=SWITCH_BEAT)) => {
-                motion.row().is_some_and(|row| motion.pin(inputs, axis, row))
-            }
-            _ => false,
+            Some((axes, LEVEL_FROM..=SWITCH_BEAT)) => levels(motion, inputs, axes),
+            _ => 0,
         };
     }
 
@@ -80,7 +80,7 @@ impl Readout {
         Begin {
             clock: motion.clock_of_tick().into(),
             tick_of_round: motion.tick_of_round(),
-            level: self.level,
+            levels: self.levels,
         }
     }
 }
@@ -93,7 +93,7 @@ const LEVEL_FROM: u32 = LOOK_BEAT + 1;
 pub(crate) struct Begin {
     clock: u64,
     tick_of_round: u32,
-    level: bool,
+    levels: u8,
 }
 
 impl Begin {
@@ -112,7 +112,7 @@ impl Begin {
             // Ticks are counted from the one of the beginning.
             let first = u64::from((u32::from(row) + round - self.tick_of_round) % round);
             for axis in 0..motion.build().axes() {
-                let at = axis as u64 * u64::from(TIME_SLOT_CLOCKS) + u64::from(SWITCH_BEAT);
+                let at = u64::from(motion.build().first_clock_of(axis) + SWITCH_BEAT);
                 let Some(clocks) = (self.clock + clocks).checked_sub(at + 1) else { break };
                 let Some(rounds) = (clocks / per_tick).checked_sub(first) else { break };
                 let tick = first + rounds / u64::from(round) * u64::from(round);
@@ -120,7 +120,12 @@ impl Begin {
                     continue;
                 }
                 let is_read = tick == 0 && at < self.clock + u64::from(SWITCH_BEAT - LOOK_BEAT);
-                let level = if is_read { self.level } else { motion.pin(inputs, axis, row) };
+                let adder = axis % motion.build().adders;
+                let level = if is_read {
+                    self.levels >> adder & 1 == 1
+                } else {
+                    motion.pin(inputs, axis, row)
+                };
                 switch_word(motion, axis, row, level).into_iter().for_each(&mut *words);
             }
         }
