@@ -303,6 +303,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "resources",
             "boards",
             "equivalence",
+            "spartans",
             "timing",
             "self-test",
             "gowin",

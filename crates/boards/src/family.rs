@@ -12,10 +12,13 @@ use strum::IntoStaticStr;
 mod ecp5;
 mod gowin;
 mod ice40;
+mod pull_ups;
 mod spartan3;
 mod spartan3e;
 mod spartan6;
 mod spartan7;
+
+pub use pull_ups::{PullUp, PullUps};
 
 /// An FPGA family. Boards are listed in the order of these variants.
 #[derive(
@@ -69,6 +72,9 @@ pub trait FpgaFamily: Sync {
     fn writes_parts_of_words(&self) -> bool {
         true
     }
+
+    /// What its pins are until it is configured.
+    fn pull_ups(&self) -> PullUps;
 
     /// The family's clock manager. The DCM's ranges are intended to be those of the slowest speed
     /// grade in the low-frequency mode, but they were written from memory. Look them up in the data

@@ -39,19 +39,25 @@ impl<'a, D: Document> Named<'a, D> {
 
 /// The schema of a [`Named`] document.
 pub fn schema<D: Document>() -> Schema {
-    let mut schema =
-        SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<D>();
+    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    named(generator.into_root_schema_for::<D>(), D::NAME, D::VERSION)
+}
+
+/// Adds the name and the version to the schema of a document. It is not part of [`schema`], so that
+/// it is compiled once and not for each document.
+fn named(mut schema: Schema, name: &str, version: u32) -> Schema {
+    let title = format!("carrystep.{name}");
     let name = json_schema!({
         "description": "What document this is, and which version of it.",
         "type": "object",
         "properties": {
-            "name": { "const": format!("carrystep.{}", D::NAME) },
-            "version": { "const": D::VERSION },
+            "name": { "const": title },
+            "version": { "const": version },
         },
         "required": ["name", "version"],
     });
     let fields = schema.ensure_object();
-    fields.insert("title".to_owned(), format!("carrystep.{}", D::NAME).into());
+    fields.insert("title".to_owned(), title.into());
     if let Some(properties) =
         fields.entry("properties").or_insert_with(|| serde_json::json!({})).as_object_mut()
     {

@@ -321,27 +321,27 @@ impl<const N: usize, const S: usize> Engine<N, S> {
     /// Replaces the parts that depend on the build. An expression `Self { .. }` with
     /// `..Self::default()` would move each of the other fields by itself, for each N and S.
     fn set(&mut self, build: &EngineBuild) -> Result<(), HdlError> {
-        for (pulser, pins) in self.pulser.iter_mut().zip(&build.pins) {
-            *pulser = Pulser::new(pins)?;
-        }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
-        let slots = build.slots();
+        PartsOfAnySize {
+            pulsers: &mut *self.pulser,
+            store: &mut self.store,
+            queue: &mut self.queue,
+            cut_control: &mut self.cut_control,
+            readout: &mut self.readout,
+            output_control: &mut self.output_control,
+            pulse_width: &mut self.pulse_width,
+            edge_latch: &mut self.edge_latch,
+            supervisor: &mut self.supervisor,
+        }
+        .set(build)?;
         self.time_slot = TimeSlot::new();
-        self.store = Store::new(build.phase, &build.guard.stop, slots);
-        self.queue = Queue::new(slots, build.cuts);
-        self.cut_control = CutControl::new(build.cuts);
-        self.readout = Readout::new(slots);
         self.event_wheel = EventWheel::new(&build.timebase);
-        self.output_control = OutputControl::new(&build.outputs, slots);
-        self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
         self.switches = Switches::new(&build.guard);
         self.seek_control = SeekControl::new();
-        self.edge_latch = EdgeLatch::new(build.guard.latches.first());
         self.latch_bank = PerAxis::from_fn(|_| LatchBank::new(&build.guard));
         self.stops = Stops::new(&build.guard);
-        self.supervisor = Supervisor::new(&build.guard);
         self.axes = Parameter::new(N as u64);
         self.off_at_ramps = Parameter::of(&off_at_ramps.bits(0));
         self.outputs_off_at_ramps_out_of_range =
@@ -352,6 +352,37 @@ impl<const N: usize, const S: usize> Engine<N, S> {
         self.one_axis = PerAxis::from_fn(|axis| Parameter::new(1 << axis));
         self.rest_1 = Register::new(true);
         self.rest_2 = Register::new(true);
+        Ok(())
+    }
+}
+
+/// The parts of an engine whose types do not depend on N and S. What replaces them is compiled once.
+struct PartsOfAnySize<'a> {
+    pulsers: &'a mut [Pulser],
+    store: &'a mut Store,
+    queue: &'a mut Queue,
+    cut_control: &'a mut CutControl,
+    readout: &'a mut Readout,
+    output_control: &'a mut OutputControl,
+    pulse_width: &'a mut PulseWidth,
+    edge_latch: &'a mut EdgeLatch,
+    supervisor: &'a mut Supervisor,
+}
+
+impl PartsOfAnySize<'_> {
+    fn set(self, build: &EngineBuild) -> Result<(), HdlError> {
+        for (pulser, pins) in self.pulsers.iter_mut().zip(&build.pins) {
+            *pulser = Pulser::new(pins)?;
+        }
+        let slots = build.slots();
+        *self.store = Store::new(build.phase, &build.guard.stop, slots);
+        *self.queue = Queue::new(slots, build.cuts);
+        *self.cut_control = CutControl::new(build.cuts);
+        *self.readout = Readout::new(slots);
+        *self.output_control = OutputControl::new(&build.outputs, slots);
+        *self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
+        *self.edge_latch = EdgeLatch::new(build.guard.latches.first());
+        *self.supervisor = Supervisor::new(&build.guard);
         Ok(())
     }
 }

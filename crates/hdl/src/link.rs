@@ -165,12 +165,16 @@ pub struct Link<const N: usize, const S: usize> {
 impl<const N: usize, const S: usize> Link<N, S> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
-        Self {
-            processor: LinkProcessor::new(&image(build.has_several_latches())),
-            register_mirror: RegisterMirror::new(&formulas(build, id)),
-            latch_view: PerAxis::from_fn(|_| LatchView::new(&build.guard)),
-            ..Self::default()
-        }
+        let mut link = Self::default();
+        link.set(build, id);
+        link
+    }
+
+    /// Replaces the parts that depend on the build, for the same reason as `Engine::set`.
+    fn set(&mut self, build: &EngineBuild, id: BuildId) {
+        self.processor = LinkProcessor::new(&image(build.has_several_latches()));
+        self.register_mirror = RegisterMirror::new(&formulas(build, id));
+        self.latch_view = PerAxis::from_fn(|_| LatchView::new(&build.guard));
     }
 }
 

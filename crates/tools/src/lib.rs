@@ -12,6 +12,7 @@
 
 pub mod board;
 mod cells;
+pub mod clock_modules;
 pub mod doctor;
 pub mod ecp5;
 pub mod equivalence;

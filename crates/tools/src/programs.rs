@@ -88,6 +88,9 @@ pub const ICEBOX_VLOG: Tool = tool("icebox_vlog", None, "bitstreams read back", 
 /// Runs icebox_vlog, which is a Python script.
 pub const PYTHON: Tool =
     tool("python3", Some("--version"), "bitstreams read back", &["sudo apt-get install python3"]);
+/// Reads EDIF. It is a module of Python, and no program.
+pub const SPYDRNET: Tool =
+    tool("spydrnet", None, "EDIF of Spartans read twice", &["pip install spydrnet requests"]);
 /// Maps, places and routes for Spartan parts up to Spartan-6 (ISE).
 pub const XST: Tool = tool(
     "xst",

@@ -2,9 +2,11 @@
 //! of the vendor.
 
 mod edif;
+mod independent;
 mod models;
 
 pub use edif::from_edif;
+pub use independent::{Compared, Mismatch, ReadTwice};
 pub use models::simulated;
 
 use crate::SynthesisError;

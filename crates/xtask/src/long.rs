@@ -124,6 +124,12 @@ const RUNS: &[Run] = &[
         cargo: &["--test", "a_board_is_its_verilog"],
     },
     Run {
+        name: "spartans",
+        what: "[Spartans without their vendor](spartans.md): the EDIF of all boards read by spydrnet, cells, nets and the names of the constraints against our own reader; the clock modules of all boards on small models of the cells; planted faults",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["--test", "spartans_without_their_vendor"],
+    },
+    Run {
         name: "timing",
         what: "the iCEstick as placed and routed, simulated with [nextpnr's delays](timing.md): from bytes on the line to pulses of six axes, every pin in every clock, no input of a register within its set-up or hold time; violations above the greatest clock; every single check of a small design",
         asks: &[("CARRYSTEP_BOARDS", "all")],

@@ -13,6 +13,7 @@ mod testing;
 mod tools;
 
 use clap::{Parser, Subcommand};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Chores of the carrystep workspace.
@@ -85,6 +86,14 @@ enum Chore {
     Readme,
     /// Write the table of `docs/accuracy.md` anew from the checker's figures.
     Accuracy,
+    /// Check the clock modules of the Spartan boards on the vendor's own simulation models, which a
+    /// person has from ISE, Vivado or their public repository (`docs/spartans.md`).
+    Unisims {
+        /// The folder of ISE or Vivado, or the one that holds `glbl.v` and `unisims/`.
+        folder: PathBuf,
+        /// The boards; none: all Spartans.
+        boards: Vec<String>,
+    },
     /// Measure the engine on every part and write `hdl-out/resources.md` anew (some minutes).
     Resources,
 }
@@ -93,6 +102,17 @@ enum Chore {
 fn resources() -> shell::TaskResult {
     tools::install()?;
     shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-tools"])
+}
+
+/// Checks the clock modules of boards on the models in a folder.
+fn unisims(folder: &Path, boards: &[String]) -> shell::TaskResult {
+    // Programs run in the root of the workspace, not in the user's folder.
+    let folder =
+        std::path::absolute(folder).map_err(|error| shell::cannot("find", folder, &error))?;
+    let folder = folder.to_string_lossy();
+    let first = ["run", "--quiet", "--release", "-p", "carrystep-tools", "--", "unisims", &folder];
+    let boards: Vec<&str> = boards.iter().map(String::as_str).collect();
+    shell::run("cargo", &[&first[..], &boards].concat())
 }
 
 fn main() -> ExitCode {
@@ -114,6 +134,7 @@ fn main() -> ExitCode {
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
         Chore::Accuracy => accuracy::write(),
+        Chore::Unisims { folder, boards } => unisims(&folder, &boards),
         Chore::Resources => resources(),
     };
     match result {

@@ -41,6 +41,11 @@ const OF_PIP: &[(&str, &str)] = &[
     ("gowin_pack", "apycula==0.32"),
 ];
 
+/// Modules of Python of PyPI, each with its package and version. `requests` is needed by spydrnet,
+/// whose package does not say so.
+const MODULES_OF_PIP: &[(&str, &str)] =
+    &[("spydrnet", "spydrnet==1.13.0"), ("requests", "requests==2.34.2")];
+
 /// The same for the long run of senders alone, because these packages are large.
 const OF_SENDERS: &[(&str, &str)] = &[("node", "nodejs"), ("npm", "npm"), ("python3", "python3")];
 
@@ -61,7 +66,10 @@ const DAEMONS: &str = "/usr/sbin";
 /// # Errors
 /// A tool is missing and cannot be installed.
 pub fn install() -> TaskResult {
-    let lacks_pip = || OF_PIP.iter().any(|(program, _)| !shell::is_there(program));
+    let lacks_pip = || {
+        OF_PIP.iter().any(|(program, _)| !shell::is_there(program))
+            || MODULES_OF_PIP.iter().any(|(module, _)| lacks_of_pip(module))
+    };
     install_of(|| {
         let venv = Some(VENV).filter(|(module, _)| lacks_pip() && lacks(module));
         missing(NEEDED).into_iter().chain(venv.map(|(_, package)| package)).collect()
@@ -69,11 +77,12 @@ pub fn install() -> TaskResult {
     if lacks_pip() { install_of_pip() } else { Ok(()) }
 }
 
-/// Installs the programs of PyPI into the workspace's own folder, where nothing else of the system
+/// Installs the programs and modules of PyPI into the workspace's own folder, where nothing else of the system
 /// sees them.
 fn install_of_pip() -> TaskResult {
     let there = shell::folder_of_pip();
-    let mut packages: Vec<&str> = OF_PIP.iter().map(|&(_, package)| package).collect();
+    let all = OF_PIP.iter().chain(MODULES_OF_PIP);
+    let mut packages: Vec<&str> = all.map(|&(_, package)| package).collect();
     packages.dedup();
     let python = there.join("bin/python");
     let pip = ["-m", "pip", "install", "--quiet"];
@@ -86,7 +95,17 @@ fn install_of_pip() -> TaskResult {
 
 /// Whether Python has no such module.
 fn lacks(module: &str) -> bool {
-    shell::read("python3", &["-c", &format!("import {module}")]).is_err()
+    lacks_module("python3", module)
+}
+
+/// Whether neither the system's Python nor that of the workspace's own folder has a module.
+fn lacks_of_pip(module: &str) -> bool {
+    let python = shell::folder_of_pip().join("bin/python3");
+    lacks(module) && lacks_module(&python.to_string_lossy(), module)
+}
+
+fn lacks_module(python: &str, module: &str) -> bool {
+    shell::read(python, &["-c", &format!("import {module}")]).is_err()
 }
 
 /// Installs what the long run of senders needs beside that.

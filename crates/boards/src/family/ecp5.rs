@@ -1,6 +1,6 @@
 //! Lattice ECP5.
 
-use super::{FpgaFamily, Placer, PllInput};
+use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
@@ -27,6 +27,10 @@ impl FpgaFamily for Ecp5 {
 
     fn placer(&self) -> Option<Placer> {
         Some(Placer::Ecp5)
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::Unknown
     }
 
     fn clock_managers(&self) -> ClockManagers {

@@ -1,6 +1,6 @@
 //! Gowin LittleBee (GW1N) and Arora (GW2A), each with a memory in its package (R) or without.
 
-use super::{FpgaFamily, Placer, PllInput};
+use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
@@ -27,6 +27,10 @@ impl FpgaFamily for Gowin {
 
     fn placer(&self) -> Option<Placer> {
         Some(Placer::Gowin)
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::Unknown
     }
 
     fn clock_managers(&self) -> ClockManagers {

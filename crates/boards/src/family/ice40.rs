@@ -1,6 +1,6 @@
 //! Lattice iCE40 LP, HX and UltraPlus.
 
-use super::{FpgaFamily, Placer, PllInput};
+use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
@@ -31,6 +31,10 @@ impl FpgaFamily for Ice40 {
 
     fn cells(&self) -> &'static str {
         "logic cells"
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::Always
     }
 
     fn clock_managers(&self) -> ClockManagers {

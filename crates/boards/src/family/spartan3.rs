@@ -1,6 +1,6 @@
 //! Xilinx Spartan-3.
 
-use super::{FpgaFamily, PllInput};
+use super::{FpgaFamily, PllInput, PullUp, PullUps};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
 
@@ -21,6 +21,13 @@ impl FpgaFamily for Spartan3 {
 
     fn writes_parts_of_words(&self) -> bool {
         false
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::ChosenBy {
+            pin: "HSWAP_EN",
+            strongest: Some(PullUp { most_ua: 2350, source: "Xilinx DS099 v3.1, table 33" }),
+        }
     }
 
     fn clock_managers(&self) -> ClockManagers {

@@ -1,6 +1,6 @@
 //! Xilinx Spartan-3E.
 
-use super::{FpgaFamily, PllInput};
+use super::{FpgaFamily, PllInput, PullUp, PullUps};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
 
@@ -21,6 +21,13 @@ impl FpgaFamily for Spartan3e {
 
     fn writes_parts_of_words(&self) -> bool {
         false
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::ChosenBy {
+            pin: "HSWAP",
+            strongest: Some(PullUp { most_ua: 1240, source: "Xilinx DS312 v4.1, table 78" }),
+        }
     }
 
     fn clock_managers(&self) -> ClockManagers {

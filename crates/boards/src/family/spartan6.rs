@@ -1,6 +1,6 @@
 //! Xilinx Spartan-6.
 
-use super::{FpgaFamily, PllInput};
+use super::{FpgaFamily, PllInput, PullUp, PullUps};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
 
@@ -17,6 +17,13 @@ impl FpgaFamily for Spartan6 {
 
     fn yosys(&self) -> Option<&'static str> {
         Some("xc6s")
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        PullUps::ChosenBy {
+            pin: "HSWAPEN",
+            strongest: Some(PullUp { most_ua: 500, source: "Xilinx DS162 v3.0, table 4" }),
+        }
     }
 
     fn clock_managers(&self) -> ClockManagers {

@@ -1,6 +1,6 @@
 //! Xilinx Spartan-7.
 
-use super::{FpgaFamily, PllInput};
+use super::{FpgaFamily, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
@@ -27,6 +27,11 @@ impl FpgaFamily for Spartan7 {
 
     fn yosys(&self) -> Option<&'static str> {
         Some("xc7")
+    }
+
+    fn pull_ups(&self) -> PullUps {
+        // The strength is in DS189, which could not be read.
+        PullUps::ChosenBy { pin: "PUDC_B", strongest: None }
     }
 
     fn clock_managers(&self) -> ClockManagers {

@@ -126,63 +126,117 @@ pub struct Switches<const N: usize> {
 impl<const N: usize> Switches<N> {
     /// Makes the switches of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
+        let mut switches = Self::default();
+        switches.set(guard);
+        switches
+    }
+
+    /// Replaces the parameters, for the same reason as `Engine::set`.
+    fn set(&mut self, guard: &Guard) {
+        let all = Formula::<N>::number((1 << N) - 1);
+        let given = GivenSwitches::of(guard, (1 << N) - 1);
+        let [first, second] = &given.inputs;
+        self.rows = Parameter::of(&given.sampled);
+        self.pair = Parameter::of(&given.is_pair);
+        self.one_for_all = Parameter::of(&given.is_one);
+        self.has_inputs = Parameter::of(&given.has_inputs);
+        self.has_row_3 = Parameter::of(&second.has_row);
+        self.has_interlock = Parameter::of(&second.exist.bits(0));
+        self.levels = Parameter::of(&all.where_or(&given.limits_low, Formula::number(0)));
+        self.exist_0 = Parameter::of(&first.exist.bits(0));
+        self.exist_1 = Parameter::of(&second.exist.bits(0));
+        self.low_0 = Parameter::of(&first.low.bits(0));
+        self.low_1 = Parameter::of(&second.low.bits(0));
+        self.last_sample = Parameter::of(&given.last_sample);
+        let [limits, limits_low, samples, round] = given.refusals;
+        self.limits_out_of_range = limits;
+        self.limits_low_out_of_range = limits_low;
+        self.debounce_samples_out_of_range = samples;
+        let [[inputs_0, inputs_0_low], [inputs_1, inputs_1_low]] =
+            given.inputs.map(|row| row.refusals);
+        self.inputs_0_out_of_range = inputs_0;
+        self.inputs_1_out_of_range = inputs_1;
+        self.inputs_0_low_out_of_range = inputs_0_low;
+        self.inputs_1_low_out_of_range = inputs_1_low;
+        self.round_ticks_too_few_for_inputs = round;
+    }
+}
+
+/// What the parameters say of the switches. It does not depend on N, so that it is compiled once.
+struct GivenSwitches {
+    /// The rows that are sampled.
+    sampled: Formula<4>,
+    is_pair: Formula<1>,
+    is_one: Formula<1>,
+    has_inputs: Formula<1>,
+    limits_low: Formula<1>,
+    last_sample: Formula<7>,
+    inputs: [GivenRow; 2],
+    /// Of the limits, their level, the samples of the debouncing, and the round.
+    refusals: [ParameterRefusal; 4],
+}
+
+/// What the parameters say of a row of inputs.
+struct GivenRow {
+    exist: Given<32>,
+    low: Given<32>,
+    has_row: Formula<1>,
+    /// Of the inputs that exist, and of those that are active low.
+    refusals: [ParameterRefusal; 2],
+}
+
+impl GivenSwitches {
+    /// `all` has a 1 for each axis.
+    fn of(guard: &Guard, all: u64) -> Self {
         let number = |wiring| match wiring {
             Wiring::None => 0_u32,
             Wiring::Pair => 1,
             Wiring::Each => 2,
             Wiring::One => 3,
         };
-        let zero = || Formula::number(0);
         let wiring = LIMITS.of::<32>(number(guard.limits));
         let is = |one| wiring.whole().is(&Formula::number(number(one).into()));
         let has_limits = wiring.whole().is_not(&Formula::number(number(Wiring::None).into()));
         let (limits_low, samples) =
             (LIMITS_LOW.of::<32>(guard.limits_low), DEBOUNCE_SAMPLES.of::<32>(guard.debounce));
         let [first, second] = guard.inputs;
-        let (exist_0, low_0) = (INPUTS_0.of::<32>(first.exist), INPUTS_0_LOW.of::<32>(first.low));
-        let (exist_1, low_1) = (INPUTS_1.of::<32>(second.exist), INPUTS_1_LOW.of::<32>(second.low));
-        let has_row = |exist: &Given<32>| exist.whole().is_not(&zero());
-        let has_inputs = has_row(&exist_0) | has_row(&exist_1);
-        let rows = [has_limits, is(Wiring::Pair), has_row(&exist_0), has_row(&exist_1)];
+        let inputs = [
+            GivenRow::of(INPUTS_0.of(first.exist), INPUTS_0_LOW.of(first.low), all),
+            GivenRow::of(INPUTS_1.of(second.exist), INPUTS_1_LOW.of(second.low), all),
+        ];
+        let [first, second] = &inputs;
+        let has_inputs = first.has_row.clone() | second.has_row.clone();
+        let rows = [has_limits, is(Wiring::Pair), first.has_row.clone(), second.has_row.clone()];
         let sampled = (0..).zip(rows).fold(Formula::<4>::number(0), |rows, (row, exists)| {
             rows | Formula::number(1 << row).where_or(&exists, Formula::number(0))
         });
-        let is_no_input = |exist: &Given<32>| {
-            ParameterRefusal::of(&exist.whole().is_more(&Formula::number((1 << N) - 1)))
-        };
-        let is_low_alone = |low: &Given<32>, exist: &Given<32>| {
-            ParameterRefusal::of(&(low.whole() & !exist.whole()).is_not(&zero()))
-        };
         let round = ROUND_TICKS.of::<32>(guard.round);
+        let refusals = [
+            wiring.is_outside(0, 3),
+            limits_low.is_outside(0, 1),
+            samples.is_outside(1, MAX_DEBOUNCE_SAMPLES.into()),
+            round.whole().is_less(&Formula::number(4)) & has_inputs.clone(),
+        ];
         Self {
-            rows: Parameter::of(&sampled),
-            pair: Parameter::of(&is(Wiring::Pair)),
-            one_for_all: Parameter::of(&is(Wiring::One)),
-            has_inputs: Parameter::of(&has_inputs),
-            has_row_3: Parameter::of(&has_row(&exist_1)),
-            has_interlock: Parameter::of(&exist_1.bits(0)),
-            levels: Parameter::of(
-                &Formula::number((1 << N) - 1).where_or(&limits_low.bits(0), Formula::number(0)),
-            ),
-            exist_0: Parameter::of(&exist_0.bits(0)),
-            exist_1: Parameter::of(&exist_1.bits(0)),
-            low_0: Parameter::of(&low_0.bits(0)),
-            low_1: Parameter::of(&low_1.bits(0)),
-            last_sample: Parameter::of(&(samples.bits(0) - Formula::number(1))),
-            limits_out_of_range: ParameterRefusal::of(&wiring.is_outside(0, 3)),
-            limits_low_out_of_range: ParameterRefusal::of(&limits_low.is_outside(0, 1)),
-            debounce_samples_out_of_range: ParameterRefusal::of(
-                &samples.is_outside(1, MAX_DEBOUNCE_SAMPLES.into()),
-            ),
-            inputs_0_out_of_range: is_no_input(&exist_0),
-            inputs_1_out_of_range: is_no_input(&exist_1),
-            inputs_0_low_out_of_range: is_low_alone(&low_0, &exist_0),
-            inputs_1_low_out_of_range: is_low_alone(&low_1, &exist_1),
-            round_ticks_too_few_for_inputs: ParameterRefusal::of(
-                &(round.whole().is_less(&Formula::number(4)) & has_inputs),
-            ),
-            ..Self::default()
+            sampled,
+            is_pair: is(Wiring::Pair),
+            is_one: is(Wiring::One),
+            has_inputs,
+            limits_low: limits_low.bits(0),
+            last_sample: samples.bits(0) - Formula::number(1),
+            inputs,
+            refusals: refusals.map(|refused| ParameterRefusal::of(&refused)),
         }
+    }
+}
+
+impl GivenRow {
+    fn of(exist: Given<32>, low: Given<32>, all: u64) -> Self {
+        let has_row = exist.whole().is_not(&Formula::number(0));
+        let is_no_input = exist.whole().is_more(&Formula::number(all));
+        let is_low_alone = (low.whole() & !exist.whole()).is_not(&Formula::number(0));
+        let refusals = [ParameterRefusal::of(&is_no_input), ParameterRefusal::of(&is_low_alone)];
+        Self { exist, low, has_row, refusals }
     }
 }
 

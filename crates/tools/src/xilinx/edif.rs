@@ -8,7 +8,7 @@
 //! By hand, because only the subset that yosys writes is read, and whatever else occurs is refused.
 
 use crate::SynthesisError;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
 
 /// A list in parentheses, a name or number, or a string.
@@ -223,6 +223,39 @@ impl<'a> Nets<'a> {
     }
 }
 
+/// What a design consists of.
+pub(super) struct Contents {
+    /// How many cells of each kind.
+    pub cells: BTreeMap<String, usize>,
+    /// The ends of each net in alphabetical order, each as `instance/port/bit`. Bits count from the
+    /// left; the design's own ports have no instance.
+    pub nets: BTreeSet<String>,
+}
+
+/// The cells and nets of a file.
+pub(super) fn contents(edif: &str) -> Result<Contents, SynthesisError> {
+    let root = parsed(edif)?;
+    let contents = root.one("library")?.one("cell")?.one("view")?.one("contents")?;
+    let mut cells = BTreeMap::new();
+    for instance in contents.all("instance") {
+        *cells.entry(cell_of(instance)?.to_owned()).or_default() += 1;
+    }
+    let mut ends: BTreeMap<u32, Vec<String>> = BTreeMap::new();
+    for ((instance, port, bit), net) in Nets::of(contents)?.places {
+        ends.entry(net).or_default().push(format!("{instance}/{port}/{bit}"));
+    }
+    let joined = |mut ends: Vec<String>| {
+        ends.sort_unstable();
+        ends.join(" ")
+    };
+    Ok(Contents { cells, nets: ends.into_values().map(joined).collect() })
+}
+
+/// The kind of an instance.
+fn cell_of<'a>(instance: &Node<'a>) -> Result<&'a str, SynthesisError> {
+    Ok(instance.one("viewRef")?.one("cellRef")?.second()?.name()?.0)
+}
+
 /// Converts the design of a file to Verilog of cells.
 ///
 /// # Errors
@@ -258,7 +291,7 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
     }
     for instance in contents.all("instance") {
         let name = instance.second()?.name()?.0;
-        let cell = instance.one("viewRef")?.one("cellRef")?.second()?.name()?.0;
+        let cell = cell_of(instance)?;
         let ports = cells.get(cell).ok_or_else(|| unread(format!("the cell {cell}")))?;
         let parameters =
             instance.all("property").map(parameter).collect::<Result<Vec<_>, _>>()?.join(", ");

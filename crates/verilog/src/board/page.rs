@@ -4,7 +4,7 @@
 use super::{kind, place, rendered};
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_boards::{Board, Clocking, ConfigurationMode, Gate, Shared, Wire, boards};
+use carrystep_boards::{Board, Clocking, ConfigurationMode, Gate, PullUps, Shared, Wire, boards};
 use carrystep_core::engine::QUEUE_DEPTHS;
 use carrystep_core::tick::mhz;
 use carrystep_files::driver::{Driver, drivers};
@@ -78,6 +78,7 @@ fn values(board: &Board) -> Value {
             let more = (depth + 1) * 8 * 8 * 32 / RAM_BITS - 4;
             context! { depth, block_rams => SHORTEST_RAMS + more }
         }).to_vec(),
+        pull_ups => pull_ups(board.family.facts().pull_ups()),
         ties => super::ties(board),
         gate => board.gate.as_ref().map(gate),
         configured => listed(&board.configured),
@@ -90,6 +91,19 @@ fn values(board: &Board) -> Value {
         conflicts => &board.conflicts,
         sources => &board.sources,
     }
+}
+
+/// The values of a page that say what pins are until the FPGA is configured.
+fn pull_ups(pull_ups: PullUps) -> Value {
+    let (always, pin, strongest) = match pull_ups {
+        PullUps::Always => (true, None, None),
+        PullUps::Unknown => (false, None, None),
+        PullUps::ChosenBy { pin, strongest } => (false, Some(pin), strongest),
+    };
+    let strongest = strongest.map(|one| {
+        context! { ua => one.most_ua, source => one.source, ohm => one.resistor_ohm() }
+    });
+    context! { always, pin, strongest }
 }
 
 fn gate(gate: &Gate) -> Value {

@@ -135,6 +135,18 @@ pub const INPUTS: &[Inputs] = &[
         ],
     ),
     (
+        "spartans",
+        &[
+            "crates/core/",
+            "crates/boards/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/tools/",
+            "hdl-out/",
+            "tests/system/spartans_without_their_vendor/",
+        ],
+    ),
+    (
         "timing",
         &[
             "crates/core/",

@@ -1,0 +1,3 @@
+module IBUF (input I, output O);
+    assign O = I;
+endmodule
