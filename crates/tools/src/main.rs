@@ -47,8 +47,8 @@ type Outcome = Result<(), Box<dyn Error>>;
 /// Text above the figures of the boards.
 const HEAD: &str = "# What the shipped gateware takes of each board, on its first part with its first clock. Written by `cargo xtask long boards`.\n\n";
 
-/// Builds these boards, or all but those of Gowin. A board that misses its clock is entered in the table, and is an
-/// error.
+/// Builds these boards, or all but those of Gowin. A board that misses its clock is entered in the
+/// table, and is an error.
 fn boards(names: &[String]) -> Outcome {
     let all = page::measure(names, &say)?;
     let text = page::page(&all);

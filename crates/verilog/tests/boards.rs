@@ -264,8 +264,8 @@ fn impossible_request_is_refused_with_an_alternative() {
         (
             "tang-nano-9k",
             "48000000",
-            "40000000",
-            "tang-nano-9k: the PLL makes no clock of 40 MHz from 27 MHz; the nearest that it makes is 40.5 MHz",
+            "56000000",
+            "tang-nano-9k: the PLL makes no clock of 56 MHz from 27 MHz; the nearest that it makes is 57 MHz",
         ),
         (
             "tang-nano-9k",
