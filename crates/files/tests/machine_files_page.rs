@@ -88,7 +88,7 @@ fn page_gives_the_defaults_of_the_reader() {
     let [top, axis, guard, link] =
         ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"]
             .map(given);
-    assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (7, 1, 7, 2));
+    assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (8, 1, 7, 2));
     let bare = format!("{:?}", machine(&format!("[machine]\n{AXIS}")));
     let full = format!(
         "[machine]\n{}[machine.guard]\n{}[machine.link]\n{}{AXIS}{}",

@@ -4,7 +4,9 @@
 
 mod support;
 
+use carrystep_core::EngineBuild;
 use carrystep_core::engine::{AxisStatus, commanded_steps};
+use carrystep_core::link::Uart;
 use carrystep_link::frame::of_axis;
 use carrystep_link::registers::{
     SNAPSHOT, SNAPSHOT_DISCARDED, SNAPSHOT_LEFT, SNAPSHOT_P_HIGH, SNAPSHOT_P_LOW,
@@ -14,7 +16,7 @@ use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::random::Random;
 use support::requests::Talk;
-use support::{Kind, TICK};
+use support::{CLOCK_HZ, Kind, TICK, build};
 
 const AXES: u8 = 6;
 
@@ -104,8 +106,11 @@ fn compare<B: Kind>(talk: &mut Talk<B>, moves: &[Vec<Cubic>], started: u32) -> u
 /// Snapshots in random clocks of the motion, and one at rest. Returns the edges, with clocks
 /// counted from the start.
 fn exact<B: Kind>() -> Vec<Edge> {
+    exact_of(Talk::<B>::powered())
+}
+
+fn exact_of<B: Kind>(mut talk: Talk<B>) -> Vec<Edge> {
     let moves = moves();
-    let mut talk = Talk::<B>::powered();
     let started = start(&mut talk, &moves);
     let mut random = Random::new(7);
     let ticks = |segments: &Vec<Cubic>| segments.iter().map(|(ticks, _)| ticks).sum::<u32>();
@@ -133,6 +138,20 @@ fn snapshots_are_the_closed_form_on_a_board_of_models() {
 #[test]
 fn snapshots_are_the_closed_form_on_a_board_of_verilog() {
     assert_eq!(exact::<VerilatedBoard>(), exact::<ModelBoard>());
+}
+
+/// Each adder has a register mirror of its own in the link; the pulses are those of one adder.
+#[test]
+fn snapshots_and_pulses_on_several_adders_are_those_of_one() {
+    let one = exact::<ModelBoard>();
+    let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
+    for adders in [2, 6] {
+        let build = EngineBuild { adders, ..build() };
+        let model = Talk::with(ModelBoard::new(&build, uart)).power();
+        assert_eq!(exact_of(model), one, "{adders} adders, models");
+        let verilog = Talk::with(VerilatedBoard::new(&build, uart).unwrap()).power();
+        assert_eq!(exact_of(verilog), one, "{adders} adders, Verilog");
+    }
 }
 
 #[test]

@@ -30,7 +30,11 @@ pub struct Talk<B> {
 impl<B: Kind> Talk<B> {
     /// A host that has opened a session.
     pub fn new() -> Self {
-        let board = B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap());
+        Self::with(B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()))
+    }
+
+    /// The same on this board.
+    pub fn with(board: B) -> Self {
         let mut talk = Self { board, next: 0, edges: Seen::default() };
         let answer = talk.ask(&write(0x5a, WRITE | OPEN, SESSION, &[0]));
         assert_eq!((answer.next, answer.refusal), (0, None), "{answer:?}");
@@ -38,10 +42,14 @@ impl<B: Kind> Talk<B> {
     }
 
     pub fn powered() -> Self {
-        let mut talk = Self::new();
-        talk.write(CONTROL, 1);
-        while !talk.read(POSITION).ready {}
-        talk
+        Self::new().power()
+    }
+
+    /// This host, once the drivers have power.
+    pub fn power(mut self) -> Self {
+        self.write(CONTROL, 1);
+        while !self.read(POSITION).ready {}
+        self
     }
 
     pub fn rest(&mut self, clocks: u64) {
