@@ -149,7 +149,7 @@ fn state_at_the_limit_is_that_of_the_next_tick() {
     while at_limit.len() < 5 {
         let inputs = host.inputs(false);
         let found = engine.settle(&inputs);
-        match found.state {
+        match found.state.of_adder(0) {
             // The page of a switch is its row.
             Some(word) if word.page == StatePage::Seek && word.item != StateItem::Switch => {
                 assert_eq!(word.axis as usize, HOMING);
