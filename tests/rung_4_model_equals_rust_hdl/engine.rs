@@ -116,19 +116,19 @@ fn random_programs_with_two_and_with_four_latches() {
 #[test]
 fn random_programs_of_six_axes_on_six_adders_in_the_shortest_tick() {
     let six = build(6, 16_000_000, 4, StartPhase::Half, LimitWiring::Pair);
-    in_rust_hdl(&on_adders(six, 6), 100_000);
+    in_rust_hdl(&on_adders(six, 6), 50_000);
 }
 
 #[test]
 fn random_programs_of_six_axes_on_two_adders_in_the_shortest_tick() {
     let two = build(6, 42_000_000, 1, StartPhase::Zero, LimitWiring::Each);
-    in_rust_hdl(&on_adders(two, 2), 100_000);
+    in_rust_hdl(&on_adders(two, 2), 50_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_on_eight_adders_with_clocks_to_spare() {
     let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
-    in_rust_hdl(&on_adders(eight, 8), 50_000);
+    in_rust_hdl(&on_adders(eight, 8), 20_000);
 }
 
 /// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same

