@@ -20,6 +20,7 @@ fn engines(
     let sum = Cell::new(Came::default());
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
     let held = runner.run(&(programs, leaps()), |((program, events), leaps)| {
+        let (program, events) = engine_programs::in_ticks_of(build, program, events);
         let came = engine_twins::run(build, &program, &events, &leaps, 500_000)
             .map_err(TestCaseError::fail)?;
         sum.set(sum.get().and(came));

@@ -399,7 +399,7 @@ pub fn on_adders(build: EngineBuild, adders: usize) -> EngineBuild {
 
 /// Programs and events are made for ticks of 80 clocks. The same ones for an engine with several
 /// adders, with its ticks: otherwise most events would happen long after its axes have come to rest.
-fn in_ticks_of(build: &EngineBuild, program: Program, events: Events) -> (Program, Events) {
+pub fn in_ticks_of(build: &EngineBuild, program: Program, events: Events) -> (Program, Events) {
     if build.adders == 1 {
         return (program, events);
     }
