@@ -29,15 +29,15 @@ pub enum BoardError {
     },
     /// The machine has more axes than the board has pins for.
     #[error(
-        "{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board"
+        "{board} has pins for {has} axes, and none for {}: leave out axes, or take another board", .without.join(", ")
     )]
     Axes {
         /// Name of the board.
         board: String,
         /// Number of axes that have STEP and DIR pins.
         has: usize,
-        /// Number of axes of the machine.
-        wanted: usize,
+        /// Names of the axes that have no pins: the last ones of the machine file.
+        without: Vec<String>,
     },
     /// The machine has several adders, and the board's family keeps one.
     #[error(

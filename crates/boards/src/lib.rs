@@ -288,16 +288,18 @@ impl Board {
         }
     }
 
-    /// Checks that the board has pins for this number of axes and for their limit switches.
+    /// Checks that the board has pins for the axes of these names and for their limit switches.
     ///
     /// # Errors
     /// [`BoardError::Axes`] or [`BoardError::Limits`] if not; each gives the number of pins.
-    pub fn carries(&self, axes: usize, limits: LimitWiring) -> Result<(), BoardError> {
+    pub fn carries(&self, axes: &[&str], limits: LimitWiring) -> Result<(), BoardError> {
         let board = || self.name.clone();
         let has = self.bits("step");
-        if axes > has {
-            return Err(BoardError::Axes { board: board(), has, wanted: axes });
+        if axes.len() > has {
+            let without = axes[has..].iter().map(|name| format!("'{name}'")).collect();
+            return Err(BoardError::Axes { board: board(), has, without });
         }
+        let axes = axes.len();
         let (low, high) = (self.bits("limit_min"), self.bits("limit_max"));
         let (needs_low, needs_high, wanted) = match limits {
             LimitWiring::None => (0, 0, String::new()),

@@ -259,7 +259,7 @@ fn impossible_request_is_refused_with_an_alternative() {
             "icestick",
             "[[machine.axis]]",
             "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
-            "icestick has pins for 6 axes, not for",
+            "icestick has pins for 6 axes, and none for 'c': leave out axes, or take another board",
         ),
         (
             "tang-nano-9k",
@@ -283,7 +283,7 @@ fn impossible_request_is_refused_with_an_alternative() {
             "tang-nano-20k",
             "[[machine.axis]]",
             "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
-            "tang-nano-20k has pins for 6 axes, not for",
+            "tang-nano-20k has pins for 6 axes, and none for 'c': leave out axes, or take another board",
         ),
     ];
     for (name, was, becomes, says) in refused {

@@ -52,7 +52,8 @@ impl<'a> Gateware<'a> {
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.has_adders(build.adders)?;
-        board.carries(build.axes(), build.guard.limits)?;
+        let axes: Vec<&str> = read.axes.iter().map(|axis| &*axis.name).collect();
+        board.carries(&axes, build.guard.limits)?;
         board.connects(&build, matches!(line, LineKind::Uart(_)))?;
         if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
