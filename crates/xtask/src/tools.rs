@@ -77,8 +77,8 @@ pub fn install() -> TaskResult {
     if lacks_pip() { install_of_pip() } else { Ok(()) }
 }
 
-/// Installs the programs and modules of PyPI into the workspace's own folder, where nothing else of the system
-/// sees them.
+/// Installs the programs and modules of PyPI into the workspace's own folder, where nothing else of
+/// the system sees them.
 fn install_of_pip() -> TaskResult {
     let there = shell::folder_of_pip();
     let all = OF_PIP.iter().chain(MODULES_OF_PIP);

@@ -79,7 +79,8 @@ pub fn is_measured_unasked(board: &Board) -> bool {
 }
 
 /// Builds the boards of these names, or those of [`is_measured_unasked`] if there is none, as many
-/// at a time as the computer has cores. The others keep their figures. `say` is called with a line for each board that is built.
+/// at a time as the computer has cores. The others keep their figures. `say` is called with a line
+/// for each board that is built.
 ///
 /// # Errors
 /// As [`built`], or if there is no board of a name.
@@ -197,8 +198,10 @@ No way back from a bitstream of this family to Verilog is known to us: what is c
 | board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
 |---|---|---|---|---|---|---|---|---|---|---|
 {ecp5}
-The same on a Gowin part, by yosys 0.70, nextpnr 0.11 and apycula 0.32. Such a board must reach its clock with each of the five seeds, too. What is compared is the netlist again: what `gowin_unpack` reads from a bitstream lacks the kinds and contents of block RAMs.
-`cargo xtask long gowin` builds these boards.
+The same on a Gowin part, by yosys 0.70, nextpnr 0.11 and apycula 0.32. Such a board
+must reach its clock with each of the five seeds, too. What is compared is the netlist again: what
+`gowin_unpack` reads from a bitstream lacks the kinds and contents of block RAMs. `cargo xtask long
+gowin` builds these boards.
 
 | board | part | LUTs | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | seed | least of five seeds, MHz | each reached |
 |---|---|---|---|---|---|---|---|---|---|---|

@@ -1,6 +1,6 @@
-// Ports and attributes of the cell as in Xilinx UG331 and UG382; only the frequency synthesiser has a
-// function. An attribute out of its range, and an input of another period than announced, are
-// errors.
+// Ports and attributes of the cell. The ports are those of the vendor's model; attributes and ranges
+// are written from memory of Xilinx UG331 and UG382. Only the frequency synthesiser has a function. An
+// attribute out of its range, and an input of another period than CLKIN_PERIOD says, are errors.
 `timescale 1 ps / 1 fs
 
 module DCM_SP #(
@@ -30,12 +30,18 @@ module DCM_SP #(
     assign CLKFX180 = !CLKFX;
 
     initial begin
-        if (CLKFX_MULTIPLY < 2 || CLKFX_MULTIPLY > 32) $display("Error: CLKFX_MULTIPLY is %0d", CLKFX_MULTIPLY);
-        if (CLKFX_DIVIDE < 1 || CLKFX_DIVIDE > 32) $display("Error: CLKFX_DIVIDE is %0d", CLKFX_DIVIDE);
-        if (CLK_FEEDBACK != "NONE" && CLK_FEEDBACK != "1X" && CLK_FEEDBACK != "2X") $display("Error: CLK_FEEDBACK is %s", CLK_FEEDBACK);
-        if (DFS_FREQUENCY_MODE != "LOW" && DFS_FREQUENCY_MODE != "HIGH") $display("Error: DFS_FREQUENCY_MODE is %s", DFS_FREQUENCY_MODE);
+        if (CLKFX_MULTIPLY < 2 || CLKFX_MULTIPLY > 32)
+            $display("Error: CLKFX_MULTIPLY is %0d", CLKFX_MULTIPLY);
+        if (CLKFX_DIVIDE < 1 || CLKFX_DIVIDE > 32)
+            $display("Error: CLKFX_DIVIDE is %0d", CLKFX_DIVIDE);
+        if (CLK_FEEDBACK != "NONE" && CLK_FEEDBACK != "1X" && CLK_FEEDBACK != "2X")
+            $display("Error: CLK_FEEDBACK is %s", CLK_FEEDBACK);
+        if (DFS_FREQUENCY_MODE != "LOW" && DFS_FREQUENCY_MODE != "HIGH")
+            $display("Error: DFS_FREQUENCY_MODE is %s", DFS_FREQUENCY_MODE);
     end
     always @(posedge LOCKED)
         if (synthesiser.period > 1010.0 * CLKIN_PERIOD || synthesiser.period < 990.0 * CLKIN_PERIOD)
-            $display("Error: CLKIN has %0f ps, CLKIN_PERIOD is %0f ns", synthesiser.period, CLKIN_PERIOD);
+            $display(
+                "Error: CLKIN has %0f ps, CLKIN_PERIOD is %0f ns", synthesiser.period, CLKIN_PERIOD
+            );
 endmodule
