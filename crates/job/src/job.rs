@@ -1,4 +1,4 @@
-//! A job for a fixed number of axes: checks items, cuts them into pieces, and passes the pieces
+//! A job of at most N letters: checks items, cuts them into pieces, and passes the pieces
 //! through the stages to rows.
 
 use crate::confined::Confined;
@@ -8,7 +8,7 @@ use crate::error::JobError;
 use crate::limits::{Motors, of_machine};
 use crate::marks::{Mark, Marks};
 use crate::piece::Piece;
-use crate::refuse::{coordinates, refuse};
+use crate::refuse::refuse;
 use crate::rhythm::{LONGEST, Rhythm, shortest};
 use crate::row::Row;
 use crate::run::Runs;
@@ -16,7 +16,7 @@ use crate::targets::Targets;
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
 use carrystep_core::Segment;
-use carrystep_files::Machine;
+use carrystep_files::{Axis, Machine};
 use carrystep_plan::exact::{nearest, travel};
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -89,12 +89,16 @@ pub(crate) struct Job<const N: usize> {
 
 impl<const N: usize> Job<N> {
     /// A job of a machine with one axis for each letter, which stands for so many motors in all.
+    /// Letters that the machine does not have stand still: the code for one number of letters is
+    /// large, and two numbers of letters are enough for all machines.
     pub fn new(
         (machine, motors): (&Machine, usize),
         linear: usize,
         start: &[f64],
     ) -> Result<Self, JobError> {
-        let targets = Targets::new(machine)?;
+        let letters = machine.axes.len();
+        let machine = &with_still_letters(machine, N);
+        let targets = Targets::new(machine, letters)?;
         let tick_seconds = machine.timebase.tick_seconds();
         let (mut limits, exact) = of_machine(machine)?;
         let baud = if machine.spi { u32::MAX } else { machine.baud };
@@ -108,8 +112,9 @@ impl<const N: usize> Job<N> {
             limit.jerk /= steps;
         }
         let motors = Motors { limits, matrix: targets.matrix() };
-        let start = coordinates(start, 0)?;
-        let linear = linear.min(N);
+        let start = targets.coordinates(start, 0)?;
+        // With no rotary letter, those that stand still are linear, too: no rotary tolerance counts.
+        let linear = if linear < letters { linear } else { N };
         let steps = targets.steps(&start, 0)?;
         let at = targets.letters(&steps);
         let mut quiet = [0; N];
@@ -143,16 +148,26 @@ impl<const N: usize> Job<N> {
     }
 }
 
+/// The machine with letters added that nothing names and nothing moves, up to so many.
+fn with_still_letters(machine: &Machine, count: usize) -> Machine {
+    let mut machine = machine.clone();
+    for number in machine.axes.len()..count {
+        let Some(first) = machine.axes.first().cloned() else { break };
+        machine.axes.push(Axis { letter: number.to_string(), travel: None, ..first });
+    }
+    machine
+}
+
 impl<const N: usize> Jobs for Job<N> {
     fn push(&mut self, item: &Item) -> Result<(), JobError> {
         match item {
             Item::Move(element) => {
                 let from = match &self.pending {
-                    Some(before) => coordinates(&before.to, before.line)?,
+                    Some(before) => self.targets.coordinates(&before.to, before.line)?,
                     None => self.programmed,
                 };
                 refuse(element, &from, &self.targets, self.linear)?;
-                let to = coordinates(&element.to, element.line)?;
+                let to = self.targets.coordinates(&element.to, element.line)?;
                 if self.confined.rests_before(element, &from, &to) {
                     self.land()?;
                 } else {
@@ -190,7 +205,7 @@ impl<const N: usize> Jobs for Job<N> {
     }
 
     fn check(&self, from: &[f64], element: &Element) -> Result<(), JobError> {
-        refuse(element, &coordinates(from, element.line)?, &self.targets, self.linear)
+        refuse(element, &self.targets.coordinates(from, element.line)?, &self.targets, self.linear)
     }
 
     fn finish(&mut self) -> Result<(), JobError> {
@@ -222,7 +237,7 @@ impl<const N: usize> Job<N> {
     fn flush(&mut self, end: Option<Point<N>>) -> Result<(), JobError> {
         let Some(element) = self.pending.take() else { return Ok(()) };
         let line = element.line;
-        let programmed = coordinates(&element.to, line)?;
+        let programmed = self.targets.coordinates(&element.to, line)?;
         let from = std::mem::replace(&mut self.programmed, programmed);
         let to = match end {
             Some(end) => end,
@@ -248,7 +263,7 @@ impl<const N: usize> Job<N> {
     /// The path rests where it ends, on whole steps.
     fn land(&mut self) -> Result<(), JobError> {
         let (to, line) = match &self.pending {
-            Some(element) => (coordinates(&element.to, element.line)?, element.line),
+            Some(element) => (self.targets.coordinates(&element.to, element.line)?, element.line),
             None => (self.at, self.line),
         };
         let end = self.targets.letters(&self.targets.steps(&to, line)?);
@@ -390,3 +405,6 @@ impl<const N: usize> Job<N> {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
 }
+
+#[cfg(test)]
+mod tests;

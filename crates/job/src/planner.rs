@@ -39,12 +39,8 @@ impl Planner {
         // What the line has to carry is the segments of all motors.
         let machine = (&planned, motors);
         let job: Box<dyn Jobs> = match leaders.len() {
-            1 => Box::new(Job::<1>::new(machine, linear, start)?),
-            2 => Box::new(Job::<2>::new(machine, linear, start)?),
-            3 => Box::new(Job::<3>::new(machine, linear, start)?),
-            4 => Box::new(Job::<4>::new(machine, linear, start)?),
-            5 => Box::new(Job::<5>::new(machine, linear, start)?),
-            6 => Box::new(Job::<6>::new(machine, linear, start)?),
+            1..=3 => Box::new(Job::<3>::new(machine, linear, start)?),
+            4..=6 => Box::new(Job::<6>::new(machine, linear, start)?),
             other => return Err(JobError::Axes(other)),
         };
         Ok(Self { job, letters, leaders, ended: false })

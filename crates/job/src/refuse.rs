@@ -5,21 +5,6 @@ use crate::error::JobError;
 use crate::targets::Targets;
 use crate::vector::Point;
 
-/// The coordinates of a point.
-pub(crate) fn coordinates<const N: usize>(values: &[f64], line: u64) -> Result<Point<N>, JobError> {
-    let point: Point<N> = values.try_into().map_err(|_| JobError::Coordinates {
-        line,
-        found: values.len(),
-        axes: N,
-    })?;
-    match point.iter().find(|x| !x.is_finite()) {
-        Some(&value) => {
-            Err(JobError::Number { line, what: "a coordinate", value, help: "it must be finite" })
-        }
-        None => Ok(point),
-    }
-}
-
 /// Refuses what is not a positive finite number.
 fn positive(value: f64, line: u64, what: &'static str, help: &'static str) -> Result<(), JobError> {
     if value.is_finite() && value > 0.0 {
@@ -37,7 +22,7 @@ pub(crate) fn refuse<const N: usize>(
     linear: usize,
 ) -> Result<(), JobError> {
     let line = element.line;
-    let to: Point<N> = coordinates(&element.to, line)?;
+    let to: Point<N> = targets.coordinates(&element.to, line)?;
     targets.check(&to, line)?;
     if let Some(feed) = element.feed {
         positive(feed, line, "the feed", "give a feed above 0")?;

@@ -11,6 +11,8 @@ const MOST_STEPS: i64 = (1 << 31) - 1;
 /// How letters become steps.
 #[derive(Debug)]
 pub(crate) struct Targets<const N: usize> {
+    /// Letters of the machine, at most N; the further ones stand still at 0.
+    letters: usize,
     /// Steps per unit of each motor.
     pub steps_per_unit: [f64; N],
     coefficients: [[i32; N]; N],
@@ -23,8 +25,8 @@ pub(crate) struct Targets<const N: usize> {
 }
 
 impl<const N: usize> Targets<N> {
-    /// The targets of a machine with one axis for each letter.
-    pub fn new(machine: &Machine) -> Result<Self, JobError> {
+    /// The targets of a machine with N axes, of which the first ones are those of its letters.
+    pub fn new(machine: &Machine, letters: usize) -> Result<Self, JobError> {
         let coefficients: [[i32; N]; N] =
             std::array::from_fn(|i| std::array::from_fn(|k| machine.coefficient(i, k).into()));
         let inverse = inverse(&coefficients.map(|row| row.map(f64::from)))
@@ -38,6 +40,7 @@ impl<const N: usize> Targets<N> {
                 .ok_or(JobError::Axes(machine.axes.len()))?;
         }
         Ok(Self {
+            letters,
             steps_per_unit,
             coefficients,
             inverse,
@@ -50,6 +53,22 @@ impl<const N: usize> Targets<N> {
     /// Coefficients of the motors, as floats.
     pub fn matrix(&self) -> [[f64; N]; N] {
         self.coefficients.map(|row| row.map(f64::from))
+    }
+
+    /// The point at these coordinates, one for each letter of the machine.
+    ///
+    /// # Errors
+    /// [`JobError::Coordinates`] and [`JobError::Number`].
+    pub fn coordinates(&self, values: &[f64], line: u64) -> Result<Point<N>, JobError> {
+        if values.len() != self.letters {
+            return Err(JobError::Coordinates { line, found: values.len(), axes: self.letters });
+        }
+        if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
+            return Err(not_finite(value, line));
+        }
+        let mut point = [0.0; N];
+        point[..values.len()].copy_from_slice(values);
+        Ok(point)
     }
 
     /// The steps of each motor at these letters, rounded half away from zero.

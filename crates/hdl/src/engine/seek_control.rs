@@ -20,6 +20,7 @@
 //! Cost: two flip-flops per axis, seven for the source, and three others.
 
 use super::layout::{SLOT_OF_FIRST, SOURCE_AXIS, SOURCE_LEVEL, SOURCE_OWN, SOURCE_ROW};
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -93,7 +94,9 @@ impl<const N: usize> SeekControl<N> {
     }
 }
 
-impl<const N: usize> Logic for SeekControl<N> {
+compiled_once::logic!(SeekControl<N = 7>);
+
+impl<const N: usize> compiled_once::Kernel for SeekControl<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, origin, waiting, slowing, released, common, mine_slows);

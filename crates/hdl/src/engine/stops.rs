@@ -20,6 +20,7 @@
 //! Cost: about a dozen flip-flops, two registers of 4 bits for causes, and one flip-flop per axis.
 
 use crate::parameters::LIMIT_FREEZES;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -128,7 +129,9 @@ impl<const N: usize> Stops<N> {
     }
 }
 
-impl<const N: usize> Logic for Stops<N> {
+compiled_once::logic!(Stops<N = 7>);
+
+impl<const N: usize> compiled_once::Kernel for Stops<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, called, freeze, slow, still, settled, wiping);

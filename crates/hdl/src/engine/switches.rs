@@ -23,6 +23,7 @@ use crate::parameters::{
     DEBOUNCE_SAMPLES, INPUTS_0, INPUTS_0_LOW, INPUTS_1, INPUTS_1_LOW, LIMITS, LIMITS_LOW,
     ROUND_TICKS,
 };
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::{Formula, Given};
 use crate::primitives::memory::Memory;
@@ -240,7 +241,9 @@ impl GivenRow {
     }
 }
 
-impl<const N: usize> Logic for Switches<N> {
+compiled_once::logic!(Switches<N = 7>);
+
+impl<const N: usize> compiled_once::Kernel for Switches<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sync, now, open);

@@ -27,6 +27,16 @@ fn statements_are_those_of_each_size() {
     assert_sizes_agree::<Engine<3, 1>>();
     assert_sizes_agree::<Engine<7, 0>>();
     assert_sizes_agree::<Engine<8, 1>>();
+    parts_agree::<1>();
+    parts_agree::<6>();
+    parts_agree::<8>();
+}
+
+fn parts_agree<const N: usize>() {
+    assert_sizes_agree::<TimeSlot<N>>();
+    assert_sizes_agree::<Switches<N>>();
+    assert_sizes_agree::<SeekControl<N>>();
+    assert_sizes_agree::<Stops<N>>();
 }
 
 #[test]

@@ -24,6 +24,7 @@
 //! axis.
 
 use super::layout::BEAT_LAST;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -74,7 +75,9 @@ impl<const N: usize> TimeSlot<N> {
     }
 }
 
-impl<const N: usize> Logic for TimeSlot<N> {
+compiled_once::logic!(TimeSlot<N = 7>);
+
+impl<const N: usize> compiled_once::Kernel for TimeSlot<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, beats, number, one_hot);

@@ -17,6 +17,7 @@
 //! buffer with 8.
 
 use super::crc::CrcUnit;
+use crate::primitives::compiled_once;
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -203,7 +204,9 @@ impl<const N: usize> LinkProcessor<N> {
     }
 }
 
-impl<const N: usize> Logic for LinkProcessor<N> {
+compiled_once::logic!(LinkProcessor<N = 7>);
+
+impl<const N: usize> compiled_once::Kernel for LinkProcessor<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, stage, pc, sum, index, written, read, word, space, power, clears);
@@ -469,7 +472,15 @@ impl<const N: usize> Logic for LinkProcessor<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primitives::compiled_once::assert_sizes_agree;
     use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn statements_are_those_of_each_size() {
+        assert_sizes_agree::<LinkProcessor<1>>();
+        assert_sizes_agree::<LinkProcessor<6>>();
+        assert_sizes_agree::<LinkProcessor<8>>();
+    }
 
     #[test]
     fn machine_synthesizes() {

@@ -1,0 +1,63 @@
+//! The plan does not depend on the number of letters for which the planner is compiled.
+
+use super::*;
+use crate::element::Tolerance;
+use carrystep_files::SourceText;
+
+fn machine(letters: &str) -> Machine {
+    let mut text = String::from(
+        "[machine]\nclock_hz = 80_000_000\ntick_ns = 1000\nlink = { baud = 2_000_000 }\n",
+    );
+    for letter in letters.chars() {
+        text += &format!(
+            "[[machine.axis]]\nname = \"{letter}\"\nsteps_per_unit = 80\nspeed_limit = 100\n\
+             accel_limit = 1000\ndriver = \"tmc2209\"\n"
+        );
+    }
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() }).unwrap()
+}
+
+/// A corner, an arc, a reversal, a short and a long line.
+fn items(letters: usize) -> Vec<Item> {
+    let ends = [[10.0, 0.0], [10.0, 5.0], [14.0, 9.0], [13.0, 9.0], [13.01, 9.0], [0.0, -20.0]];
+    let element = |(number, end): (usize, [f64; 2])| {
+        let angle = -std::f64::consts::FRAC_PI_2;
+        let arc = Arc { plane: [0, 1], centre: [14.0, 5.0], angle };
+        let mut to = end.to_vec();
+        to.resize(letters, number as f64 / 4.0);
+        Item::Move(Element {
+            to,
+            arc: (number == 2).then_some(arc),
+            feed: (number != 5).then_some(30.0),
+            tolerance: Tolerance { linear: 0.02, rotary: 0.0005 },
+            line: number as u64,
+            block: 0,
+        })
+    };
+    let mut items: Vec<Item> = ends.into_iter().enumerate().map(element).collect();
+    items.insert(4, Item::Mark(7));
+    items
+}
+
+fn rows<const N: usize>(machine: &Machine, linear: usize) -> Vec<Row> {
+    let letters = machine.axes.len();
+    let mut job = Job::<N>::new((machine, letters), linear, &vec![0.0; letters]).unwrap();
+    items(letters).iter().for_each(|item| job.push(item).unwrap());
+    job.finish().unwrap();
+    let cut = |row: Row| Row { segments: row.segments[..letters].to_vec(), ..row };
+    std::iter::from_fn(|| job.next_row().unwrap()).map(cut).collect()
+}
+
+/// The planner is compiled for three and for six letters only.
+#[test]
+fn letters_that_stand_still_change_no_segment() {
+    for (letters, linear) in [("xy", 2), ("xyz", 3), ("xya", 2)] {
+        let machine = machine(letters);
+        let three = rows::<3>(&machine, linear);
+        assert!(three.len() > 300, "{} rows of {letters}", three.len());
+        assert_eq!(three, rows::<6>(&machine, linear), "{letters}");
+        if letters == "xy" {
+            assert_eq!(three, rows::<2>(&machine, linear), "{letters}");
+        }
+    }
+}
