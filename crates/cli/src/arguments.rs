@@ -130,9 +130,6 @@ pub enum Subcommand {
     Doctor(Doctor),
     /// Print the script that completes this command in a shell.
     Completions(Completions),
-    /// Write the JSON Schemas of all documents.
-    #[command(hide = true)]
-    Schemas(Schemas),
 }
 
 /// The core that the gateware is built from.
@@ -368,14 +365,6 @@ pub struct Completions {
     /// The shell.
     #[arg(value_name = "SHELL")]
     pub shell: clap_complete::Shell,
-}
-
-/// The arguments of `carrystep schemas`.
-#[derive(Debug, Args)]
-pub struct Schemas {
-    /// Folder for all files.
-    #[arg(long, default_value = "docs/schemas", value_name = "DIR")]
-    pub out: PathBuf,
 }
 
 fn core() -> impl TypedValueParser<Value = Core> {

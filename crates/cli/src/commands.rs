@@ -20,7 +20,6 @@ pub mod probe;
 pub mod profile;
 pub mod run;
 pub mod run_program;
-pub mod schemas;
 pub mod selftest;
 #[cfg(unix)]
 pub mod serve;

@@ -9,9 +9,11 @@ use crate::commands::{
     boards, build, check, check_program, doctor, home, linuxcnc, list_blocks, machine, offset,
     plan, plan_program, profile, selftest, sweep, table, verilog,
 };
-use crate::document::{Document, schema};
+use crate::document::Document;
 use crate::{drive, ending, found, job, pause, program_run};
-use schemars::Schema;
+
+#[cfg(test)]
+mod schemas;
 
 macro_rules! documents {
     ($($(#[$only:meta])* $name:literal, $version:literal: $document:ty;)*) => {
@@ -21,8 +23,9 @@ macro_rules! documents {
         })*
 
         /// Name and JSON Schema of every document.
-        pub fn schemas() -> Vec<(&'static str, Schema)> {
-            vec![$($(#[$only])* ($name, schema::<$document>()),)*]
+        #[cfg(test)]
+        fn all() -> Vec<(&'static str, schemars::Schema)> {
+            vec![$($(#[$only])* ($name, schemas::schema::<$document>()),)*]
         }
     };
 }

@@ -92,7 +92,6 @@ fn main() -> ExitCode {
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
         Subcommand::Completions(completions) => commands::completions::run(completions),
-        Subcommand::Schemas(schemas) => commands::schemas::run(schemas, &documents::schemas()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -44,6 +44,7 @@ use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSE_BITS, least_clocks};
 use rust_hdl::prelude::*;
+use std::slice::from_mut;
 
 pub mod adder;
 pub mod cut_control;
@@ -327,10 +328,10 @@ impl<const N: usize, const S: usize> Engine<N, S> {
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
         PartsOfAnySize {
             pulsers: &mut *self.pulser,
-            store: &mut self.store,
-            queue: &mut self.queue,
+            stores: from_mut(&mut self.store),
+            queues: from_mut(&mut self.queue),
+            readouts: from_mut(&mut self.readout),
             cut_control: &mut self.cut_control,
-            readout: &mut self.readout,
             output_control: &mut self.output_control,
             pulse_width: &mut self.pulse_width,
             edge_latch: &mut self.edge_latch,
@@ -357,13 +358,14 @@ impl<const N: usize, const S: usize> Engine<N, S> {
     }
 }
 
-/// The parts of an engine whose types do not depend on N and S. What replaces them is compiled once.
+/// The parts of an engine whose types do not depend on its numbers of axes, latches and adders. What
+/// replaces them is compiled once. There is one store, queue and readout for each adder.
 struct PartsOfAnySize<'a> {
     pulsers: &'a mut [Pulser],
-    store: &'a mut Store,
-    queue: &'a mut Queue,
+    stores: &'a mut [Store],
+    queues: &'a mut [Queue],
+    readouts: &'a mut [Readout],
     cut_control: &'a mut CutControl,
-    readout: &'a mut Readout,
     output_control: &'a mut OutputControl,
     pulse_width: &'a mut PulseWidth,
     edge_latch: &'a mut EdgeLatch,
@@ -376,10 +378,16 @@ impl PartsOfAnySize<'_> {
             *pulser = Pulser::new(pins)?;
         }
         let slots = build.slots();
-        *self.store = Store::new(build.phase, &build.guard.stop, slots);
-        *self.queue = Queue::new(slots, build.cuts);
+        for store in self.stores {
+            *store = Store::new(build.phase, &build.guard.stop, slots);
+        }
+        for queue in self.queues {
+            *queue = Queue::new(slots, build.cuts);
+        }
+        for readout in self.readouts {
+            *readout = Readout::new(slots);
+        }
         *self.cut_control = CutControl::new(build.cuts);
-        *self.readout = Readout::new(slots);
         *self.output_control = OutputControl::new(&build.outputs, slots);
         *self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
         *self.edge_latch = EdgeLatch::new(build.guard.latches.first());

@@ -18,9 +18,10 @@ const GRAB: &str = "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File 
 /// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
 /// JSON Schemas. The list of boards in `docs/SUMMARY.md` follows.
 pub fn generate() -> TaskResult {
-    shell::run(
+    shell::run_with(
+        &[("CARRYSTEP_WRITE_SCHEMAS", "1")],
         "cargo",
-        &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"],
+        &["test", "--quiet", "--release", "--workspace", "--bin", "carrystep", "documents::"],
     )?;
     shell::run(
         "cargo",

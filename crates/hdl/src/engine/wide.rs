@@ -28,6 +28,7 @@
 //! Cost: a lane needs about as much as an engine of one axis without its pins. A tick has at least 13
 //! clocks per time slot and three more.
 
+use super::PartsOfAnySize;
 use super::adder::Adder;
 use super::cut_control::CutControl;
 use super::edge_latch::EdgeLatch;
@@ -340,27 +341,27 @@ impl<const N: usize, const K: usize> WideEngine<N, K> {
 
     /// Replaces the parts that depend on the build, as in [`super::Engine`].
     fn set(&mut self, build: &EngineBuild) -> Result<(), HdlError> {
-        for (pulser, pins) in self.pulser.iter_mut().zip(&build.pins) {
-            *pulser = Pulser::new(pins)?;
-        }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks_of_adders(N, K, build.timebase.phases()));
         let off_at_ramps = OUTPUTS_OFF_AT_RAMPS.of::<32>(build.outputs.off_at_ramps);
-        let slots = build.slots();
+        PartsOfAnySize {
+            pulsers: &mut self.pulser,
+            stores: &mut self.store,
+            queues: &mut self.queue,
+            readouts: &mut self.readout,
+            cut_control: &mut self.cut_control,
+            output_control: &mut self.output_control,
+            pulse_width: &mut self.pulse_width,
+            edge_latch: &mut self.edge_latch,
+            supervisor: &mut self.supervisor,
+        }
+        .set(build)?;
         self.lane_slots = LaneSlots::new(K);
-        self.store = PerLane::from_fn(|_| Store::new(build.phase, &build.guard.stop, slots));
-        self.queue = PerLane::from_fn(|_| Queue::new(slots, build.cuts));
-        self.readout = PerLane::from_fn(|_| Readout::new(slots));
         self.event_wheel = PerLane::from_fn(|_| EventWheel::new(&build.timebase));
         self.switches = PerLane::from_fn(|_| Switches::new(&build.guard));
         self.findings = Findings::new();
         self.lane_seek = LaneSeek::new();
-        self.cut_control = CutControl::new(build.cuts);
-        self.output_control = OutputControl::new(&build.outputs, slots);
-        self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
-        self.edge_latch = EdgeLatch::new(build.guard.latches.first());
         self.stops = Stops::new(&build.guard);
-        self.supervisor = Supervisor::new(&build.guard);
         self.axes = Parameter::new(N as u64);
         self.off_at_ramps = Parameter::of(&off_at_ramps.bits(0));
         self.outputs_off_at_ramps_out_of_range =

@@ -74,8 +74,14 @@ impl<T, const N: usize> PerLane<T, N> {
 
 impl<T: Default, const N: usize> Default for PerLane<T, N> {
     fn default() -> Self {
-        Self::from_fn(|_| T::default())
+        Self(defaults(N))
     }
+}
+
+/// So many default elements. It is compiled once and not for each N.
+#[inline(never)]
+fn defaults<T: Default>(count: usize) -> Vec<T> {
+    std::iter::repeat_with(T::default).take(count).collect()
 }
 
 impl<T, const N: usize> Deref for PerLane<T, N> {

@@ -45,6 +45,7 @@ impl<T: Synth> Input<T> {
 }
 
 impl<T: Synth> Default for Input<T> {
+    #[inline(never)]
     fn default() -> Self {
         Self {
             next: T::default(),
