@@ -2,9 +2,9 @@
 
 use crate::leaps;
 use carrystep_core::engine::{Cause, Guard, InputRow, LimitWiring};
-use carrystep_core::{EngineBuild, PinTiming, Program, StartPhase};
+use carrystep_core::{Command, EngineBuild, PinTiming, Program, Segment, StartPhase};
 use carrystep_simulators::Level;
-use carrystep_simulators::engine::Events;
+use carrystep_simulators::engine::{Event, Events};
 use carrystep_tests::engine_twins::{self, Came};
 use carrystep_tests::{dense, effort, engine_programs, gcode_job, lockstep, moves};
 use proptest::prelude::*;
@@ -76,6 +76,31 @@ fn an_engine_with_several_adders() {
         let came = engines(&build, 20, engine_programs::program(axes));
         assert!(came.taken > 0 && came.edges > 0, "{came:?}");
         assert!(came.leapt > came.clocks / 3, "{came:?}");
+    }
+}
+
+/// The host kicks the watchdog in each clock of the ticks about the one in which it would have
+/// ended; before, in and after that clock.
+#[test]
+fn a_kick_in_each_clock_about_the_end_of_the_watchdog() {
+    for (adders, clock_hz) in [(1, 80_000_000), (6, 16_000_000)] {
+        let build = engine_programs::build(6, clock_hz, 4, StartPhase::Half, LimitWiring::None);
+        let guard = Guard { watchdog: 3, ..build.guard.clone() };
+        let build = engine_programs::on_adders(EngineBuild { guard, ..build }, adders);
+        let tick = u64::from(build.timebase.clocks_per_tick());
+        let end = u64::from(build.guard.watchdog * build.guard.round) * tick;
+        let segment = Segment { ticks: 200, v: 1 << 60, a: 0, j: 0, last: true };
+        let program = vec![Command::Segment { axis: 0, segment }, Command::Start { mask: 1 }];
+        let mut stops = 0;
+        for kick in end - tick..end + 2 * tick {
+            for leaps in [[1, u64::MAX], [u64::MAX, 7]] {
+                let events = vec![(0, Event::Kick), (kick, Event::Kick)];
+                let came = engine_twins::run(&build, &program, &events, &leaps, end + 40 * tick)
+                    .unwrap_or_else(|error| panic!("{adders} adders, kick in {kick}: {error}"));
+                stops += came.faults[Cause::Watchdog as usize];
+            }
+        }
+        assert!(stops >= 6 * tick, "{stops} stops of {} runs", 6 * tick);
     }
 }
 

@@ -163,6 +163,10 @@ impl FastEngine {
         } else {
             clocks = fit(clocks);
         }
+        if clocks == 0 {
+            // The inputs of this cycle have no effect before it is executed.
+            return (0, 0);
+        }
         let (_, taken) = self.core.taking(words, takes, clocks);
         self.core.take(&words[..taken]);
         self.core.pass(inputs, clocks);
