@@ -2,6 +2,7 @@
 //! pins. A new family is a variant of [`Family`] and a file of the folder `family`.
 
 use crate::Part;
+use crate::block_rams::BlockRam;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 use schemars::JsonSchema;
@@ -72,6 +73,9 @@ pub trait FpgaFamily: Sync {
     fn writes_parts_of_words(&self) -> bool {
         true
     }
+
+    /// The block RAMs of its parts.
+    fn block_rams(&self) -> &'static [BlockRam];
 
     /// What its pins are until it is configured.
     fn pull_ups(&self) -> PullUps;

@@ -2,6 +2,7 @@
 
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
+use crate::block_rams::{BlockRam, OF_18_KBIT};
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 
@@ -27,6 +28,10 @@ impl FpgaFamily for Gowin {
 
     fn placer(&self) -> Option<Placer> {
         Some(Placer::Gowin)
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[BlockRam { halves: 2, widths: OF_18_KBIT, enables: 4 }]
     }
 
     fn pull_ups(&self) -> PullUps {

@@ -2,6 +2,7 @@
 
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
+use crate::block_rams::BlockRam;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 
@@ -35,6 +36,11 @@ impl FpgaFamily for Ice40 {
 
     fn cells(&self) -> &'static str {
         "logic cells"
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        const WIDTHS: &[(u32, u32)] = &[(256, 16), (512, 8), (1024, 4), (2048, 2)];
+        &[BlockRam { halves: 2, widths: WIDTHS, enables: 16 }]
     }
 
     fn pull_ups(&self) -> PullUps {
