@@ -3,7 +3,7 @@
 //! the size of all rows, and the clock of the rows marked `always`.
 
 use carrystep_boards::Mapped;
-use carrystep_tests::effort;
+use carrystep_tests::{effort, pages};
 use carrystep_tools::resources::{
     self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, LINES, LINK_BUDGET, PAGE, ROWS,
 };
@@ -109,6 +109,12 @@ fn assert_within(found: &Mapped, family: &FamilyRow) {
         && found.carries <= budget.carries
         && found.block_rams <= budget.block_rams;
     assert!(fits, "{found:?} used of {family:?}");
+}
+
+/// `cargo xtask adders` places these rows, which takes minutes.
+#[test]
+fn adders_page_lists_exactly_these_rows() {
+    assert_eq!(resources::check_adders(&pages::file(resources::ADDERS_PAGE)), Ok(()));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! `cargo xtask resources` measures every row and writes `hdl-out/resources.md`. With the argument
 //! `boards` (from `cargo xtask long boards`) it builds all boards but those of Gowin, and writes
 //! `hdl-out/boards.md` and the figures that `carrystep boards` shows. With names behind it, it builds
-//! these boards only. With `unisims FOLDER` (from `cargo xtask unisims`) it checks the clock modules
+//! these boards only. With `adders` (from `cargo xtask adders`) it writes `hdl-out/adders.md`. With
+//! `unisims FOLDER` (from `cargo xtask unisims`) it checks the clock modules
 //! of the Spartans on the models in a folder.
 
 use carrystep_boards::{MEASURED_AT, board, boards as all_boards};
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let written = match arguments.split_first() {
         Some((what, names)) if what == "boards" => boards(names),
+        Some((what, [])) if what == "adders" => adders(),
         Some((what, [folder, names @ ..])) if what == "unisims" => unisims(folder, names),
         _ => resources(),
     };
@@ -101,6 +103,19 @@ fn write(page: &str, text: &str) -> Outcome {
     let next = path.with_extension("new");
     std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path))?;
     Ok(())
+}
+
+/// Builds the gateware of all rows of several adders, writes their page, and then checks it.
+fn adders() -> Outcome {
+    let mut lines = String::new();
+    for row in &resources::ADDERS {
+        let line = row.line(&row.built()?)?;
+        say(line.trim());
+        lines.push_str(&line);
+    }
+    let text = resources::adders_page(&lines);
+    write(resources::ADDERS_PAGE, &text)?;
+    Ok(resources::check_adders(&text)?)
 }
 
 /// Measures all rows, writes the page, and then checks it against the budgets.

@@ -43,7 +43,7 @@ module promises (
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0);
-        assume (!take || beat[7]);
+        assume (!take || beat[7] || put_word[3]);
         assume (!begins || before_all || between);
         assume (!(first & (beat[7] | beat[12])) || !before_all && !between);
     end
