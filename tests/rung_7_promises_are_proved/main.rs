@@ -127,7 +127,7 @@ fn neither_snapshot_nor_latch_changes_an_edge() {
     kept::say();
     assert!(failures.is_empty(), "{failures}");
     effort::figures(&format!(
-        "no path from snapshots and latches to other outputs in {} engines, found in {} with bugs",
+        "{} engines without a path from snapshots and latches to other outputs, and {} with bugs with one",
         cases.len(),
         independence::BUGS.len()
     ));

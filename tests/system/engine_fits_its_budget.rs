@@ -8,7 +8,7 @@ use carrystep_tests::{effort, moves, pages};
 use carrystep_tools::resources::{
     self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, LINES, LINK_BUDGET, PAGE, ROWS,
 };
-use carrystep_tools::{kept, xilinx};
+use carrystep_tools::{adders, kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
 #[test]
@@ -143,7 +143,7 @@ fn engine_page_gives_the_block_rams_of_adders() {
 /// `cargo xtask adders` places these rows, which takes minutes.
 #[test]
 fn adders_page_lists_exactly_these_rows() {
-    assert_eq!(resources::check_adders(&pages::file(resources::ADDERS_PAGE)), Ok(()));
+    assert_eq!(adders::check(&pages::file(adders::PAGE)), Ok(()));
 }
 
 #[test]

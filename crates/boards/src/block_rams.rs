@@ -3,23 +3,9 @@
 //! A memory that is wider than a block RAM, or of whose words more parts are written separately than
 //! a block RAM has write enables, takes several of them. No two memories share one.
 
-use super::{Board, BoardError, Family, Part};
+use super::{BlockRam, Board, BoardError, Family, Part};
 use carrystep_core::engine::{InputRow, LimitWiring, MAX_AXES, QUEUE_DEPTHS, adder_counts};
 use carrystep_core::{ChosenTick, EngineBuild};
-
-/// A kind of block RAM, with one port that reads and one that writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BlockRam {
-    /// What it takes of a part: the two halves of a block RAM as the part's data count them, or one.
-    pub halves: u32,
-    /// The widths of its words, bits, by their number, the fewest words first.
-    pub widths: &'static [(u32, u32)],
-    /// Number of parts of a word that are written separately.
-    pub enables: u32,
-}
-
-/// Widths of a block RAM of 18 kbit.
-pub(crate) const OF_18_KBIT: &[(u32, u32)] = &[(512, 36), (1024, 18), (2048, 9)];
 
 /// A memory of the gateware.
 #[derive(Debug, Clone, Copy)]

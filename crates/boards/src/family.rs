@@ -2,7 +2,6 @@
 //! pins. A new family is a variant of [`Family`] and a file of the folder `family`.
 
 use crate::Part;
-use crate::block_rams::BlockRam;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 use schemars::JsonSchema;
@@ -10,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use strum::IntoStaticStr;
 
+mod block_ram;
 mod ecp5;
 mod gowin;
 mod ice40;
@@ -19,6 +19,7 @@ mod spartan3e;
 mod spartan6;
 mod spartan7;
 
+pub use block_ram::BlockRam;
 pub use pull_ups::{PullUp, PullUps};
 
 /// An FPGA family. Boards are listed in the order of these variants.

@@ -31,7 +31,7 @@ mod toolchain;
 pub use block_rams::{Blocks, block_rams};
 pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
-pub use family::{Family, FpgaFamily, IoStandard, Placer, PllInput, PullUp, PullUps};
+pub use family::{BlockRam, Family, FpgaFamily, IoStandard, Placer, PllInput, PullUp, PullUps};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
 pub use self_test::{BoardSelfTest, SELF_TEST_BAUD};

@@ -7,6 +7,7 @@
 
 use carrystep_boards::{MEASURED_AT, board, boards as all_boards};
 use carrystep_core::tick::mhz;
+use carrystep_tools::adders;
 use carrystep_tools::board::page;
 use carrystep_tools::clock_modules::{CellModels, clock_module, simulated, spartans};
 use carrystep_tools::resources::{self, FAMILIES, PAGE, ROWS, RowMeasurement};
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let written = match arguments.split_first() {
         Some((what, names)) if what == "boards" => boards(names),
-        Some((what, [])) if what == "adders" => adders(),
+        Some((what, [])) if what == "adders" => several_adders(),
         Some((what, [folder, names @ ..])) if what == "unisims" => unisims(folder, names),
         _ => resources(),
     };
@@ -106,16 +107,16 @@ fn write(page: &str, text: &str) -> Outcome {
 }
 
 /// Builds the gateware of all rows of several adders, writes their page, and then checks it.
-fn adders() -> Outcome {
+fn several_adders() -> Outcome {
     let mut lines = String::new();
-    for row in &resources::ADDERS {
+    for row in &adders::ROWS {
         let line = row.line(&row.built()?)?;
         say(line.trim());
         lines.push_str(&line);
     }
-    let text = resources::adders_page(&lines);
-    write(resources::ADDERS_PAGE, &text)?;
-    Ok(resources::check_adders(&text)?)
+    let text = adders::page_of(&lines);
+    write(adders::PAGE, &text)?;
+    Ok(adders::check(&text)?)
 }
 
 /// Measures all rows, writes the page, and then checks it against the budgets.

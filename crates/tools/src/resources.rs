@@ -3,14 +3,12 @@
 //! `cargo xtask resources` measures all rows and writes the page. `tests/engine_fits_its_budget.rs`
 //! measures the quick rows in every test run, and fails if a change exceeds the budget.
 
-mod adders;
 mod link;
 mod measure;
 mod page;
 mod peers;
 mod rows;
 
-pub use adders::{ADDERS, ADDERS_PAGE, AddersRow, adders_page, check_adders};
 pub use link::{LINES, LINK_BUDGET, ecp5, gowin, links};
 pub(crate) use measure::failed;
 pub use measure::{RowMeasurement, placed, synthesised, verilog};

@@ -1,8 +1,8 @@
 //! Lattice ECP5.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
-use crate::block_rams::{BlockRam, OF_18_KBIT};
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 

@@ -1,7 +1,7 @@
 //! Xilinx Spartan-6.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, PllInput, PullUp, PullUps};
-use crate::block_rams::{BlockRam, OF_18_KBIT};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
 

@@ -1,9 +1,9 @@
 //! `hdl-out/adders.md`: what engines with several adders take of a part, and the clock that they
 //! reach. Rows, measurement and page.
 
-use super::failed;
 use crate::SynthesisError;
 use crate::board::{BuildJob, Built, build};
+use crate::resources::failed;
 use carrystep_boards::{Board, block_rams, board};
 use carrystep_core::EngineBuild;
 use carrystep_core::tick::mhz;
@@ -11,12 +11,12 @@ use carrystep_files::SourceText;
 use carrystep_verilog::{Gateware, shipped_machine};
 
 /// Path of the page, from the root of the workspace.
-pub const ADDERS_PAGE: &str = "hdl-out/adders.md";
+pub const PAGE: &str = "hdl-out/adders.md";
 
 /// The gateware of a board with a number of adders, in the shortest tick of its clock in four
 /// phases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct AddersRow {
+pub struct Row {
     /// Name of the board; the part is its first.
     pub board: &'static str,
     /// Clock, Hz.
@@ -27,12 +27,12 @@ pub struct AddersRow {
     pub budget: u32,
 }
 
-const fn row(board: &'static str, clock_hz: u64, adders: usize, budget: u32) -> AddersRow {
-    AddersRow { board, clock_hz, adders, budget }
+const fn row(board: &'static str, clock_hz: u64, adders: usize, budget: u32) -> Row {
+    Row { board, clock_hz, adders, budget }
 }
 
 /// All rows of the page.
-pub const ADDERS: [AddersRow; 6] = [
+pub const ROWS: [Row; 6] = [
     row("orangecrab", 64_000_000, 1, 1550),
     row("orangecrab", 64_000_000, 2, 2200),
     row("orangecrab", 64_000_000, 6, 4200),
@@ -41,7 +41,7 @@ pub const ADDERS: [AddersRow; 6] = [
     row("tang-nano-20k", 48_000_000, 2, 2300),
 ];
 
-impl AddersRow {
+impl Row {
     fn board(&self) -> Result<&'static Board, SynthesisError> {
         board(self.board).map_err(failed)
     }
@@ -117,8 +117,8 @@ impl AddersRow {
     }
 }
 
-/// The page with these lines, one for each of [`ADDERS`].
-pub fn adders_page(lines: &str) -> String {
+/// The page with these lines, one for each of [`ROWS`].
+pub fn page_of(lines: &str) -> String {
     format!(
         "\
 # Several adders
@@ -137,15 +137,14 @@ Written by `cargo xtask adders`. Line, link and engine of the shipped machine's 
 ///
 /// # Errors
 /// A sentence that names the row that is missing or wrong.
-pub fn check_adders(page: &str) -> Result<(), String> {
+pub fn check(page: &str) -> Result<(), String> {
     let lines = page.lines().filter(|line| line.starts_with("| `"));
-    if lines.count() != ADDERS.len() {
-        return Err(format!("{ADDERS_PAGE} has other rows: run `cargo xtask adders`"));
+    if lines.count() != ROWS.len() {
+        return Err(format!("{PAGE} has other rows: run `cargo xtask adders`"));
     }
-    for row in &ADDERS {
+    for row in &ROWS {
         let key = row.key().map_err(|error| error.to_string())?;
-        let wrong =
-            |what: &str| format!("{ADDERS_PAGE}: {what} of {key}: run `cargo xtask adders`");
+        let wrong = |what: &str| format!("{PAGE}: {what} of {key}: run `cargo xtask adders`");
         let found = page.lines().find_map(|line| line.strip_prefix(&key));
         let cells: Vec<&str> = found.ok_or_else(|| wrong("no row"))?.split('|').collect();
         let number = |cell: usize| -> Option<f64> {
@@ -175,23 +174,23 @@ mod tests {
 
     /// The page of rows that take this.
     fn page(luts: u32, block_rams_more: u32, mhz: f64) -> String {
-        let line = |row: &AddersRow| {
+        let line = |row: &Row| {
             let gateware = row.gateware().unwrap();
             let taken = block_rams(gateware.build(), gateware.part().family()).whole();
             let size = Size { logic_cells: luts, block_rams: taken + block_rams_more };
             row.line(&Built { size, seed: 1, mhz, icetime_mhz: None, bitstream: Vec::new() })
                 .unwrap()
         };
-        adders_page(&ADDERS.iter().map(line).collect::<String>())
+        page_of(&ROWS.iter().map(line).collect::<String>())
     }
 
     #[test]
     fn page_is_checked_against_rows_and_budgets() {
-        assert_eq!(check_adders(&page(1500, 0, 64.0)), Ok(()));
-        assert!(check_adders(&page(1600, 0, 64.0)).unwrap_err().contains("LUTs"));
-        assert!(check_adders(&page(1500, 1, 64.0)).unwrap_err().contains("block RAMs"));
-        assert!(check_adders(&page(1500, 0, 63.9)).unwrap_err().contains("the clock"));
+        assert_eq!(check(&page(1500, 0, 64.0)), Ok(()));
+        assert!(check(&page(1600, 0, 64.0)).unwrap_err().contains("LUTs"));
+        assert!(check(&page(1500, 1, 64.0)).unwrap_err().contains("block RAMs"));
+        assert!(check(&page(1500, 0, 63.9)).unwrap_err().contains("the clock"));
         let without = page(1500, 0, 64.0).replace("| 2 | 750 |", "| 2 | 751 |");
-        assert!(check_adders(&without).unwrap_err().contains("no row"));
+        assert!(check(&without).unwrap_err().contains("no row"));
     }
 }
