@@ -10,7 +10,7 @@ use carrystep_core::engine::{
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped() -> (Build, Arc<str>) {
@@ -103,8 +103,12 @@ pub fn engine_on_adders(axes: usize, adders: usize, clocks: u32, phases: u32) ->
 /// Engines with several adders in the shortest ticks: six axes on two and on six, eight on eight; and
 /// six on two in a longer tick.
 pub fn engines_on_adders() -> Vec<BuiltEngine> {
-    let builds = [(6, 2, 42), (6, 6, 16), (8, 8, 16), (6, 2, 48)];
-    builds.map(|(axes, adders, clocks)| engine_on_adders(axes, adders, clocks, 1)).into()
+    // Three proofs are about them, and each takes some seconds to write.
+    static BUILT: LazyLock<Vec<BuiltEngine>> = LazyLock::new(|| {
+        let builds = [(6, 2, 42), (6, 6, 16), (8, 8, 16), (6, 2, 48)];
+        builds.map(|(axes, adders, clocks)| engine_on_adders(axes, adders, clocks, 1)).into()
+    });
+    BUILT.clone()
 }
 
 /// The parameter with the number of adders for `promises.sv`.
