@@ -448,5 +448,9 @@ pub fn run_programs(
         });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
-    effort::figures(&format!("{} clocks, no difference", clocks.get()));
+    let on = match build.adders {
+        1 => String::new(),
+        adders => format!("{} axes on {adders} adders: ", build.axes()),
+    };
+    effort::figures(&format!("{on}{} clocks, no difference", clocks.get()));
 }

@@ -24,7 +24,10 @@ mod edge_latch;
 mod engine;
 pub mod equivalence;
 mod event_wheel;
+mod findings;
 pub mod independence;
+mod lane_seek;
+mod lane_slots;
 mod latch_bank;
 mod output_control;
 mod parallel_core;
@@ -45,6 +48,7 @@ mod switches;
 mod table;
 mod tick;
 mod time_slot;
+mod wide;
 
 pub use promises::Promises;
 pub use solver::{ProofError, Question, ask, tools};
@@ -96,11 +100,19 @@ pub struct Bug {
 impl Case {
     /// Number of axes for which a star in `promises.sv` stands: the parameter `AXES`.
     pub fn axes(&self) -> usize {
-        self.numbers
-            .iter()
-            .find(|(name, _)| *name == "AXES")
-            .and_then(|(_, axes)| axes.parse().ok())
-            .unwrap_or(1)
+        self.number("AXES")
+    }
+
+    /// Number of lanes, for which a `#` stands there: the parameter `LANES`.
+    pub fn lanes(&self) -> usize {
+        self.number("LANES")
+    }
+
+    /// A parameter of `promises.sv`; 1 if there is none of this name.
+    fn number(&self, wanted: &str) -> usize {
+        let mut numbers = self.numbers.iter();
+        let found = numbers.find(|(name, _)| *name == wanted);
+        found.and_then(|(_, number)| number.parse().ok()).unwrap_or(1)
     }
 
     /// The same Verilog with a bug planted.
@@ -125,12 +137,20 @@ impl Case {
     }
 }
 
-/// Every proof, the slowest first, of the committed Verilog and of small and extreme builds.
+/// Every proof, the slowest ones first, of the committed Verilog and of small and extreme builds.
 pub fn all() -> Vec<Proof> {
-    all_with(&builds::shipped_engine())
+    let mut all = all_with(&builds::shipped_engine());
+    all.extend(of_several_adders());
+    all
 }
 
-/// The same with another engine in the place of the committed one.
+/// Those of the modules that only engines with several adders have.
+fn of_several_adders() -> [Proof; 4] {
+    [wide::proof(), lane_seek::proof(), lane_slots::proof(), findings::proof()]
+}
+
+/// Those of the modules of an engine with one adder, with another one in the place of the committed
+/// one.
 pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
     vec![
         shaper::proof(),

@@ -2,12 +2,13 @@
 //! `hdl-out/resources.md`, which `cargo xtask resources` measures completely. This test measures
 //! the size of all rows, and the clock of the rows marked `always`.
 
-use carrystep_boards::Mapped;
-use carrystep_tests::effort;
+use carrystep_boards::{Mapped, block_rams, board};
+use carrystep_core::engine::{LimitWiring, QUEUE_DEPTHS};
+use carrystep_tests::{effort, moves, pages};
 use carrystep_tools::resources::{
     self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, LINES, LINK_BUDGET, PAGE, ROWS,
 };
-use carrystep_tools::{kept, xilinx};
+use carrystep_tools::{adders, kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
 #[test]
@@ -109,6 +110,40 @@ fn assert_within(found: &Mapped, family: &FamilyRow) {
         && found.carries <= budget.carries
         && found.block_rams <= budget.block_rams;
     assert!(fits, "{found:?} used of {family:?}");
+}
+
+/// Of six axes, on parts whose block RAMs have 18 kbit.
+#[test]
+fn engine_page_gives_the_block_rams_of_adders() {
+    let orangecrab = board("orangecrab").expect("a board");
+    let taken = |adders: usize, limits| {
+        let (file, _) = moves::six_fast_axes();
+        let mut build = file.machine.engine();
+        (build.adders, build.guard.limits) = (adders, limits);
+        assert_eq!((build.axes(), build.queue), (6, QUEUE_DEPTHS[0]));
+        for board in [orangecrab, board("tang-nano-20k").expect("a board")] {
+            assert_eq!(block_rams(&build, board.family), block_rams(&build, orangecrab.family));
+        }
+        u64::from(block_rams(&build, orangecrab.family).whole())
+    };
+    let [one, two] = [1, 2].map(|adders| taken(adders, LimitWiring::None));
+    let (adder, all) = (two - one, taken(6, LimitWiring::Pair));
+    assert_eq!(all - taken(6, LimitWiring::None), 6, "one more for each adder");
+    pages::says(
+        "docs/engine.md",
+        &[
+            format!("takes {} block RAMs of these parts", pages::word(adder)),
+            format!("{} are those of the link", pages::word(one - adder)),
+            format!("six adders with limits need {all}"),
+            format!("the smaller ECP5 has {}:", orangecrab.parts[0].block_rams),
+        ],
+    );
+}
+
+/// `cargo xtask adders` places these rows, which takes minutes.
+#[test]
+fn adders_page_lists_exactly_these_rows() {
+    assert_eq!(adders::check(&pages::file(adders::PAGE)), Ok(()));
 }
 
 #[test]

@@ -1,12 +1,25 @@
 //! Requests that a board cannot satisfy. Each error names what the board has instead.
 
-use super::{boards, names};
+use super::{Family, boards, names};
 use crate::clock::ClockError;
 use carrystep_core::link::BaudError;
 use carrystep_core::self_test::SelfTestError;
 use carrystep_core::tick::mhz;
 use carrystep_files::did_you_mean;
 use thiserror::Error;
+
+/// The families with boards whose engines may have several adders, as in `ECP5, Gowin or Spartan-7`.
+fn with_several_adders() -> String {
+    let mut families: Vec<Family> = boards().iter().map(|board| board.family).collect();
+    families.dedup();
+    let facts = families.into_iter().map(Family::facts);
+    let titles: Vec<&str> =
+        facts.filter(|facts| facts.has_several_adders()).map(|facts| facts.title()).collect();
+    match titles.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => titles.concat(),
+    }
+}
 
 /// A request that a board cannot satisfy.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -41,7 +54,8 @@ pub enum BoardError {
     },
     /// The machine has several adders, and the board's family keeps one.
     #[error(
-        "{board}: an engine in a part of the family {family} has one adder, not {adders}: leave out `adders` in [machine], with a longer tick, or take a board with an ECP5 or a Spartan-7"
+        "{board}: an engine in a part of the family {family} has one adder, not {adders}: leave out `adders` in [machine], with a longer tick, or take a board of the family {}",
+        with_several_adders()
     )]
     Adders {
         /// Name of the board.
@@ -50,6 +64,26 @@ pub enum BoardError {
         family: &'static str,
         /// Number of adders of the machine.
         adders: usize,
+    },
+    /// The block RAMs of the board's part do not hold the memories of the machine's gateware.
+    #[error(
+        "{board}: engine and link with adders = {adders} and queue_depth = {depth} take {needs} block RAMs, and its {part} has {has}: {instead}"
+    )]
+    BlockRams {
+        /// Name of the board.
+        board: String,
+        /// Name of the part.
+        part: String,
+        /// Number of block RAMs that the part has.
+        has: u32,
+        /// Number of block RAMs that the gateware needs.
+        needs: u32,
+        /// Number of adders of the machine.
+        adders: usize,
+        /// Depth of its queues, segments.
+        depth: usize,
+        /// What fits, in words.
+        instead: String,
     },
     /// The machine has more limit switches than the board has pins for.
     #[error(

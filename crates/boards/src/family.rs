@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use strum::IntoStaticStr;
 
+mod block_ram;
 mod ecp5;
 mod gowin;
 mod ice40;
@@ -18,6 +19,7 @@ mod spartan3e;
 mod spartan6;
 mod spartan7;
 
+pub use block_ram::BlockRam;
 pub use pull_ups::{PullUp, PullUps};
 
 /// An FPGA family. Boards are listed in the order of these variants.
@@ -72,6 +74,9 @@ pub trait FpgaFamily: Sync {
     fn writes_parts_of_words(&self) -> bool {
         true
     }
+
+    /// The block RAMs of its parts.
+    fn block_rams(&self) -> &'static [BlockRam];
 
     /// What its pins are until it is configured.
     fn pull_ups(&self) -> PullUps;

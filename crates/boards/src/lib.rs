@@ -16,6 +16,7 @@ use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
 
+mod block_rams;
 pub mod clock;
 mod configuration;
 mod error;
@@ -27,9 +28,10 @@ mod reach;
 mod self_test;
 mod toolchain;
 
+pub use block_rams::{Blocks, block_rams};
 pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
-pub use family::{Family, FpgaFamily, IoStandard, Placer, PllInput, PullUp, PullUps};
+pub use family::{BlockRam, Family, FpgaFamily, IoStandard, Placer, PllInput, PullUp, PullUps};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
 pub use self_test::{BoardSelfTest, SELF_TEST_BAUD};

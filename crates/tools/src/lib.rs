@@ -8,8 +8,10 @@
 //!    Verilog with the netlist's names <--icebox_vlog-- iceunpack <+
 //! ```
 //!
-//! Only [`resources`], the table of the engine's resources, depends on the engine.
+//! Only [`resources`], the table of the engine's resources, [`adders`], that of several adders, and the
+//! page of [`board`] depend on the engine.
 
+pub mod adders;
 pub mod board;
 mod cells;
 pub mod clock_modules;

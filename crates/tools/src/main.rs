@@ -1,11 +1,13 @@
 //! `cargo xtask resources` measures every row and writes `hdl-out/resources.md`. With the argument
 //! `boards` (from `cargo xtask long boards`) it builds all boards but those of Gowin, and writes
 //! `hdl-out/boards.md` and the figures that `carrystep boards` shows. With names behind it, it builds
-//! these boards only. With `unisims FOLDER` (from `cargo xtask unisims`) it checks the clock modules
+//! these boards only. With `adders` (from `cargo xtask adders`) it writes `hdl-out/adders.md`. With
+//! `unisims FOLDER` (from `cargo xtask unisims`) it checks the clock modules
 //! of the Spartans on the models in a folder.
 
 use carrystep_boards::{MEASURED_AT, board, boards as all_boards};
 use carrystep_core::tick::mhz;
+use carrystep_tools::adders;
 use carrystep_tools::board::page;
 use carrystep_tools::clock_modules::{CellModels, clock_module, simulated, spartans};
 use carrystep_tools::resources::{self, FAMILIES, PAGE, ROWS, RowMeasurement};
@@ -24,6 +26,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let written = match arguments.split_first() {
         Some((what, names)) if what == "boards" => boards(names),
+        Some((what, [])) if what == "adders" => several_adders(),
         Some((what, [folder, names @ ..])) if what == "unisims" => unisims(folder, names),
         _ => resources(),
     };
@@ -101,6 +104,19 @@ fn write(page: &str, text: &str) -> Outcome {
     let next = path.with_extension("new");
     std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path))?;
     Ok(())
+}
+
+/// Builds the gateware of all rows of several adders, writes their page, and then checks it.
+fn several_adders() -> Outcome {
+    let mut lines = String::new();
+    for row in &adders::ROWS {
+        let line = row.line(&row.built()?)?;
+        say(line.trim());
+        lines.push_str(&line);
+    }
+    let text = adders::page_of(&lines);
+    write(adders::PAGE, &text)?;
+    Ok(adders::check(&text)?)
 }
 
 /// Measures all rows, writes the page, and then checks it against the budgets.

@@ -49,7 +49,7 @@ const RUNS: &[Run] = &[
     Run {
         name: "adders",
         what: "engines with [several adders](clock-by-clock.md#several-adders), as *lockstep* and *rust-hdl*: six axes on two and on six, eight on eight; planted bugs; a move at 1.9 million steps/s on six axes",
-        asks: &[("CARRYSTEP_CLOCKS", "5000000")],
+        asks: &[("CARRYSTEP_CLOCKS", "3000000")],
         cargo: &[
             "--test",
             "rung_4_model_equals_rust_hdl",

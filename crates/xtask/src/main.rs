@@ -96,12 +96,21 @@ enum Chore {
     },
     /// Measure the engine on every part and write `hdl-out/resources.md` anew (some minutes).
     Resources,
+    /// Build engines with several adders for some boards and write `hdl-out/adders.md` anew (some
+    /// minutes).
+    Adders,
 }
 
 /// Size and speed of every row of the table.
 fn resources() -> shell::TaskResult {
     tools::install()?;
     shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-tools"])
+}
+
+/// What engines with several adders take, and the clocks that they reach.
+fn adders() -> shell::TaskResult {
+    tools::install()?;
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-tools", "--", "adders"])
 }
 
 /// Checks the clock modules of boards on the models in a folder.
@@ -136,6 +145,7 @@ fn main() -> ExitCode {
         Chore::Accuracy => accuracy::write(),
         Chore::Unisims { folder, boards } => unisims(&folder, &boards),
         Chore::Resources => resources(),
+        Chore::Adders => adders(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -10,7 +10,7 @@ use carrystep_core::engine::{
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped() -> (Build, Arc<str>) {
@@ -67,6 +67,12 @@ pub fn small_engine(
     phases: u32,
     limits: LimitWiring,
 ) -> (EngineBuild, Arc<str>) {
+    let build = small_build(axes, clocks, phases, limits);
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
+fn small_build(axes: usize, clocks: u32, phases: u32, limits: LimitWiring) -> EngineBuild {
     let timebase =
         Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
@@ -83,9 +89,31 @@ pub fn small_engine(
         limit_freezes: low,
         ..minimal.guard.clone().active_low(low)
     };
-    let build = EngineBuild { guard, ..minimal };
+    EngineBuild { guard, ..minimal }
+}
+
+/// As [`small_engine`], with limits at both ends and this number of adders.
+pub fn engine_on_adders(axes: usize, adders: usize, clocks: u32, phases: u32) -> BuiltEngine {
+    let small = small_build(axes, clocks, phases, LimitWiring::Pair);
+    let build = EngineBuild { adders, ..small };
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     (build, text)
+}
+
+/// Engines with several adders in the shortest ticks: six axes on two and on six, eight on eight; and
+/// six on two in a longer tick.
+pub fn engines_on_adders() -> Vec<BuiltEngine> {
+    // Three proofs are about them, and each takes some seconds to write.
+    static BUILT: LazyLock<Vec<BuiltEngine>> = LazyLock::new(|| {
+        let builds = [(6, 2, 42), (6, 6, 16), (8, 8, 16), (6, 2, 48)];
+        builds.map(|(axes, adders, clocks)| engine_on_adders(axes, adders, clocks, 1)).into()
+    });
+    BUILT.clone()
+}
+
+/// The parameter with the number of adders for `promises.sv`.
+pub fn lanes(build: &EngineBuild) -> (&'static str, String) {
+    ("LANES", build.adders.to_string())
 }
 
 /// The same with limits at both ends, with inputs in both rows, and with a latch of two looks.
@@ -103,6 +131,14 @@ pub fn engine_with_latches(count: usize) -> (EngineBuild, Arc<str>) {
     let (mut build, _) = engine_with_inputs(2, 32, 4);
     let latch = |number: usize| Latch::of_pin(number == 1, 1 + (number as u8 & 1));
     build.guard.latches = (0..count).map(latch).collect();
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    (build, text)
+}
+
+/// An engine of two axes on two adders, with one latch.
+pub fn engine_with_latch_on_adders() -> BuiltEngine {
+    let (build, _) = engine_with_latches(1);
+    let build = EngineBuild { adders: 2, ..build };
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     (build, text)
 }

@@ -10,8 +10,8 @@
 //!                                 -/-> step, dir, enabled, fault, ...        all other outputs
 //! ```
 
-use super::builds::{engine_with_latches, engine_with_outputs};
-use super::solver::{ProofError, run};
+use super::builds::{engine_with_latch_on_adders, engine_with_latches, engine_with_outputs};
+use super::solver::{ProofError, run_until};
 use super::{Bug, Case};
 use carrystep_core::engine::{EngineBuild, Latch};
 use carrystep_tools::programs::YOSYS;
@@ -33,18 +33,33 @@ const READ: &str = "o:state* o:refreshed* o:latch* o:more_latch*";
 const TO_BITS: &str = "proc\nflatten\nopt_clean\nmemory -nomap\nopt\nmemory_map\nopt\nsimplemap\n\
      opt_expr\nsplitnets -ports\nopt_clean\n";
 
-/// Changes of the engine that make an output depend on a snapshot or a latch.
-pub const BUGS: &[Bug] = &[
-    Bug {
-        breaks: LABEL,
-        text: "unfed <= unfed | (masked & queue_empty);",
-        becomes: "unfed <= unfed | (masked & queue_empty) | readout_page[1];",
-    },
-    Bug {
-        breaks: LABEL,
-        text: ".starts(going & masked),\n        .halted",
-        becomes: ".starts(going & masked & !edge_latch_latches),\n        .halted",
-    },
+/// Changes of an engine that make an output depend on a snapshot or a latch, each with the number of
+/// the case in which it is planted.
+pub const BUGS: &[(usize, Bug)] = &[
+    (
+        0,
+        Bug {
+            breaks: LABEL,
+            text: "unfed <= unfed | (masked & queue_empty);",
+            becomes: "unfed <= unfed | (masked & queue_empty) | readout_page[1];",
+        },
+    ),
+    (
+        0,
+        Bug {
+            breaks: LABEL,
+            text: ".starts(going & masked),\n        .halted",
+            becomes: ".starts(going & masked & !edge_latch_latches),\n        .halted",
+        },
+    ),
+    (
+        2,
+        Bug {
+            breaks: LABEL,
+            text: ".starts(going & masked_1),\n        .halted",
+            becomes: ".starts(going & masked_1 & !edge_latch_latches),\n        .halted",
+        },
+    ),
 ];
 
 /// What an engine shows about its snapshots and latches.
@@ -56,20 +71,25 @@ pub struct Paths {
     pub read: Vec<String>,
 }
 
-/// The engines for which it is proved: of two axes with four latches, in which the bugs are planted,
-/// and of six axes with one latch, all outputs, PWM and cuts.
+/// The engines for which it is proved: of two axes with four latches; of six axes with one latch, all
+/// outputs, PWM and cuts; and of two axes on two adders.
 pub fn cases() -> Vec<Case> {
     let (mut build, _) = engine_with_outputs(0xff, 2);
     build.guard.latches = vec![Latch::of_pin(false, 2)];
     let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     let case = |(build, verilog): (EngineBuild, Arc<str>)| Case {
-        name: format!("{} axes, {} latches", build.axes(), build.guard.latches.len()),
+        name: format!(
+            "{} axes on {}, {} latches",
+            build.axes(),
+            build.adders,
+            build.guard.latches.len()
+        ),
         dut: "carrystep_engine".into(),
         parameters: Vec::new(),
         verilog,
         numbers: Vec::new(),
     };
-    [engine_with_latches(4), (build, text)].map(case).into()
+    [engine_with_latches(4), (build, text), engine_with_latch_on_adders()].map(case).into()
 }
 
 /// Finds the paths from snapshots and latches to the outputs of an engine.
@@ -80,7 +100,8 @@ pub fn paths(case: &Case) -> Result<Paths, ProofError> {
     let dir = tempfile::tempdir()?;
     fs::write(dir.path().join("exported.v"), case.verilog.as_bytes())?;
     fs::write(dir.path().join("paths.ys"), script(case))?;
-    let (fine, said) = run(dir.path(), YOSYS, &["-q", "paths.ys"])?;
+    let is_complete = |said: &str| said.contains("READ\n");
+    let (fine, said) = run_until(dir.path(), YOSYS, &["-q", "paths.ys"], is_complete)?;
     let answers = said.split_once("HARMFUL\n").and_then(|(_, rest)| rest.split_once("READ\n"));
     let Some((harmful, read)) = answers.filter(|_| fine) else {
         return Err(ProofError::Tool { tool: "yosys", said });

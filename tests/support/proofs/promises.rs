@@ -38,9 +38,9 @@ impl Promises {
     }
 
     /// Names that stand for a signal inside the module, with that signal, as declared by
-    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest
-    /// first.
-    pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
+    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes and a `#` for all
+    /// lanes, the highest first.
+    pub fn inside(&self, axes: usize, lanes: usize) -> Vec<(&'static str, String)> {
         let declared = self
             .text
             .lines()
@@ -48,26 +48,33 @@ impl Promises {
         declared
             .map(|(signal, rest)| {
                 let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or(rest);
-                let each = |axis: usize| format!("\\{}", signal.replace('*', &axis.to_string()));
-                let all: Vec<String> = if signal.contains('*') {
-                    (0..axes).rev().map(each).collect()
-                } else {
-                    vec![each(0)]
+                let each = |number: usize| {
+                    format!("\\{}", signal.replace(['*', '#'], &number.to_string()))
                 };
+                let count = match (signal.contains('*'), signal.contains('#')) {
+                    (true, _) => axes,
+                    (false, true) => lanes,
+                    (false, false) => 1,
+                };
+                let all: Vec<String> = (0..count).rev().map(each).collect();
                 (name, all.join(","))
             })
             .collect()
     }
 
     /// Signals inside the module that may have any value in any clock, so that their drivers are
-    /// left out: `// (* free = "dut.word" *)`. A promise that holds without the drivers also holds
-    /// with them.
-    pub fn free(&self) -> Vec<&'static str> {
+    /// left out: `// (* free = "dut.word" *)`; a `#` stands for each lane. A promise that holds without
+    /// the drivers also holds with them.
+    pub fn free(&self, lanes: usize) -> Vec<String> {
         let told = self
             .text
             .lines()
             .filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
-        told.map(|(signal, _)| signal).collect()
+        let each = |signal: &str| -> Vec<String> {
+            let lanes = if signal.contains('#') { lanes } else { 1 };
+            (0..lanes).map(|lane| signal.replace('#', &lane.to_string())).collect()
+        };
+        told.flat_map(|(signal, _)| each(signal)).collect()
     }
 
     fn labelled(&self, kind: &'static str) -> impl Iterator<Item = &'static str> {

@@ -167,11 +167,11 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
         text.push_str(" -D INVARIANTS");
     }
     text.push_str(" promises.sv\nhierarchy -check -top promises\nproc\nflatten\n");
-    for (name, signal) in promises.inside(case.axes()) {
+    for (name, signal) in promises.inside(case.axes(), case.lanes()) {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
     text.push_str(PROBES_ARE_READ_PORTS);
-    for signal in promises.free() {
+    for signal in promises.free(case.lanes()) {
         let _ = writeln!(text, "cutpoint w:{signal}");
     }
     // Two assertions that have become identical would be merged, and one label would be lost.

@@ -1,5 +1,6 @@
 //! Lattice ECP5.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
@@ -27,6 +28,10 @@ impl FpgaFamily for Ecp5 {
 
     fn placer(&self) -> Option<Placer> {
         Some(Placer::Ecp5)
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[BlockRam { halves: 2, widths: OF_18_KBIT, enables: 4 }]
     }
 
     fn pull_ups(&self) -> PullUps {

@@ -1,5 +1,6 @@
 //! Gowin LittleBee (GW1N) and Arora (GW2A), each with a memory in its package (R) or without.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
@@ -27,6 +28,10 @@ impl FpgaFamily for Gowin {
 
     fn placer(&self) -> Option<Placer> {
         Some(Placer::Gowin)
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[BlockRam { halves: 2, widths: OF_18_KBIT, enables: 4 }]
     }
 
     fn pull_ups(&self) -> PullUps {

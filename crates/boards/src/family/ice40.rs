@@ -1,5 +1,6 @@
 //! Lattice iCE40 LP, HX and UltraPlus.
 
+use super::block_ram::BlockRam;
 use super::{FpgaFamily, Placer, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
@@ -35,6 +36,11 @@ impl FpgaFamily for Ice40 {
 
     fn cells(&self) -> &'static str {
         "logic cells"
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        const WIDTHS: &[(u32, u32)] = &[(256, 16), (512, 8), (1024, 4), (2048, 2)];
+        &[BlockRam { halves: 2, widths: WIDTHS, enables: 16 }]
     }
 
     fn pull_ups(&self) -> PullUps {

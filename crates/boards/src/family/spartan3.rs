@@ -1,5 +1,6 @@
 //! Xilinx Spartan-3.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, PllInput, PullUp, PullUps};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
@@ -25,6 +26,10 @@ impl FpgaFamily for Spartan3 {
 
     fn writes_parts_of_words(&self) -> bool {
         false
+    }
+
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[BlockRam { halves: 2, widths: OF_18_KBIT, enables: 1 }]
     }
 
     fn pull_ups(&self) -> PullUps {

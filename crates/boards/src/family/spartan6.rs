@@ -1,5 +1,6 @@
 //! Xilinx Spartan-6.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, PllInput, PullUp, PullUps};
 use crate::clock::ClockManagers;
 use crate::toolchain::{ISE, Toolchain};
@@ -21,6 +22,14 @@ impl FpgaFamily for Spartan6 {
 
     fn yosys(&self) -> Option<&'static str> {
         Some("xc6s")
+    }
+
+    /// A RAMB16 can be two of RAMB8.
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[
+            BlockRam { halves: 1, widths: &[(256, 36), (512, 18), (1024, 9)], enables: 4 },
+            BlockRam { halves: 2, widths: OF_18_KBIT, enables: 4 },
+        ]
     }
 
     fn pull_ups(&self) -> PullUps {

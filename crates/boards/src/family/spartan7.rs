@@ -1,5 +1,6 @@
 //! Xilinx Spartan-7.
 
+use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, PllInput, PullUps};
 use crate::Part;
 use crate::clock::ClockManagers;
@@ -27,6 +28,14 @@ impl FpgaFamily for Spartan7 {
 
     fn yosys(&self) -> Option<&'static str> {
         Some("xc7")
+    }
+
+    /// A RAMB36 can be two of RAMB18.
+    fn block_rams(&self) -> &'static [BlockRam] {
+        &[
+            BlockRam { halves: 1, widths: OF_18_KBIT, enables: 4 },
+            BlockRam { halves: 2, widths: &[(512, 72), (1024, 36), (2048, 18)], enables: 8 },
+        ]
     }
 
     fn pull_ups(&self) -> PullUps {

@@ -59,6 +59,7 @@ impl<'a> Gateware<'a> {
             board.takes(uart.baud())?;
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
+        board.holds(part, &build)?;
         let (chosen_tick, prefix) = (read.chosen_tick, Prefix::default());
         let gateware = Self { board, part, build, line, chosen_tick, prefix, machine };
         // Checks that each port has a pin; the error names the first one that has none.

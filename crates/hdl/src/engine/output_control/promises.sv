@@ -4,7 +4,8 @@
 //   parameters   EXIST: the outputs that the build has; HAS_PWM: 1 if it has a PWM
 //                `DUT: the name of the exported module `output_control`, built with these values
 //   assumptions  The beats of a time slot follow one another (proved in time_slot/promises.sv). A
-//                word is taken only in beat 7 of the time slot of its axis (engine/promises.sv).
+//                word of a segment is taken only in beat 7 of the time slot of its axis
+//                (engine/promises.sv).
 //
 // This file reads the commit of a segment at the end of the time slot of its first tick; the module
 // reads it later.
@@ -43,7 +44,7 @@ module promises (
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0);
-        assume (!take || beat[7]);
+        assume (!take || beat[7] || put_word[3]);
         assume (!begins || before_all || between);
         assume (!(first & (beat[7] | beat[12])) || !before_all && !between);
     end

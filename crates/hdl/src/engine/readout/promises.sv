@@ -60,7 +60,7 @@ module promises (
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && (!strobe || beat[12:0] == 0));
         assume (!caught || beat[12]);
         assume (!met || found);
-        assume ((!latches || latched) && (!comes || strobe));
+        assume (!latches || latched);
     end
 
     // ---- The page of a whole tick: it may be another one only for an axis at its hit.

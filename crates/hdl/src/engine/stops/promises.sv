@@ -5,8 +5,8 @@
 //                LIMIT_FREEZES: 1 if a limit freezes the axes, 0 if it ramps them down
 //                CAUSES: the numbers of the causes, as `NAME=number,...`
 //                `DUT: the name of the exported module `stops`
-//   assumptions  No time slot ends at a strobe, and no axis runs while `halted` is 1 (proved in
-//                engine/promises.sv).
+//   assumptions  No time slot ends at a strobe, and no axis runs in a time slot that ends while
+//                `halted` is 1 (proved in engine/promises.sv and engine/wide/promises.sv).
 //
 // The signals of a stop are single bits for all axes, so every statement here holds for each axis.
 
@@ -40,7 +40,7 @@ module promises (
 
     always_comb begin
         assume (!strobe || !time_slot_ends);
-        assume (!halted || !runs);
+        assume (!halted || !time_slot_ends || !runs);
         assume (!completes || strobe && ending && stage_2);
     end
 
