@@ -123,8 +123,11 @@ pub fn page_of(lines: &str) -> String {
         "\
 # Several adders
 
-Written by `cargo xtask adders`. Line, link and engine of the shipped machine's six axes on the pins of the board, without limits, with queues of seven segments, at the shortest tick in four phases: by the tools of
-[boards.md](boards.md), with the first of five seeds that reaches the clock. LUTs are counted with those of carry chains; their budget is in brackets. None was ever tried on real hardware.
+Written by `cargo xtask adders`. Line, link and engine of the shipped machine's six axes on the pins
+of the board, without limits, with queues of seven segments, at the shortest tick in four phases. By
+the tools of [boards.md](boards.md), with the first of five seeds that reaches the clock. LUTs are
+counted with those of carry chains; their budget is in brackets. None was ever tried on real
+hardware.
 
 | board | part | adders | tick, ns | clock, MHz | LUTs (budget) | block RAMs | Fmax, MHz | seed |
 |---|---|---|---|---|---|---|---|---|
