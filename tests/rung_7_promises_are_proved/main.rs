@@ -34,10 +34,13 @@ fn jobs(proof: &Proof) -> Vec<Job<'_>> {
         jobs.push(job(case, Question::Induction(proof.depth)));
         jobs.push(job(case, Question::Base(proof.depth + 1)));
     }
+    // A bug in the wiring of several adders takes the solver long to reach.
+    let is_planted = proof.module != "wide" || effort::repeats_in_full();
     jobs.extend(
         proof
             .bugs
             .iter()
+            .filter(|_| is_planted)
             .map(|bug| job(&first.with(bug), Question::Fails(bug.breaks, proof.reach))),
     );
     jobs

@@ -85,7 +85,7 @@ const RUNS: &[Run] = &[
     Run {
         name: "proofs",
         what: "the [promises](promises.md), their covers and planted bugs",
-        asks: &[],
+        asks: &[("CARRYSTEP_REPEATS", "all")],
         cargo: &["--test", "rung_7_promises_are_proved"],
     },
     Run {
