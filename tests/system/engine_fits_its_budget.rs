@@ -132,7 +132,7 @@ fn engine_page_gives_the_block_rams_of_adders() {
     pages::says(
         "docs/engine.md",
         &[
-            format!("takes {} block RAMs of these parts", pages::word(adder)),
+            format!("takes {} block RAMs of 18 kbit", pages::word(adder)),
             format!("{} are those of the link", pages::word(one - adder)),
             format!("six adders with limits need {all}"),
             format!("the smaller ECP5 has {}:", orangecrab.parts[0].block_rams),

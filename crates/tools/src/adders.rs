@@ -4,7 +4,8 @@
 use crate::SynthesisError;
 use crate::board::{BuildJob, Built, build};
 use crate::resources::failed;
-use carrystep_boards::{Board, block_rams, board};
+use crate::xilinx;
+use carrystep_boards::{Board, Mapped, block_rams, board};
 use carrystep_core::EngineBuild;
 use carrystep_core::tick::mhz;
 use carrystep_files::SourceText;
@@ -32,14 +33,28 @@ const fn row(board: &'static str, clock_hz: u64, adders: usize, budget: u32) -> 
 }
 
 /// All rows of the page.
-pub const ROWS: [Row; 6] = [
+pub const ROWS: [Row; 9] = [
     row("orangecrab", 64_000_000, 1, 1550),
     row("orangecrab", 64_000_000, 2, 2200),
     row("orangecrab", 64_000_000, 6, 4200),
     row("colorlight-i5", 62_500_000, 6, 4200),
     row("tang-nano-20k", 48_000_000, 1, 1800),
     row("tang-nano-20k", 48_000_000, 2, 2300),
+    row("arty-s7", 64_000_000, 1, 900),
+    row("arty-s7", 64_000_000, 2, 1300),
+    row("arty-s7", 64_000_000, 6, 2750),
 ];
+
+/// What the tools make of a row.
+pub enum Made {
+    /// A bitstream.
+    Placed(Built),
+    /// The cells of yosys: only the vendor's tools place the part.
+    Mapped(Mapped),
+}
+
+/// Stands in the place of the clock where nothing was placed.
+const NOT_PLACED: &str = "not placed";
 
 impl Row {
     fn board(&self) -> Result<&'static Board, SynthesisError> {
@@ -64,11 +79,17 @@ impl Row {
         Gateware::new(board, &board.parts[0], machine).map_err(failed)
     }
 
-    /// Builds the row's gateware to a bitstream.
+    /// The family by the name of `synth_xilinx`, if only the vendor's tools place its parts.
+    fn unplaced(&self) -> Result<Option<&'static str>, SynthesisError> {
+        let facts = self.board()?.family.facts();
+        Ok(facts.yosys().filter(|_| facts.toolchain().by_hand.is_some()))
+    }
+
+    /// Builds the row's gateware to a bitstream, or to cells where no open tool places the part.
     ///
     /// # Errors
     /// [`SynthesisError`] if a tool is missing or fails.
-    pub fn built(&self) -> Result<Built, SynthesisError> {
+    pub fn made(&self) -> Result<Made, SynthesisError> {
         let gateware = self.gateware()?;
         let files = gateware.files().map_err(failed)?;
         let end = self.board()?.family.facts().toolchain().constraints_end();
@@ -76,31 +97,42 @@ impl Row {
             let files = files.iter().filter(|file| file.name.ends_with(extension));
             files.map(|file| file.text.as_str()).collect()
         };
+        let (verilog, top) = (texts(".v"), gateware.top());
+        if let Some(family) = self.unplaced()? {
+            return xilinx::cells(&verilog, &top, family).map(Made::Mapped);
+        }
         let job = BuildJob {
-            verilog: &texts(".v"),
-            top: &gateware.top(),
+            verilog: &verilog,
+            top: &top,
             constraints: &texts(end),
             part: gateware.part(),
             clock_hz: self.clock_hz,
         };
-        build(&job, &mut |_| {})
+        build(&job, &mut |_| {}).map(Made::Placed)
     }
 
     /// The line of the page, from what the tools have made of it.
     ///
     /// # Errors
     /// [`SynthesisError::Gateware`] if there is no such gateware.
-    pub fn line(&self, built: &Built) -> Result<String, SynthesisError> {
-        let (size, has) = (built.size, self.board()?.parts[0].block_rams);
-        let fmax = (built.mhz * 10.0).floor() / 10.0;
-        Ok(format!(
-            "{} {} ({}) | {} of {has} | {fmax:.1} | {} |\n",
-            self.key()?,
-            size.logic_cells,
-            self.budget,
-            size.block_rams,
-            built.seed
-        ))
+    pub fn line(&self, made: &Made) -> Result<String, SynthesisError> {
+        let has = self.board()?.parts[0].block_rams;
+        let gateware = self.gateware()?;
+        let computed = block_rams(gateware.build(), gateware.part().family());
+        let (luts, block_rams, reached) = match made {
+            Made::Placed(Built { size, mhz, seed, .. }) => {
+                let fmax = (mhz * 10.0).floor() / 10.0;
+                (size.logic_cells, size.block_rams, format!("{fmax:.1} | {seed}"))
+            }
+            // yosys counts block RAMs of two sizes; the part has only the larger ones.
+            Made::Mapped(Mapped { luts, block_rams, .. }) => {
+                let is_computed = *block_rams == computed.of_all_kinds;
+                let taken = if is_computed { computed.whole() } else { *block_rams };
+                (*luts, taken, format!("{NOT_PLACED} | "))
+            }
+        };
+        let (key, budget) = (self.key()?, self.budget);
+        Ok(format!("{key} {luts} ({budget}) | {block_rams} of {has} | {reached} |\n"))
     }
 
     /// Beginning of the line.
@@ -126,7 +158,8 @@ pub fn page_of(lines: &str) -> String {
 Written by `cargo xtask adders`. Line, link and engine of the shipped machine's six axes on the pins
 of the board, without limits, with queues of seven segments, at the shortest tick in four phases. By
 the tools of [boards.md](boards.md), with the first of five seeds that reaches the clock. LUTs are
-counted with those of carry chains; their budget is in brackets. None was ever tried on real
+counted with those of carry chains; their budget is in brackets. A Spartan-7 is not placed: LUTs by
+yosys (`synth_xilinx -nowidelut -flatten`), without carry chains. None was ever tried on real
 hardware.
 
 | board | part | adders | tick, ns | clock, MHz | LUTs (budget) | block RAMs | Fmax, MHz | seed |
@@ -163,8 +196,13 @@ pub fn check(page: &str) -> Result<(), String> {
         if number(1) != Some(f64::from(taken)) {
             return Err(wrong("block RAMs"));
         }
-        if number(2).is_none_or(|mhz| mhz * 1e6 < row.clock_hz as f64) {
+        let is_placed = row.unplaced().map_err(|error| error.to_string())?.is_none();
+        let reaches = number(2).is_some_and(|mhz| mhz * 1e6 >= row.clock_hz as f64);
+        if is_placed && !reaches {
             return Err(wrong("the clock"));
+        }
+        if !is_placed && cells.get(2).is_none_or(|cell| cell.trim() != NOT_PLACED) {
+            return Err(wrong("what is not placed"));
         }
     }
     Ok(())
@@ -181,8 +219,15 @@ mod tests {
             let gateware = row.gateware().unwrap();
             let taken = block_rams(gateware.build(), gateware.part().family()).whole();
             let size = Size { logic_cells: luts, block_rams: taken + block_rams_more };
-            row.line(&Built { size, seed: 1, mhz, icetime_mhz: None, bitstream: Vec::new() })
-                .unwrap()
+            let built = Built { size, seed: 1, mhz, icetime_mhz: None, bitstream: Vec::new() };
+            let mapped = || {
+                let block_rams =
+                    block_rams(gateware.build(), gateware.part().family()).of_all_kinds;
+                let luts = luts.min(row.budget);
+                Mapped { luts, block_rams: block_rams + block_rams_more, ..Mapped::default() }
+            };
+            let unplaced = row.unplaced().unwrap().is_some();
+            row.line(&if unplaced { Made::Mapped(mapped()) } else { Made::Placed(built) }).unwrap()
         };
         page_of(&ROWS.iter().map(line).collect::<String>())
     }

@@ -110,7 +110,7 @@ fn write(page: &str, text: &str) -> Outcome {
 fn several_adders() -> Outcome {
     let mut lines = String::new();
     for row in &adders::ROWS {
-        let line = row.line(&row.built()?)?;
+        let line = row.line(&row.made()?)?;
         say(line.trim());
         lines.push_str(&line);
     }
