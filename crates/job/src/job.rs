@@ -12,11 +12,11 @@ use crate::refuse::refuse;
 use crate::rhythm::{LONGEST, Rhythm, shortest};
 use crate::row::Row;
 use crate::run::Runs;
-use crate::targets::Targets;
+use crate::targets::{Targets, with_still_letters};
 use crate::vector::Point;
 use crate::weave::{Broken, Span, Weave};
 use carrystep_core::Segment;
-use carrystep_files::{Axis, Machine};
+use carrystep_files::Machine;
 use carrystep_plan::exact::{nearest, travel};
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -146,16 +146,6 @@ impl<const N: usize> Job<N> {
             ended: false,
         })
     }
-}
-
-/// The machine with letters added that nothing names and nothing moves, up to so many.
-fn with_still_letters(machine: &Machine, count: usize) -> Machine {
-    let mut machine = machine.clone();
-    for number in machine.axes.len()..count {
-        let Some(first) = machine.axes.first().cloned() else { break };
-        machine.axes.push(Axis { letter: number.to_string(), travel: None, ..first });
-    }
-    machine
 }
 
 impl<const N: usize> Jobs for Job<N> {

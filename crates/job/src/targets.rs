@@ -1,9 +1,10 @@
-//! Exact targets: letters to whole steps of the motors, and back.
+//! Exact targets: letters to whole steps of the motors, and back. A job has room for N letters; those
+//! that its machine does not have stand still.
 
 use crate::error::JobError;
 use crate::vector::Point;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
-use carrystep_files::Machine;
+use carrystep_files::{Axis, Machine};
 
 /// Most steps from machine zero: the position register has 32 bits.
 const MOST_STEPS: i64 = (1 << 31) - 1;
@@ -117,6 +118,16 @@ impl<const N: usize> Targets<N> {
         }
         Ok(())
     }
+}
+
+/// The machine with letters added that nothing names and nothing moves, up to so many.
+pub(crate) fn with_still_letters(machine: &Machine, count: usize) -> Machine {
+    let mut machine = machine.clone();
+    for number in machine.axes.len()..count {
+        let Some(first) = machine.axes.first().cloned() else { break };
+        machine.axes.push(Axis { letter: number.to_string(), travel: None, ..first });
+    }
+    machine
 }
 
 fn not_finite(value: f64, line: u64) -> JobError {

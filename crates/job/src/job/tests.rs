@@ -17,18 +17,24 @@ fn machine(letters: &str) -> Machine {
     Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
 
-/// A corner, an arc, a reversal, a short and a long line.
+/// A corner, an arc, a reversal and a long line, then short lines that go to and fro within some
+/// tolerances. With the rotary tolerance in the place of the linear one, no proof would get far there.
 fn items(letters: usize) -> Vec<Item> {
-    let ends = [[10.0, 0.0], [10.0, 5.0], [14.0, 9.0], [13.0, 9.0], [13.01, 9.0], [0.0, -20.0]];
+    let mut ends = vec![[10.0, 0.0], [10.0, 5.0], [14.0, 9.0], [13.0, 9.0], [0.0, -20.0]];
+    let mut random = 1_u32;
+    ends.extend((0..40).map(|_| {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        [f64::from(random >> 24) / 3000.0, f64::from(random >> 16 & 255) / 3000.0 - 20.0]
+    }));
     let element = |(number, end): (usize, [f64; 2])| {
         let angle = -std::f64::consts::FRAC_PI_2;
         let arc = Arc { plane: [0, 1], centre: [14.0, 5.0], angle };
         let mut to = end.to_vec();
-        to.resize(letters, number as f64 / 4.0);
+        to.resize(letters, number.min(5) as f64 / 4.0);
         Item::Move(Element {
             to,
             arc: (number == 2).then_some(arc),
-            feed: (number != 5).then_some(30.0),
+            feed: (number != 4).then_some(30.0),
             tolerance: Tolerance { linear: 0.02, rotary: 0.0005 },
             line: number as u64,
             block: 0,
