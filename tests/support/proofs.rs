@@ -117,8 +117,8 @@ impl Case {
 
     /// The same Verilog with a bug planted.
     ///
-    /// # Panics If the text does not occur in the module exactly once; the bug must then be
-    /// rewritten.
+    /// # Panics
+    /// If the text does not occur in the module exactly once; the bug must then be rewritten.
     pub fn with(&self, bug: &Bug) -> Self {
         let begins =
             [" (", " #("].map(|head| self.verilog.find(&format!("module {}{head}\n", self.dut)));

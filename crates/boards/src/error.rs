@@ -3,6 +3,7 @@
 use super::{Family, boards, names};
 use crate::clock::ClockError;
 use carrystep_core::link::BaudError;
+use carrystep_core::one_of;
 use carrystep_core::self_test::SelfTestError;
 use carrystep_core::tick::mhz;
 use carrystep_files::did_you_mean;
@@ -12,13 +13,9 @@ use thiserror::Error;
 fn with_several_adders() -> String {
     let mut families: Vec<Family> = boards().iter().map(|board| board.family).collect();
     families.dedup();
-    let facts = families.into_iter().map(Family::facts);
-    let titles: Vec<&str> =
-        facts.filter(|facts| facts.has_several_adders()).map(|facts| facts.title()).collect();
-    match titles.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-        _ => titles.concat(),
-    }
+    let facts = families.into_iter().map(Family::facts).filter(|it| it.has_several_adders());
+    let titles: Vec<String> = facts.map(|facts| facts.title().to_owned()).collect();
+    one_of(&titles)
 }
 
 /// A request that a board cannot satisfy.
@@ -54,7 +51,8 @@ pub enum BoardError {
     },
     /// The machine has several adders, and the board's family keeps one.
     #[error(
-        "{board}: an engine in a part of the family {family} has one adder, not {adders}: leave out `adders` in [machine], with a longer tick, or take a board of the family {}",
+        "{board}: an engine in a part of the family {family} has one adder, not {adders}: leave out \
+         `adders` in [machine], with a longer tick, or take a board of the family {}",
         with_several_adders()
     )]
     Adders {
@@ -67,7 +65,8 @@ pub enum BoardError {
     },
     /// The block RAMs of the board's part do not hold the memories of the machine's gateware.
     #[error(
-        "{board}: engine and link with adders = {adders} and queue_depth = {depth} take {needs} block RAMs, and its {part} has {has}: {instead}"
+        "{board}: engine and link with adders = {adders} and queue_depth = {depth} take {needs} \
+         block RAMs, and its {part} has {has}: {instead}"
     )]
     BlockRams {
         /// Name of the board.

@@ -23,6 +23,8 @@ pub mod fault;
 pub mod fixed;
 #[cfg(feature = "alloc")]
 pub mod link;
+#[cfg(feature = "alloc")]
+mod one_of;
 mod output_change;
 #[cfg(feature = "alloc")]
 pub mod ports;
@@ -47,5 +49,7 @@ pub use self::{
     self_test::SelfTest,
     tick::ChosenTick,
 };
+#[cfg(feature = "alloc")]
+pub use one_of::one_of;
 pub use output_change::OutputChange;
 pub use segment::Segment;

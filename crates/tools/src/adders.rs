@@ -72,8 +72,8 @@ impl Row {
         let baud = board.uart(self.clock_hz).map_err(failed)?.baud();
         let Self { clock_hz, adders, .. } = self;
         let text = format!(
-            "[machine]\nclock_hz = {clock_hz}\nphases = 4\nadders = {adders}\n\n[machine.guard]\nlimits = \"none\"\n\n\
-             [machine.link]\nbaud = {baud}\n\n[[machine.axis]]{axes}"
+            "[machine]\nclock_hz = {clock_hz}\nphases = 4\nadders = {adders}\n\n\
+             [machine.guard]\nlimits = \"none\"\n\n[machine.link]\nbaud = {baud}\n\n[[machine.axis]]{axes}"
         );
         let machine = SourceText { path: "machine.toml".into(), text: text.into() };
         Gateware::new(board, &board.parts[0], machine).map_err(failed)

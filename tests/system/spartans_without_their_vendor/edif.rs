@@ -122,7 +122,8 @@ fn edif_of_every_board_has_the_names_of_its_constraints() {
         format!("{} to {}", counts().min().unwrap_or(0), counts().max().unwrap_or(0))
     };
     effort::figures(&format!(
-        "{} boards: EDIF of {} cells and {} nets, read alike by spydrnet and by us, each of {} ports with its net and its pin",
+        "{} boards: EDIF of {} cells and {} nets, read alike by spydrnet and by us, each of {} ports \
+         with its net and its pin",
         all.len(),
         range(|one| one.cells),
         range(|one| one.nets),

@@ -8,6 +8,7 @@
 //! ```
 
 use super::{TIME_SLOT_CLOCKS, time_slots};
+use crate::one_of;
 use alloc::format;
 use alloc::string::{String, ToString as _};
 use alloc::vec::Vec;
@@ -39,10 +40,7 @@ impl Adders {
     pub(super) fn possible(&self) -> String {
         let counts: Vec<String> =
             adder_counts(self.axes).map(|adders| adders.to_string()).collect();
-        match counts.split_last() {
-            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-            _ => counts.concat(),
-        }
+        one_of(&counts)
     }
 
     /// What the time slots need, up to the number of clocks.

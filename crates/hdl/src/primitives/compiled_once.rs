@@ -24,7 +24,8 @@ pub(crate) trait Kernel {
 
 /// Implements `Logic` for a generic module that implements [`Kernel`]: `logic!(Engine<N = 8, S = 1>)`
 /// compiles `hdl` for 8 and 1. In the kernel, a loop to 8 must be one to N and a slice of 8 bits one
-/// of N bits, and the same for S; [`assert_sizes_agree`] finds out.
+/// of N bits, and the same for S; [`assert_sizes_agree`] finds out. A kernel that has slices of 8 bits
+/// for another reason is compiled for 7.
 macro_rules! logic {
     ($module:ident<$($size:ident = $compiled:literal),+>) => {
         impl<$(const $size: usize),+> Logic for $module<$($size),+> {

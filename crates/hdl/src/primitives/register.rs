@@ -45,6 +45,8 @@ impl<T: Synth> Input<T> {
 }
 
 impl<T: Synth> Default for Input<T> {
+    // An engine has some fifty inputs; in its constructors, which exist for each size, each would be
+    // written out.
     #[inline(never)]
     fn default() -> Self {
         Self {
