@@ -17,8 +17,9 @@ fn machine(letters: &str) -> Machine {
     Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
 
-/// A corner, an arc, a reversal and a long line, then short lines that go to and fro within some
-/// tolerances. With the rotary tolerance in the place of the linear one, no proof would get far there.
+/// A corner, an arc, a reversal and a long line; then short lines to and fro, some of them shorter
+/// than the linear tolerance. The rotary tolerance is a fortieth of it: a planner that applies it to a
+/// machine without rotary letters plans these lines in another way.
 fn items(letters: usize) -> Vec<Item> {
     let mut ends = vec![[10.0, 0.0], [10.0, 5.0], [14.0, 9.0], [13.0, 9.0], [0.0, -20.0]];
     let mut random = 1_u32;
