@@ -22,6 +22,11 @@ use std::time::{Duration, Instant};
 /// release it by themselves.
 const SOON: Duration = Duration::from_secs(10);
 
+/// How long a command that drives waits for a port that another one holds which drives: that may be
+/// about to end. Between closing the port and ending its claim it holds a pseudo-terminal that is
+/// gone, whose number the system may have given to the next board.
+const ENDING: Duration = Duration::from_secs(3);
+
 /// Where Linux has its pseudo-terminals, behind which are programs, such as a virtual board.
 const PSEUDO_TERMINALS: &str = "/dev/pts/";
 
@@ -182,7 +187,13 @@ fn connect(
             break claim;
         }
         let holder = control::holder(port);
-        if !holder.as_ref().is_some_and(|holder| holder.listens) && begin.elapsed() < SOON {
+        let patience = match &holder {
+            // `stop` and `status` call it instead.
+            Some(holder) if holder.listens && !drives => Duration::ZERO,
+            Some(holder) if holder.listens => ENDING,
+            _ => SOON,
+        };
+        if begin.elapsed() < patience {
             std::thread::sleep(Duration::from_millis(5));
             continue;
         }

@@ -147,7 +147,12 @@ impl Homed {
         passed(&ran);
         assert!(ran.stdout.contains("soft limits of x"), "{}", ran.stdout);
         self.nothing_resumes();
-        assert!(self.board.end().contains("\nx at -160\n"));
+        self.ends_at_3_mm();
+    }
+
+    fn ends_at_3_mm(self) {
+        let end = self.board.end();
+        assert!(end.contains("\nx at -160\n"), "{end}");
     }
 
     /// Behind a freeze: nothing runs before the machine is homed again; the work offsets stay.
@@ -169,7 +174,7 @@ impl Homed {
         passed(&self.runs("home"));
         assert!(self.runs("offset").stdout.ends_with("\nG55 y 3\n"));
         passed(&run(&self.folder, &self.board, ""));
-        assert!(self.board.end().contains("\nx at -160\n"));
+        self.ends_at_3_mm();
     }
 }
 

@@ -4,7 +4,10 @@
 use crate::command::{Folder, Ran};
 use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
 use serde_json::Value;
+use std::fs::File;
 use std::io::Read;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -225,6 +228,34 @@ fn a_port_that_is_held_is_refused_by_every_name() {
     passed(&ran);
     assert!(ran.stdout.contains("was stopped"), "{}", ran.stdout);
     assert_eq!(document(child)["stopped_by"], "stop");
+}
+
+#[test]
+fn a_command_that_is_about_to_end_is_waited_for() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    // The claim of a command that has closed the port already.
+    let device = std::fs::metadata(&board.port).unwrap().rdev();
+    let user = rustix::process::geteuid().as_raw();
+    let name = format!("{}-{}.lock", rustix::fs::major(device), rustix::fs::minor(device));
+    passed(&folder.run(&format!("status --port {} --machine machine.toml", board.port)));
+    let path = [format!("/run/user/{user}/carrystep"), format!("/tmp/carrystep-{user}")]
+        .into_iter()
+        .map(PathBuf::from)
+        .find(|path| path.is_dir())
+        .unwrap()
+        .join(name);
+    let claim = File::create(&path).unwrap();
+    claim.lock().unwrap();
+    let holder = r#"{"pid": 7, "command": "run", "baud": 3000000, "listens": true}"#;
+    std::fs::write(&path, holder).unwrap();
+    let mut child = drives(&folder, "jog x 1 --machine machine.toml", &board.port);
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(child.try_wait().unwrap(), None, "it has ended: {}", said(&mut child));
+    std::fs::remove_file(&path).unwrap();
+    drop(claim);
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]
