@@ -1,12 +1,8 @@
 //! Tests the reader with captures of all kinds: by carrystep, by other simulators, by logic
 //! analysers, and broken ones.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
-use common::*;
 use proptest::prelude::*;
 
 fn read(

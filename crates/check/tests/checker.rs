@@ -1,13 +1,9 @@
 //! Tests that the checker passes a correct pulse train, and names the error of each kind of wrong
 //! one.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
 use carrystep_profile::Course;
-use common::*;
 
 fn sorted(mut train: Vec<PinChange>) -> Vec<PinChange> {
     train.sort_by_key(|change| change.ps);

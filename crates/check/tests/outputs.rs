@@ -1,12 +1,8 @@
 //! Tests the CSV and the plot of a whole run.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
 use carrystep_core::StartPhase;
-use common::*;
 
 #[test]
 fn csv_has_a_line_for_every_pulse() {

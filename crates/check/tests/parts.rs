@@ -1,13 +1,9 @@
 //! The parts of a capture, each checked without knowledge of what was before, give the report of
 //! the whole capture, whatever is wrong with its pulses.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
 use carrystep_profile::Course;
-use common::*;
 use proptest::prelude::*;
 use std::ops::Range;
 

@@ -1,11 +1,7 @@
 //! The slices of a capture in a file give the report of the whole capture.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
-use common::*;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

@@ -1,13 +1,9 @@
 //! Tests with an independent reader that the VCD contains the pins and values that were written,
 //! that the FST is equal to it, and that every name of the save file is in the VCD.
 
-#![allow(clippy::unwrap_used)] // A test may panic.
-
-mod common;
-
+use crate::common::*;
 use carrystep_check::*;
 use carrystep_core::StartPhase;
-use common::*;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use wellen::simple::Waveform;

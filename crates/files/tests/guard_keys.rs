@@ -1,8 +1,6 @@
 //! Tests of `[machine.guard]` and `stop_accel`: the values in the gateware, and every kind of
 //! mistake.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::engine::{Between, Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUNDS};
 use carrystep_files::{InputError, Machine, SourceText};
 

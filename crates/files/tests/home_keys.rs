@@ -1,8 +1,6 @@
 //! Tests of `travel`, `home` and `home_order`: the values in steps and ticks, and every kind of
 //! mistake.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_files::machine::{End, overrun};
 use carrystep_files::{InputError, Machine, SourceText};
 

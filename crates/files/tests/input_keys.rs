@@ -1,7 +1,5 @@
 //! Tests of `[machine.inputs]`: the values in the gateware, and every kind of mistake.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::engine::{Guard, InputRow, Latch, LatchSource};
 use carrystep_files::{InputError, Machine, SourceText};
 use std::fmt::Write as _;

@@ -1,8 +1,6 @@
 //! `kinematics` in machine files: what makes the motors of crossed belts equal, what is refused, and
 //! what moves of letters become.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_files::machine::Kinematics;
 use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, SourceText};
 

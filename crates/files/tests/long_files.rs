@@ -1,8 +1,6 @@
 //! A long move file is read move by move. It must give the moves and the mistakes of the same text
 //! read as a whole.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_files::{InputError, Move, MoveFile, MoveSource, SourceText};
 use std::path::PathBuf;
 use tempfile::TempDir;

@@ -1,7 +1,5 @@
 //! Tests of valid machine files.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::{AXES, PinTimes, PinTiming, StartPhase};
 use carrystep_files::{BigDecimal, Machine, SourceText};
 

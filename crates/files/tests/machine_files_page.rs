@@ -1,8 +1,6 @@
 //! Tests of docs/machine-files.md: the page lists the keys and defaults of the reader, and its
 //! examples are valid.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::ChosenTick;
 use carrystep_files::{Machine, MoveFile, SourceText};
 

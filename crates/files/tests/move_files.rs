@@ -1,7 +1,5 @@
 //! Tests of valid move files: distances are exact decimals, and the steps follow their sum.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::ProfileKind;
 use carrystep_files::{MoveFile, SourceText};
 

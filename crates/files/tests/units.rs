@@ -1,8 +1,6 @@
 //! Tests of axes described by their mechanics: units, turns of the motor, speeds per minute. The
 //! build equals that of the same axis in steps and seconds.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::link::{BuildId, LineKind};
 use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, SourceText};
 

@@ -1,9 +1,7 @@
 //! Codes that do not move: each gives exactly its canonical actions.
 
-mod support;
-
+use crate::support::canons;
 use carrystep_gcode::{Canon, PathMode, Turn};
-use support::canons;
 
 /// The actions of a program, without the end.
 fn actions(text: &str) -> Vec<Canon> {

@@ -1,12 +1,10 @@
 //! Every point of an arc is on its circle, and its ends are exact.
 
-mod support;
-
+use crate::support::{canons, point, words};
 use carrystep_gcode::{Arc, Canon, Plane, Point};
 use proptest::prelude::*;
 use proptest::sample::select;
 use std::f64::consts::TAU;
-use support::{canons, point, words};
 
 /// G code, letters of the axes and of the centre in the order of [`Plane::axes`].
 const PLANES: [(&str, &str, &str, Plane); 3] = [

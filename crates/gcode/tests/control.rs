@@ -1,10 +1,8 @@
 //! O-words, messages and the end of programs.
 
-mod support;
-
+use crate::support::{canons, steps, xs};
 use carrystep_gcode::{Canon, Input, Interpreter, Options, Pace, Step, Until};
 use std::io::Cursor;
-use support::{canons, steps, xs};
 
 #[test]
 fn only_the_first_branch_whose_condition_holds_is_taken() {

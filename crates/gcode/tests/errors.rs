@@ -1,10 +1,8 @@
 //! Each mistake is refused at its line and column, with a remedy.
 
-mod support;
-
+use crate::support::{self, steps};
 use carrystep_gcode::{Canon, ErrorKind, GcodeError, Interpreter, Options};
 use std::io::Cursor;
-use support::steps;
 
 /// Asserts that programs are refused at these places with messages that contain these words.
 fn assert_refused(cases: &[(&str, &str, &str)]) {

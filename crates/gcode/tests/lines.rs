@@ -1,7 +1,5 @@
 //! Lines one by one give what the same lines give as a program, and a mistake changes nothing.
 
-#![allow(clippy::unwrap_used)] // Tests may panic.
-
 use carrystep_gcode::{Canon, ErrorKind, Interpreter, LineInterpreter, Options};
 use proptest::prelude::*;
 use std::io::Cursor;

@@ -5,17 +5,14 @@
 //! must agree: kind, line, end, centre and number of turns of arcs, feed and time. Programs that
 //! one of them refuses, or that do not move, are listed with the reason.
 
-#[path = "linuxcnc/random.rs"]
-mod random;
-mod support;
-
+use crate::random;
+use crate::support::{files, jobs, main_of_subroutines, programs, tool_table, tools};
 use carrystep_gcode::{Canon, Interpreter, Options, Pace, Plane, Point};
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::TestRunner;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use support::{files, jobs, main_of_subroutines, programs, tool_table, tools};
 
 /// Greatest difference of two places, in mm or degrees.
 const SAME: f64 = 1e-9;

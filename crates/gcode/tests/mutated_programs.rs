@@ -1,14 +1,12 @@
 //! No text whatever makes the interpreter panic or run without end.
 
-mod support;
-
+use crate::support::{jobs, programs, tools};
 use carrystep_gcode::{Canon, Interpreter, Options};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::io::Cursor;
 use std::sync::OnceLock;
-use support::{jobs, programs, tools};
 
 /// Most lines of a program that are mutated: the long jobs repeat themselves.
 const LINES: usize = 120;

@@ -1,10 +1,8 @@
 //! `docs/gcode.md` lists exactly the codes that are done, and those that are refused with a reason.
 
-mod support;
-
+use crate::support::steps;
 use carrystep_gcode::{DEFAULT_BLOCKS, ErrorKind};
 use std::collections::BTreeSet;
-use support::steps;
 
 /// What the interpreter makes of a code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

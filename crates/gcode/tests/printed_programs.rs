@@ -1,12 +1,10 @@
 //! Random moves that are printed as a program, in any style, are read back.
 
-mod support;
-
+use crate::support::{canons, is_apart, point};
 use carrystep_gcode::{AXIS_LETTERS, Canon, Pace, Point, Turn};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
-use support::{canons, is_apart, point};
 
 /// How a move is written, where the language leaves a choice.
 #[derive(Debug, Clone)]

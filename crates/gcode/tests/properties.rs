@@ -1,12 +1,10 @@
 //! Random expressions, units, offsets and feeds, compared with a small model of their own.
 
-mod support;
-
+use crate::support::{canons, is_apart, point, steps, words};
 use carrystep_gcode::{Canon, Pace, Point};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
-use support::{canons, is_apart, point, steps, words};
 
 /// An expression of the model: its text and its value are computed from the same tree.
 #[derive(Debug, Clone)]

@@ -1,10 +1,8 @@
 //! Subroutines by number (M98, M99), and subroutines in files of their own.
 
-mod support;
-
+use crate::support::{steps, xs};
 use carrystep_gcode::{Canon, ErrorKind, GcodeError, Interpreter, Options, Step};
 use std::path::Path;
-use support::{steps, xs};
 use tempfile::TempDir;
 
 /// A folder with these files.

@@ -1,11 +1,9 @@
 //! The tool table: its file format, and the codes that use it.
 
-mod support;
-
+use crate::support::{self, point};
 use carrystep_gcode::{Canon, GcodeError, Interpreter, Options, Step, Tool, ToolTable};
 use proptest::prelude::*;
 use std::io::Cursor;
-use support::point;
 
 const TABLE: &str = "\
 ; the tools of the mill

@@ -1,16 +1,13 @@
 //! Holds at many places of the test programs: the motion comes to rest, goes on, and keeps the
 //! limits, the path and the landing of the plan.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common;
+use crate::common::follow::within;
+use crate::common::measure::{planned, programmed};
+use crate::common::reader;
+use crate::common::replay::Replay;
 use carrystep_core::Segment;
 use carrystep_job::{Curve, CurvePlace, Hold, Row};
-use common::follow::within;
-use common::measure::{planned, programmed};
-use common::reader;
-use common::replay::Replay;
 
 const PROGRAMS: [&str; 4] =
     ["square_and_arc.ngc", "chords_and_star.ngc", "trochoid.ngc", "relief.ngc"];

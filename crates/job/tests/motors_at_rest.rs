@@ -1,13 +1,10 @@
 //! A motor that does not move while others do has no speed, not even one of rounding: the guard stops
 //! motion toward a limit switch that is closed, however slow it is.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common;
+use crate::common::measure::planned;
+use crate::common::reader;
 use carrystep_job::Item;
-use common::measure::planned;
-use common::reader;
 
 /// Places of a whole number of steps, mm; most have no exact float.
 const PLACES: [f64; 6] = [0.0, 0.1, 1.2375, -33.3375, 299.9875, 7919.425];

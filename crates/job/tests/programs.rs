@@ -1,15 +1,12 @@
 //! The test programs, from text to integers: limits, rhythm, tolerance, landing, and their times
 //! beside those of other rules.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common;
+use crate::common::follow::within;
+use crate::common::measure::{planned, programmed, times};
+use crate::common::reader;
+use crate::common::replay::Replay;
 use carrystep_job::Item;
-use common::follow::within;
-use common::measure::{planned, programmed, times};
-use common::reader;
-use common::replay::Replay;
 
 const PROGRAMS: [&str; 4] =
     ["square_and_arc.ngc", "chords_and_star.ngc", "trochoid.ngc", "relief.ngc"];

@@ -1,14 +1,11 @@
 //! Random paths: every plan keeps limits and rhythm in exact integers, lands exactly, and passes its
 //! marks in order; none is refused. Bad elements are refused with their lines.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common;
+use crate::common::follow::{deviation, within};
+use crate::common::free_space::Programmed;
+use crate::common::replay::Replay;
 use carrystep_job::{Arc, Element, Item, JobError, Planner, Tolerance, rows};
-use common::follow::{deviation, within};
-use common::free_space::Programmed;
-use common::replay::Replay;
 use proptest::prelude::*;
 
 /// A machine of three axes with these limits; a jerk limit of 0 is left out.

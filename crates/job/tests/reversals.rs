@@ -1,10 +1,7 @@
 //! Reversals within a run: DIR set-up and hold fit between the edges of STEP, wherever the reversal
 //! is. The reversal is brought as near to a step's place as numbers allow.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common;
 use carrystep_job::{Element, Item, Planner, Row, Tolerance, rows};
 
 /// DIR set-up and hold of the driver, ticks.

@@ -1,14 +1,11 @@
 //! A path that goes to and fro within its tolerance: it comes back to the same places any number of
 //! times, and each of them must count for its own time only.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
-use common::follow::within;
-use common::measure::{planned, programmed};
-use common::reader;
-use common::replay::Replay;
+use crate::common;
+use crate::common::follow::within;
+use crate::common::measure::{planned, programmed};
+use crate::common::reader;
+use crate::common::replay::Replay;
 
 /// Number of moves.
 const MOVES: usize = 1600;

@@ -1,15 +1,12 @@
 //! The comparison of clocks in C gives what the one in Rust gives, for clocks that are off by some
 //! ppm, read in exchanges of any length, over wraps of TICKS and changes of the rate.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::c_library::Folder;
+use crate::support::random::Random;
 use carrystep_link::{ClockComparison, TickCount};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
-use support::c_library::Folder;
-use support::random::Random;
 
 /// Greatest difference between both, parts per 10^9: C rounds to whole parts.
 const ROUNDING: f64 = 3.0;

@@ -1,19 +1,16 @@
 //! Conversations, byte for byte: the clients in Rust and C must send and accept exactly these
 //! bytes. In `tests/conversations/*.txt` a line with `>` is a command for the client (commands:
 //! support/client.rs), and a line with `<` is its expected reply. A new conversation is a new file.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::c_library::CClient;
+use crate::support::client::{Client as _, RustClient};
+use crate::support::conversation::{converse, scripts};
+use crate::support::device::crc;
+use crate::support::{hex, unhex};
 use carrystep_link::Request;
 use carrystep_link::registers::LONGEST_REQUEST;
 use carrystep_link::slip::{self, Decoder, Received};
 use std::path::Path;
-use support::c_library::CClient;
-use support::client::{Client as _, RustClient};
-use support::conversation::{converse, scripts};
-use support::device::crc;
-use support::{hex, unhex};
 
 #[test]
 fn rust_client_follows_every_conversation() {

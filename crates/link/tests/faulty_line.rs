@@ -1,17 +1,14 @@
 //! Soak tests on a faulty line, which flips, drops, repeats, cuts off and delays bytes in both
 //! directions. No damaged frame is accepted, no segment is lost or executed twice, and the order is
 //! kept. Clients in Rust and in C talk to a gateware in miniature.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::c_library::CClient;
+use crate::support::client::{Client, RustClient};
+use crate::support::device::Bugs;
+use crate::support::random::{Random, program};
+use crate::support::soak::{Outcome, Soak, TICKS, soak};
+use crate::support::wire::Faults;
 use proptest::prelude::*;
-use support::c_library::CClient;
-use support::client::{Client, RustClient};
-use support::device::Bugs;
-use support::random::{Random, program};
-use support::soak::{Outcome, Soak, TICKS, soak};
-use support::wire::Faults;
 
 const AXES: u8 = 6;
 

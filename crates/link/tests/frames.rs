@@ -1,13 +1,10 @@
 //! Tests of frames as bytes: encoding and decoding are inverse, agree with an independent CRC and
 //! escaping, and never panic.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::device::on_the_line;
 use carrystep_link::slip::{self, Decoder, Received};
 use carrystep_link::{Answer, Body, FrameError, OutputChange, Request, Segment, WideSegment};
 use proptest::prelude::*;
-use support::device::on_the_line;
 
 fn request() -> impl Strategy<Value = Request> {
     let outputs = || any::<u32>().prop_map(OutputChange::of_word);

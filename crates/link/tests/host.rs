@@ -1,19 +1,17 @@
 //! Tests of the driver's errors: other gateware, other devices, a dead line, and programs that no
 //! gateware accepts. Its behaviour with a board is tested in crates/virtual-board/tests.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support;
+use crate::support::bench_line::{End, Peer};
+use crate::support::device::Device;
+use crate::support::random::{Random, program};
+use crate::support::soak::TICKS;
 use carrystep_link::{
     Body, Command, Ended, Feeder, GatewareMismatch, Host, HostError, OutputChange, Patience,
     Program, ProgramError, Segment, Timing, Wish,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU16;
-use support::bench_line::{End, Peer};
-use support::device::Device;
-use support::random::{Random, program};
-use support::soak::TICKS;
 
 const BUILD: u64 = 0x0123_4567_89ab_cdef;
 const OWN: NonZeroU16 = NonZeroU16::new(0xc0db).unwrap();

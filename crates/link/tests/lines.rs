@@ -1,6 +1,5 @@
 //! Tests of the lines: SPI as seen on the bus, and serial ports that are free, busy, absent or no
 //! serial ports. Tests with a host and a board are in crates/virtual-board/tests.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_link::line::serial::{OpenError, SerialLine};
 use carrystep_link::line::spi::SpiLine;

@@ -1,15 +1,13 @@
 //! Mutation tests: the C library and the gateware in miniature, each with one wrong line, must fail
 //! a test that the correct ones pass.
 
-mod support;
-
-use support::c_library::CClient;
-use support::client::{Client, RustClient};
-use support::conversation::{converse, scripts};
-use support::device::Bugs;
-use support::random::{Random, program};
-use support::soak::{Soak, TICKS, soak};
-use support::wire::Faults;
+use crate::support::c_library::CClient;
+use crate::support::client::{Client, RustClient};
+use crate::support::conversation::{converse, scripts};
+use crate::support::device::Bugs;
+use crate::support::random::{Random, program};
+use crate::support::soak::{Soak, TICKS, soak};
+use crate::support::wire::Faults;
 
 /// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
 const IN_C: [(&str, &str, &str); 32] = [

@@ -1,20 +1,17 @@
 //! Portability of the C library and of its example for a microcontroller. The code must compile as
 //! strict C99 and as C++, use no library functions but memset and memcpy, and have no undefined
 //! behaviour. The example must execute its move.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::c_library::{CClient, Folder};
+use crate::support::conversation::{converse, scripts};
+use crate::support::device::{Device, Done};
+use crate::support::random::{Random, program};
+use crate::support::soak::{Soak, TICKS, soak};
+use crate::support::wire::Faults;
+use crate::support::{self, hex, unhex};
 use carrystep_link::C_LIBRARY;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
-use support::c_library::{CClient, Folder};
-use support::conversation::{converse, scripts};
-use support::device::{Device, Done};
-use support::random::{Random, program};
-use support::soak::{Soak, TICKS, soak};
-use support::wire::Faults;
-use support::{hex, unhex};
 
 const EXAMPLE: &str = include_str!("../c/examples/rp2040_spi.c");
 const STUBS: [(&str, &str); 3] = [

@@ -1,8 +1,6 @@
 //! Tests moves whose ramps are scaled from kept fits: every edge is as close to the profile as the
 //! tolerance says, and a plan does not depend on what was planned before, or in which process.
 
-#![allow(clippy::unwrap_used)] // Tests may panic.
-
 use carrystep_core::Segment;
 use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::{PlannedAxis, plan};

@@ -1,8 +1,6 @@
 //! Whatever the text of a move file is, reading and planning it neither panics nor hangs, and a
 //! refusal has a message.
 
-#![allow(clippy::unwrap_used)] // Tests may panic.
-
 use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::plan;
 use proptest::collection::vec;

@@ -1,8 +1,6 @@
 //! A plan that is made while it is read is the plan that is made at once, and it holds no more
 //! moves than its readers are apart.
 
-#![allow(clippy::unwrap_used)] // a test may panic
-
 use carrystep_core::StartPhase;
 use carrystep_files::{InputError, MoveFile, MoveSource, SourceText};
 use carrystep_plan::{Pass, PlannedMove, Survey, Totals, plan};

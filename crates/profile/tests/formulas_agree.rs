@@ -2,8 +2,6 @@
 //! definitions (speed is the derivative of position, and `crossing` is its inverse), and at their
 //! limits.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
-
 use carrystep_profile::{Constant, Limit, Limits, Profile, Ramp, rule};
 use proptest::prelude::*;
 use serde_json::Value;

@@ -1,6 +1,5 @@
 //! Tests the first steps of long ramps against 40-digit arithmetic. There the textbook formulas
 //! cancel or overflow.
-#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 #![allow(clippy::excessive_precision, reason = "the digits are those of the reference")]
 
 use carrystep_profile::{LogisticRamp, Profile, SHORTFALL, ScurveRamp, SineRamp};

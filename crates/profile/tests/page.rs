@@ -1,10 +1,6 @@
 //! Tests that `docs/profiles.md` is true, by computing its table and its figures again.
 
-#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
-
-#[path = "support/pages.rs"]
-mod pages;
-
+use crate::pages::{self, grouped};
 use carrystep_core::ProfileKind;
 use carrystep_profile::rule::{
     logistic, logistic_least_time, logistic_ramp, scurve, scurve_least_time, scurve_ramp, sine,
@@ -13,7 +9,6 @@ use carrystep_profile::rule::{
 use carrystep_profile::{
     Curve, CurveFigures, Limits, LogisticRamp, Profile, RampedMove, SHORTFALL, SineRamp, kinds,
 };
-use pages::grouped;
 use serde_json::Value;
 use std::f64::consts::PI;
 

@@ -2,14 +2,10 @@
 //! tool, and the checker notices motors that turn the wrong way. The tool is rebuilt here from the
 //! pulses by the inverse of the belts as it is published, not by the machine's own.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{check, planned, program_on, pulses};
 use carrystep_check::{Pin, PinChange};
 use carrystep_job::{Overrides, Pace, Track};
 use carrystep_program::{ProgramFile, Row, Survey};
-use common::{check, planned, program_on, pulses};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 

@@ -1,15 +1,11 @@
 //! Programs that are entered in their middle: the way there, what is restored, and what is refused.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{check, job, levels, planned, program_on, pulses};
 use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_gcode::{Interpreter, Options};
 use carrystep_program::{
     Blocks, Entry, Event, Events, FromBlock, ProgramFile, ProgrammedMove, Settings, Switch, Turn,
 };
-use common::{check, job, levels, planned, program_on, pulses};
 use proptest::prelude::*;
 use std::path::Path;
 

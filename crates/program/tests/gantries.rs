@@ -2,15 +2,11 @@
 //! would make, the checker notices a motor that does not, and machine files that cannot be so are
 //! refused.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{check, planned, program_on, pulses};
 use carrystep_check::{Pin, PinChange};
 use carrystep_files::{InputError, Machine, MoveFile, SourceText};
 use carrystep_job::{Overrides, Pace, Track};
 use carrystep_program::Row;
-use common::{check, planned, program_on, pulses};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 

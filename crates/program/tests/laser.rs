@@ -1,12 +1,8 @@
 //! The duty of a laser, compared with the speed of the tool that the pulses' own sums give, and with
 //! the program.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{job, planned, program_on};
 use carrystep_program::{FromBlock, Row, RowOutputs};
-use common::{job, planned, program_on};
 
 const STEPS_PER_MM: f64 = 80.0;
 const TICK_S: f64 = 1e-6;

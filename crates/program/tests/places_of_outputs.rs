@@ -1,12 +1,8 @@
 //! The checker finds from the program alone where outputs have to change, and notices changes in
 //! other places.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{ORIGIN_PS, check, job, levels, planned, program_on, pulses};
 use carrystep_check::PathReport;
-use common::{ORIGIN_PS, check, job, levels, planned, program_on, pulses};
 
 /// The report of a program whose output pins are changed by `bug`.
 fn report(text: &str, bug: impl FnOnce(&mut Vec<(u64, u8)>)) -> PathReport {

@@ -1,13 +1,9 @@
 //! The checker accepts the pulses of planned programs and notices planted bugs in them. The pulses
 //! come from the rows by an accumulator of the tests, not by the models.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{check, job, planned, program_on, pulses};
 use carrystep_check::{Pin, PinChange};
 use carrystep_program::ProgramFile;
-use common::{check, job, planned, program_on, pulses};
 
 /// A program on the machine of `sim/jobs/`.
 fn program(text: &str) -> (tempfile::TempDir, ProgramFile) {

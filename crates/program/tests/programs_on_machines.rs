@@ -1,7 +1,5 @@
 //! What the planner gets of a program: rests, tolerances, feeds, axes; and what is refused.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
 use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_program::{
     Event, Events, ProgramError, ProgramFile, ProgrammedMove, Rows, Settings, Survey,

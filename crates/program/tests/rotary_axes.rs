@@ -1,15 +1,11 @@
 //! Programs with rotary axes: feeds in degrees, inverse time, travel and tolerance in degrees, and
 //! the pulses of their plans.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches test functions only")]
-
-mod common;
-
+use crate::common::{check, planned, program_on, pulses};
 use carrystep_check::PathReport;
 use carrystep_files::InputError;
 use carrystep_job::Row;
 use carrystep_program::{Events, ProgramError, ProgrammedMove, Survey};
-use common::{check, planned, program_on, pulses};
 
 /// x and y with 80 steps/mm, a with 100 and c with 40 steps/degree.
 const MACHINE: &str = r#"

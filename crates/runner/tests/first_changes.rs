@@ -9,22 +9,14 @@
 //! ```
 //!
 //! Behind a hold, the pulses are those of before, only later, so that one run has many holds.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod jobs;
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-
+use crate::jobs::{Job, PROGRAMS, Run};
+use crate::support::random::Random;
 use carrystep_link::{Ended, Wish};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_runner::OverrideSetting;
 use carrystep_virtual_board::SimulatedBoard as _;
-use jobs::{Job, PROGRAMS, Run};
-use support::random::Random;
 
 /// The time between two tries of a hold that the limits forbid, as in `carrystep run`, ms.
 const TRY_AGAIN: u64 = 20;

@@ -1,8 +1,6 @@
 //! Lines of a sender, planned in batches: what has come in a hold is planned as a program is, a
 //! sender that is late ends a batch at rest, and what is dropped is never given.
 
-#![allow(clippy::unwrap_used)] // Tests may panic.
-
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Item, rows};
 use carrystep_plan::exact::travel;

@@ -6,12 +6,10 @@
 //!          | | | | | | | | | | | | | | | |                            not held
 //!              ^ hold asked     ^ the first pulse that differs
 //! ```
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-mod three_axes;
-
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, MS, SESSION};
+use crate::three_axes::machine;
 use carrystep_core::link::Uart;
 use carrystep_job::{Hold, Pace};
 use carrystep_link::{Ended, Patience, Progress, Wish};
@@ -21,9 +19,6 @@ use carrystep_runner::{OverrideSetting, Stretches, Wait, kept_ticks};
 use carrystep_virtual_board::ModelBoard;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, MS, SESSION};
-use three_axes::machine;
 
 const TABLES: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_depth = 31\n\
     cuts = true\n[machine.link]\nbaud = 3_000_000";

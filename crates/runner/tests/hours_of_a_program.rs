@@ -4,12 +4,10 @@
 //! The reference adds up the segments of the plan tick by tick and knows neither the model nor the
 //! driver. It is fed with the rows as they are read, and compared with the pins each millisecond, so
 //! that memory does not grow with the length of the run.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 #![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-
+use crate::support::wire::Faults;
+use crate::support::{End, SESSION, asked};
 use carrystep_core::Segment;
 use carrystep_core::link::Uart;
 use carrystep_files::{Machine, SourceText};
@@ -21,8 +19,6 @@ use carrystep_runner::Stretches;
 use carrystep_virtual_board::ModelBoard;
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use support::wire::Faults;
-use support::{End, SESSION, asked};
 
 /// A slow clock, because the model of the link takes time for each of its clocks. The 32 bits of
 /// TICKS overflow after 7.2 hours.

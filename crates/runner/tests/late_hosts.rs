@@ -5,22 +5,14 @@
 //! queues    full ...... half ....... full ......... half      each delay: half of what they hold
 //! host      sends, late ------------>  sends, late -------->
 //! ```
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod jobs;
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-
+use crate::jobs::{Job, PROGRAMS, Run};
+use crate::support::random::Random;
 use carrystep_core::engine::Cause;
 use carrystep_link::{Ended, HostError, Wish};
 use carrystep_runner::Horizon;
 use carrystep_virtual_board::SimulatedBoard as _;
-use jobs::{Job, PROGRAMS, Run};
-use support::random::Random;
 
 /// The programs that last less than 15 s.
 const SHORT: usize = 5;

@@ -1,5 +1,4 @@
 //! Overrides of the programs in `sim/jobs`, without a board.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::Segment;
 use carrystep_files::{Machine, SourceText};

@@ -2,20 +2,12 @@
 //! output, of the shipped programs on a board of models is that of the fast model, clock by clock
 //! from the first start. Behind a place where the program waits, clocks are counted from the start of
 //! the stretch, because a board may rest there for any time.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only; figures, for the page of longer runs"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod jobs;
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-
+use crate::jobs::{Job, PROGRAMS};
+use crate::support::asked;
 use carrystep_link::{Ended, Wish};
 use carrystep_virtual_board::SimulatedBoard as _;
-use jobs::{Job, PROGRAMS};
-use support::asked;
 
 /// How much of each program an ordinary test compares, seconds of the program.
 const SECONDS: u64 = 8;

@@ -2,15 +2,12 @@
 //! pulses are those over a UART, and those that `carrystep simulate` makes. Held, and with an
 //! override, it ends at the same place. What has gone over the bus then reaches the exported Verilog
 //! in the same clocks: all pins are the same in every clock.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-
+use crate::support::bus::Bus;
+use crate::support::recorder::{Recorder, Recording, edges_between};
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, MS, SESSION};
 use carrystep_core::Command;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_files::{Machine, SourceText};
@@ -25,10 +22,6 @@ use carrystep_virtual_board::{ModelBoard, PinLevels, SimulatedBoard as _, Verila
 use std::cell::RefCell;
 use std::fmt::Debug;
 use std::rc::Rc;
-use support::bus::Bus;
-use support::recorder::{Recorder, Recording, edges_between};
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, MS, SESSION};
 use tempfile::TempDir;
 
 /// The rate of the bus. It is slow, because each edge of it takes the simulation time.

@@ -6,12 +6,10 @@
 //! 2 % are a few milliseconds. The host cannot know the time as well as that, because it first fills
 //! the queues of the board, and only then reads whether the axes move. So [`UNSEEN`] is added, which is
 //! far less than the half second to which the display is rounded.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "../../virtual-board/tests/support/mod.rs"]
-mod support;
-mod three_axes;
-
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, MS, SESSION, TICK};
+use crate::three_axes::machine;
 use carrystep_core::link::Uart;
 use carrystep_core::{OutputChange, Segment};
 use carrystep_job::{Hold, Pace};
@@ -22,9 +20,6 @@ use carrystep_virtual_board::ModelBoard;
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, MS, SESSION, TICK};
-use three_axes::machine;
 
 const TABLES: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_depth = 31\n\
     [machine.link]\nbaud = 3_000_000\n\

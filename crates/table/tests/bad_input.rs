@@ -1,14 +1,12 @@
 //! Tests that an impossible request is refused with the nearest possible value, and that nothing
 //! panics or is clipped.
 
-mod support;
-
+use crate::support::source;
 use carrystep_table::{
     Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, Timer,
     TimerMode, Width,
 };
 use proptest::prelude::*;
-use support::source;
 
 fn refusal(change: impl FnOnce(&mut TableRequest)) -> String {
     let mut request = source(TimerMode::Ctc, 1000, Pulses::One);

@@ -1,10 +1,8 @@
 //! Tests the names and values of `--json`, which scripts of users read.
 
-mod support;
-
+use crate::support::source;
 use carrystep_table::{Pulses, Table, TimerMode};
 use serde_json::{Value, json};
-use support::source;
 
 #[test]
 fn json_of_the_source_table_has_stable_names() {

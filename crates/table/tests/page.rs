@@ -3,10 +3,7 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "../../profile/tests/support/pages.rs"]
-#[allow(dead_code)]
-mod pages;
-
+use crate::pages::{self, grouped};
 use carrystep_table::austin::{ConstantAcceleration, IntegerRecurrence};
 use carrystep_table::logistic::Logistic;
 use carrystep_table::sine::Sine;
@@ -14,7 +11,6 @@ use carrystep_table::{
     Arithmetic, InverseTable, Kind, Motor, PLAYER, Pulses, Speed, Table, TableRequest, Timer,
     TimerMode,
 };
-use pages::grouped;
 use serde_json::Value;
 
 /// Asserts that the page contains each of these texts, regardless of line breaks.

@@ -1,10 +1,8 @@
 //! Tests that the simulated timer finds planted bugs: each wrong line in the player must fail the
 //! checks that the right player passes.
 
-mod support;
-
+use crate::support::{Bench, Move, judge, lengths, source};
 use carrystep_table::{Options, PLAYER, Pulses, Table, TimerMode};
-use support::{Bench, Move, judge, lengths, source};
 
 /// Name of the bug, the right text (which occurs once in carrystep_player.c), and the wrong text.
 const BUGS: [(&str, &str, &str); 12] = [

@@ -1,14 +1,12 @@
 //! Tests that the generated header and the player, compiled from C and run on a simulated timer,
 //! emit the pulses of the formula.
 
-mod support;
-
+use crate::support::{Bench, Move, ideal_delays, judge, lengths, source};
 use carrystep_table::{
     Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, TimerMode,
 };
 use carrystep_table::{Timer, Width};
 use proptest::prelude::*;
-use support::{Bench, Move, ideal_delays, judge, lengths, source};
 
 /// The greatest difference of one rounded delay from that of the formula, counts.
 fn per_pulse(table: &Table) -> f64 {

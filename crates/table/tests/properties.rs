@@ -1,14 +1,12 @@
 //! Tests properties that hold for every ramp, not only for the golden ones.
 
-mod support;
-
+use crate::support::{Bench, run};
 use carrystep_table::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use carrystep_table::sine::{Sine, distance, speed};
 use carrystep_table::{
     Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
 };
 use proptest::prelude::*;
-use support::{Bench, run};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]

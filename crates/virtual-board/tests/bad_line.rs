@@ -1,23 +1,17 @@
 //! A board on a line that flips, drops, repeats, cuts and delays bytes. Its pulses must be those of
 //! a clean line, or it must have stopped with a cause. The environment variable `CARRYSTEP_FRAMES`
 //! sets the total number of frames.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Command, Ended, HostError, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::random::Random;
-use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
 
 /// Segments of an axis in a move, and ticks of each. The queues then hold a seventh of a second.
 const SEGMENTS: u32 = 60;

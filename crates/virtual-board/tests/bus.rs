@@ -1,15 +1,12 @@
 //! The embedded-hal SPI driver, with a board of models and with the exported Verilog on the bus.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::bus::Bus;
+use crate::support::random::Random;
+use crate::support::{Kind, waves};
 use carrystep_core::AXES;
 use carrystep_link::{Ended, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::bus::Bus;
-use support::random::Random;
-use support::{Kind, waves};
 
 /// Number of flipped bits per million bytes.
 const BAD: u32 = 1500;

@@ -1,17 +1,14 @@
 //! A computer that does not run the driver for seconds, while the board goes on: no request is sent
 //! twice for it, and the line is not taken for dead.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, Died, End, SESSION, build};
 use carrystep_core::link::{END, Uart};
 use carrystep_link::registers::{SEEK, TICKS};
 use carrystep_link::{Clock, Exchanged, Host, HostError, Line, Patience};
 use carrystep_virtual_board::ModelBoard;
 use std::cell::Cell;
 use std::rc::Rc;
-use support::wire::Faults;
-use support::{CLOCK_HZ, Died, End, SESSION, build};
 
 /// A pause of the driver, ms: longer than a host waits for an answer of a line that is not dead.
 const PAUSE: u64 = 2500;

@@ -1,10 +1,14 @@
 //! The C library as the host of a board, of models and of exported Verilog. The pulses must equal
 //! those of the driver in Rust, on a clean and on a bad line, over UART and SPI. Another build must
 //! be refused.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::bus::Bus;
+use crate::support::link::c_library::CClient;
+use crate::support::link::client::{Client, RustClient};
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::words::{Refused, WordHost};
+use crate::support::{CLOCK_HZ, End, Kind, MS, build, waves};
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::{LineKind, Uart};
@@ -12,13 +16,6 @@ use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Command, Patience, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::bus::Bus;
-use support::link::c_library::CClient;
-use support::link::client::{Client, RustClient};
-use support::random::Random;
-use support::wire::Faults;
-use support::words::{Refused, WordHost};
-use support::{CLOCK_HZ, End, Kind, MS, build, waves};
 
 fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()

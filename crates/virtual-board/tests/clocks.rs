@@ -1,21 +1,15 @@
 //! A board whose clock is not the host's: the reported difference is true within its bound, and a
 //! program that runs for ten minutes never runs dry.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod support;
-
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, Died, End, SESSION, asked, build};
 use carrystep_core::link::Uart;
 use carrystep_link::{
     Clock, ClockDifference, Ended, Exchanged, Host, Line, Moment, Patience, Segment, SegmentSource,
     Wish,
 };
 use carrystep_virtual_board::ModelBoard;
-use support::wire::Faults;
-use support::{CLOCK_HZ, Died, End, SESSION, asked, build};
 
 /// The board's end of the line, with a host whose clock is slower than the board's by some ppm.
 #[derive(Clone)]

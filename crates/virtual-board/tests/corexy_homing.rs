@@ -1,23 +1,13 @@
 //! Homing of two crossed belts: both motors move a letter to its switch, stop at it in the same tick,
 //! and the letter ends at its place, from any start and however the other letter stands.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "support/asked.rs"]
-mod asked;
-#[path = "support/axes.rs"]
-#[allow(dead_code)]
-mod axes;
-#[path = "../../link/tests/support/random.rs"]
-#[allow(dead_code)]
-mod random;
-
-use asked::homing_of;
-use axes::{Bench, Make, Never, Start, machine};
+use crate::asked::homing_of;
+use crate::axes::{Bench, Make, Never, Start, machine};
+use crate::random::Random;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
 use carrystep_link::{Homed, HomingFault, HostError, Wish};
 use carrystep_virtual_board::{ModelBoard, SimulatedBoard, VerilatedBoard};
-use random::Random;
 
 /// Crossed belts and z. The axes stand in this order, and x and y home toward these ends.
 fn belts(order: [&str; 3], toward: [&str; 2], stop: &str) -> Machine {

@@ -1,9 +1,9 @@
 //! A host that replaces its plan while the axes move: what is kept runs, what was cut off does not,
 //! and a refused cut changes nothing. With a board of models and with the exported Verilog.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, Kind, QUICK, SESSION, build};
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
@@ -12,9 +12,6 @@ use carrystep_link::{
 };
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use std::cell::RefCell;
-use support::random::Random;
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, Kind, QUICK, SESSION, build};
 
 /// Ticks of a row.
 const TICKS: u32 = 1024;

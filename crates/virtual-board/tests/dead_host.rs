@@ -1,22 +1,18 @@
 //! A host dies in the middle of a move. The board must stop within its watchdog's time and the
 //! ramp, its positions must be exact, and the next host must continue without a restart.
 //! `CARRYSTEP_DEATHS` sets the number of deaths.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{
+    BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves,
+};
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, HostError, Program, Wish};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::random::Random;
-use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
 fn the_board_stops_when_its_host_dies_and_another_host_continues() {

@@ -1,9 +1,9 @@
 //! The statements of docs/protocol.md about rare requests and about the watchdog, checked with a
 //! board of models and with the exported Verilog.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::link::device::on_the_line;
+use crate::support::requests::Talk;
+use crate::support::{self, Kind, MS};
 use carrystep_core::engine::Cause;
 use carrystep_core::link::END;
 use carrystep_core::link::registers::{REGISTERS, RegisterAccess};
@@ -13,9 +13,6 @@ use carrystep_link::registers::{
 };
 use carrystep_link::{Patience, Refusal, frame};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::link::device::on_the_line;
-use support::requests::Talk;
-use support::{Kind, MS};
 
 /// A segment with V = a quarter of a step per tick.
 const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {

@@ -1,10 +1,10 @@
 //! An e-stop in the middle of a move, over a bad line. After the freeze there must be no new edge
 //! (promise 5). Every carry must be a pulse or be counted as discarded (promise 6), and the host
 //! must receive both numbers.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, Kind, MS, TICK, waves};
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
@@ -13,9 +13,6 @@ use carrystep_link::{Command, HostError, Program, Segment, Wish};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::ops::Range;
-use support::random::Random;
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, Kind, MS, TICK, waves};
 
 fn rises(edges: &[Edge], axis: u8, before: u64) -> u32 {
     let counts =

@@ -1,23 +1,13 @@
 //! Homing of a letter with two motors, each with a switch of its own: the motors end square, however
 //! skew they begin, and a motor does not move further alone than the machine file allows.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "support/asked.rs"]
-mod asked;
-#[path = "support/axes.rs"]
-#[allow(dead_code)]
-mod axes;
-#[path = "../../link/tests/support/random.rs"]
-#[allow(dead_code)]
-mod random;
-
-use asked::homing_of;
-use axes::{Bench, Make, Start, machine};
+use crate::asked::homing_of;
+use crate::axes::{self, Bench, Make, Start, machine};
+use crate::random::Random;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
 use carrystep_link::{Homed, HomingFault, HostError, Wish};
 use carrystep_virtual_board::{ModelBoard, SimulatedBoard, VerilatedBoard};
-use random::Random;
 
 /// How far one motor may move alone, steps.
 const MOST_APART: i32 = 60;

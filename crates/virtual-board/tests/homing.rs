@@ -1,24 +1,15 @@
 //! Homing from every start in each wiring, on boards of models and of exported Verilog. It must
 //! find the place where the switch closes, twice the same, and must never overrun a closed switch
 //! by more than the ramp requires.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-#[path = "support/asked.rs"]
-mod asked;
-#[path = "support/axes.rs"]
-mod axes;
-#[path = "../../link/tests/support/random.rs"]
-#[allow(dead_code)]
-mod random;
-
-use asked::homing_of;
-use axes::{Bench, Make, Start, machine};
+use crate::asked::homing_of;
+use crate::axes::{self, Bench, Make, Start, machine};
+use crate::random::Random;
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
 use carrystep_link::{AxisHoming, Homed, HomingFault, HomingStage, HostError, Wish};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use random::Random;
 
 const STARTS: [Start; 3] = [Start::Open, Start::Closed, Start::Bouncing];
 

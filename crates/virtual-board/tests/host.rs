@@ -1,9 +1,9 @@
 //! The driver from connecting to a clean stop, with a board of models and with the exported
 //! Verilog, on clean and on bad lines. Every error must name its cause.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{BoardHost, CLOCK_HZ, End, Kind, MS, QUICK, SESSION, TICK, build, waves};
 use carrystep_core::engine::Cause;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::registers::START;
@@ -12,9 +12,6 @@ use carrystep_link::{
 };
 use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::num::NonZeroU16;
-use support::random::Random;
-use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, MS, QUICK, SESSION, TICK, build, waves};
 
 /// Runs a function with both kinds of board.
 macro_rules! on_both {

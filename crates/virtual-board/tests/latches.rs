@@ -1,16 +1,13 @@
 //! The driver and several latches at the pins of limits and of their own, with a board of models
 //! and with the exported Verilog.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::wire::Faults;
+use crate::support::{BoardHost, CLOCK_HZ, End, Kind, SESSION, build};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Latch, LatchSource};
 use carrystep_core::link::Uart;
 use carrystep_link::{HostError, Patience};
 use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
-use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, SESSION, build};
 
 fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()

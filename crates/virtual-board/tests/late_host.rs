@@ -1,9 +1,8 @@
 //! `virtual-board --fast`: delays of a host in real time do not delay it in the board's time.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::link::device::on_the_line;
+use crate::support::{self, CLOCK_HZ, MS, build};
 use carrystep_core::link::Uart;
 use carrystep_link::Line as _;
 use carrystep_link::line::serial::SerialLine;
@@ -12,8 +11,6 @@ use carrystep_link::{Answer, frame};
 use carrystep_virtual_board::{KEPT, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use support::link::device::on_the_line;
-use support::{CLOCK_HZ, MS, build};
 
 /// Number of segments of 600 ticks of 2 us: 1.2 ms and 150 steps each.
 const SEGMENTS: u32 = 200;

@@ -1,17 +1,14 @@
 //! The example frames of docs/protocol.md, byte for byte, with a board of models and with the
 //! exported Verilog.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::link::device::on_the_line;
+use crate::support::link::{hex, unhex};
+use crate::support::requests::write;
+use crate::support::{CLOCK_HZ, Kind};
 use carrystep_core::link::Uart;
 use carrystep_link::registers::{CONTROL, END, OPEN, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::link::device::on_the_line;
-use support::link::{hex, unhex};
-use support::requests::write;
-use support::{CLOCK_HZ, Kind};
 
 /// Time limit for an answer, clocks.
 const PATIENCE: u64 = 30_000;

@@ -1,20 +1,14 @@
 //! The number of segments per second that a line delivers to a board without an empty queue.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "clippy.toml's allowance reaches unit tests only"
-)]
+#![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-mod support;
-
+use crate::support::bus::Bus;
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::{CLOCK_HZ, End, Kind, TICK_NS, asked, waves};
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, Program, Wish};
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use std::num::NonZeroU16;
-use support::bus::Bus;
-use support::random::Random;
-use support::wire::Faults;
-use support::{CLOCK_HZ, End, Kind, TICK_NS, asked, waves};
 
 /// The number of waiting segments where nothing shows it: at the pins of the Verilog.
 const UNSEEN: usize = usize::MAX;

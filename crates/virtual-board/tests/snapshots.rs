@@ -1,9 +1,9 @@
 //! Snapshots of six moving axes over the line: P, positions, remaining ticks and queues are exactly
 //! those of the closed form in the tick that the snapshot names, and no edge changes.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::requests::Talk;
+use crate::support::{CLOCK_HZ, Kind, TICK, build};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{AxisStatus, commanded_steps};
 use carrystep_core::link::Uart;
@@ -14,9 +14,6 @@ use carrystep_link::registers::{
 };
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
-use support::random::Random;
-use support::requests::Talk;
-use support::{CLOCK_HZ, Kind, TICK, build};
 
 const AXES: u8 = 6;
 

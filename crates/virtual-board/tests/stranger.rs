@@ -1,7 +1,6 @@
 //! A host written from docs/protocol.md alone; it shares no code with `crates/link`. It streams
 //! moves of all axes with segments of different lengths over a line that loses answers, observes
 //! the credits of the page, and lands exactly.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};

@@ -1,8 +1,6 @@
 //! A host and a board in one process, in simulated time: connecting, a move, a stop.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::{CLOCK_HZ, Kind, build};
 use carrystep_core::link::Uart;
 use carrystep_link::{
     Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish,
@@ -13,7 +11,6 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::num::NonZeroU16;
 use std::rc::Rc;
-use support::{CLOCK_HZ, Kind, build};
 
 /// The session of the host.
 const SESSION: NonZeroU16 = NonZeroU16::new(1).unwrap();

@@ -1,10 +1,12 @@
 //! Hosts in Rust and in C that open the pseudo-terminal of a board as their serial port. The pulses
 //! must equal those of a board in simulated time.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-mod support;
-
+use crate::support::link::c_library::CClient;
+use crate::support::random::Random;
+use crate::support::wire::Faults;
+use crate::support::words::WordHost;
+use crate::support::{self, CLOCK_HZ, End, Kind, MS, Seen, build, waves};
 use carrystep_core::AXES;
 use carrystep_core::link::Uart;
 use carrystep_link::host::SystemClock;
@@ -13,11 +15,6 @@ use carrystep_link::{Command, Ended, Host, Patience, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, Pace, RealTimeBoard, Terminal, VerilatedBoard};
 use std::sync::atomic::{AtomicBool, Ordering};
-use support::link::c_library::CClient;
-use support::random::Random;
-use support::wire::Faults;
-use support::words::WordHost;
-use support::{CLOCK_HZ, End, Kind, MS, Seen, build, waves};
 
 fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()

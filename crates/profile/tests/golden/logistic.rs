@@ -1,6 +1,6 @@
 //! Tests the logistic S-curve (M. Sorn, 2019) against the golden numbers of `logistic.json`.
 
-use crate::{Golden, TIGHT};
+use super::{Golden, TIGHT};
 use carrystep_profile::{Curve, LogisticRamp, Profile, SHORTFALL, ScurveRamp};
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Tests the sinusoidal S-curve against the golden numbers of `sinusoid.json`.
 
-use crate::{Golden, TIGHT};
+use super::{Golden, TIGHT};
 use carrystep_profile::{Curve, Profile, ScurveRamp, SineRamp};
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! Tests the trapezoid in a given time and the recurrences of Austin and AVR446 against the golden
 //! numbers of `trapezoid_austin.json`.
 
-use crate::{Golden, TIGHT};
+use super::{Golden, TIGHT};
 use carrystep_profile::rule::trapezoid;
 use carrystep_profile::{Limit, Limits, Profile, Ramp};
 

@@ -1,6 +1,6 @@
 //! Tests that the least time is the least one, and that a refusal names a value that works.
 
-use crate::decades;
+use super::decades;
 use carrystep_profile::rule::{
     logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
 };

@@ -1,8 +1,8 @@
 //! Properties of moves of every kind, from 0.001 to 10 million steps/s and from one step to 2^31
 //! steps.
 
-use crate::decades;
-use crate::laws::{Slack, hold};
+use super::decades;
+use super::laws::{Slack, hold};
 use carrystep_core::ProfileKind;
 use carrystep_profile::kinds;
 use carrystep_profile::rule::{

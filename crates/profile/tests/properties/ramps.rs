@@ -1,7 +1,7 @@
 //! Properties of single ramps with parameters of every size, and with invalid parameters.
 
-use crate::decades;
-use crate::laws::{Slack, hold};
+use super::decades;
+use super::laws::{Slack, hold};
 use carrystep_profile::{BadRamp, Curve, LogisticRamp, Profile, ScurveRamp, SineRamp};
 use proptest::prelude::*;
 

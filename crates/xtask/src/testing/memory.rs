@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Binaries that take long where nothing is remembered, with their seconds on one core.
+/// Binaries, and modules of binaries, that take long where nothing is remembered, with their seconds
+/// on one core.
 const KNOWN: [(&str, f64); 31] = [
     ("carrystep-cli::command_line", 880.0),
     ("carrystep-tests::rung_7_promises_are_proved", 320.0),
@@ -14,31 +15,31 @@ const KNOWN: [(&str, f64); 31] = [
     ("carrystep-tests::rung_4_model_equals_rust_hdl", 180.0),
     ("carrystep-tests::rung_5_model_equals_verilog", 300.0),
     ("carrystep-tests::engine_fits_its_budget", 260.0),
-    ("carrystep-virtual-board::bad_line", 200.0),
+    ("carrystep-virtual-board::virtual_board::bad_line", 200.0),
     ("carrystep-tools::boards", 140.0),
     ("carrystep-tests::rung_3_fast_model_equals_model", 130.0),
     ("carrystep-tests::engine_stops", 90.0),
     ("carrystep-tests::the_link_talks_as_its_page_says", 90.0),
-    ("carrystep-virtual-board::c_library", 40.0),
-    ("carrystep-virtual-board::talk", 40.0),
-    ("carrystep-virtual-board::bus", 35.0),
+    ("carrystep-virtual-board::virtual_board::c_library", 40.0),
+    ("carrystep-virtual-board::virtual_board::talk", 40.0),
+    ("carrystep-virtual-board::virtual_board::bus", 35.0),
     ("carrystep-cli::clusters", 30.0),
-    ("carrystep-virtual-board::homing", 130.0),
+    ("carrystep-virtual-board::virtual_board::homing", 130.0),
     ("carrystep-tests::the_link_cuts", 160.0),
     ("carrystep-tests::a_self_test_shows_every_pin", 90.0),
-    ("carrystep-virtual-board::clocks", 60.0),
+    ("carrystep-virtual-board::virtual_board::clocks", 60.0),
     ("carrystep-linuxcnc::component", 55.0),
     ("carrystep-tests::wide_frames_equal_single_ones", 50.0),
-    ("carrystep-runner::runs_over_spi", 40.0),
+    ("carrystep-runner::runner::runs_over_spi", 40.0),
     ("carrystep-tests::the_link_keeps_sessions", 40.0),
-    ("carrystep-virtual-board::corexy_homing", 35.0),
+    ("carrystep-virtual-board::virtual_board::corexy_homing", 35.0),
     ("carrystep-linuxcnc::spidev", 30.0),
     ("carrystep-linuxcnc::replay", 30.0),
-    ("carrystep-runner::holds_on_a_board", 25.0),
-    ("carrystep-runner::pulses_of_simulate", 25.0),
-    ("carrystep-virtual-board::gantry_homing", 20.0),
+    ("carrystep-runner::runner::holds_on_a_board", 25.0),
+    ("carrystep-runner::runner::pulses_of_simulate", 25.0),
+    ("carrystep-virtual-board::virtual_board::gantry_homing", 20.0),
     ("carrystep-hdl::golden_vectors", 15.0),
-    ("carrystep-runner::late_hosts", 15.0),
+    ("carrystep-runner::runner::late_hosts", 15.0),
 ];
 
 /// The seconds for which a test is taken whose binary is in no list. A long binary with many tests
@@ -88,15 +89,28 @@ impl TestTimes {
     /// The expected seconds of some tests of a binary, one for each.
     pub fn expect(&self, id: &str, tests: &[String]) -> Vec<f64> {
         let known = self.0.get(id);
-        let of_binary = KNOWN.iter().find(|(name, _)| *name == id).map(|(_, seconds)| *seconds);
-        let each = of_binary.map_or(UNKNOWN, |seconds| seconds / tests.len().max(1) as f64);
-        // A test that is new among known ones is taken for a short one.
-        let new = if known.is_some() { each.min(UNKNOWN) } else { each };
-        tests
-            .iter()
-            .map(|test| known.and_then(|known| known.get(test)).copied().unwrap_or(new))
-            .collect()
+        let listed = |name: &str| KNOWN.iter().find(|(of, _)| *of == name).map(|(_, all)| *all);
+        let unlearned = |test: &String| {
+            let of_module = module(test).and_then(|own| {
+                let all = listed(&format!("{id}::{own}"))?;
+                let among = tests.iter().filter(|test| module(test) == Some(own));
+                Some((all, among.count()))
+            });
+            let (all, among) = of_module.or_else(|| Some((listed(id)?, tests.len())))?;
+            Some(all / among as f64)
+        };
+        let expected = |test: &String| {
+            let each = unlearned(test).unwrap_or(UNKNOWN);
+            // A test that is new among known ones is taken for a short one.
+            known.map_or(each, |known| known.get(test).copied().unwrap_or(each.min(UNKNOWN)))
+        };
+        tests.iter().map(expected).collect()
     }
+}
+
+/// The module of a test, if it is in one.
+fn module(test: &str) -> Option<&str> {
+    test.split_once("::").map(|(module, _)| module)
 }
 
 #[cfg(test)]
@@ -121,7 +135,7 @@ mod tests {
     fn known_binaries_are_long_without_memory() {
         let memory = TestTimes::default();
         assert_eq!(
-            memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])),
+            memory.expect("carrystep-virtual-board::virtual_board::bad_line", &tests(&["x", "y"])),
             [100.0; 2]
         );
         assert_eq!(memory.expect("unheard of", &tests(&["x", "y"])), [UNKNOWN; 2]);

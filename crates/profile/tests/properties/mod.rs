@@ -1,7 +1,5 @@
 //! Tests properties that hold for every curve, over the whole range of stepper moves.
 
-#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
-
 mod laws;
 mod limits;
 mod moves;

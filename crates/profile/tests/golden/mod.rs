@@ -1,8 +1,6 @@
 //! Tests the profiles against the golden numbers of the literature (`tests/golden/*.json`, 20
 //! digits), with a relative tolerance of 10^-12 unless a test says otherwise.
 
-#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
-
 mod logistic;
 mod sinusoid;
 mod trapezoid;

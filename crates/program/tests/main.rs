@@ -1,0 +1,14 @@
+//! All tests of this crate in one program: one for each file would be linked, and generic functions
+//! compiled, many times.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod common;
+
+mod corexy;
+mod from_block;
+mod gantries;
+mod laser;
+mod places_of_outputs;
+mod planted_bugs_are_caught;
+mod programs_on_machines;
+mod rotary_axes;
