@@ -184,7 +184,7 @@ fn a_plan_is_the_same_in_another_process() {
         return;
     }
     let child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "a_plan_is_the_same_in_another_process", "--nocapture"])
+        .args(["--exact", "kept_fits::a_plan_is_the_same_in_another_process", "--nocapture"])
         .env(CHILD, "1")
         .output()
         .unwrap();
