@@ -150,9 +150,12 @@ impl Homed {
         self.ends_at_3_mm();
     }
 
+    /// The board ends with x at 3 mm. A freeze may have discarded the step whose edge it came before;
+    /// the board then says so behind the place.
     fn ends_at_3_mm(self) {
         let end = self.board.end();
-        assert!(end.contains("\nx at -160\n"), "{end}");
+        let is_there = |line: &str| line == "x at -160" || line.starts_with("x at -160, ");
+        assert!(end.lines().any(is_there), "{end}");
     }
 
     /// Behind a freeze: nothing runs before the machine is homed again; the work offsets stay.
