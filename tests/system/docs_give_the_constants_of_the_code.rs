@@ -265,7 +265,7 @@ fn profile_page_gives_the_tolerances_and_counts_of_its_tests() {
     let [logistic, sine] = ["logistic", "sine"].map(|profile| {
         [1000, 50].map(|fit_ns| counts(&format!("assert_at_most(\"{profile}\", {fit_ns}, ")))
     });
-    let tight = constant("crates/profile/tests/golden/main.rs", "TIGHT");
+    let tight = constant("crates/profile/tests/golden/mod.rs", "TIGHT");
     let first = behind("crates/profile/tests/near_rest.rs", "close(ramp.crossing(x), u, ");
     says(
         "docs/profiles.md",

@@ -2,6 +2,7 @@
 //! something fails.
 
 use crate::arguments::{PeerArguments, PortArguments};
+use crate::claimed_line::ClaimedLine;
 use crate::control::{self, Control, Holder, SocketRequest};
 use crate::failure::Failure;
 use crate::found::{Known, names};
@@ -18,14 +19,9 @@ use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How long a command waits for a port that is held by a command that only reads or stops; those
-/// release it by themselves.
+/// How long a command waits for a port that is held by a command that only reads or stops, or that
+/// has ended; those release it by themselves.
 const SOON: Duration = Duration::from_secs(10);
-
-/// How long a command that drives waits for a port that another one holds which drives: that may be
-/// about to end. Between closing the port and ending its claim it holds a pseudo-terminal that is
-/// gone, whose number the system may have given to the next board.
-const ENDING: Duration = Duration::from_secs(3);
 
 /// Where Linux has its pseudo-terminals, behind which are programs, such as a virtual board.
 const PSEUDO_TERMINALS: &str = "/dev/pts/";
@@ -39,7 +35,7 @@ const SILENCE_OF_A_PROGRAM: u32 = 10_000;
 const LOSS_OF_A_PROGRAM: u32 = 30_000;
 
 /// A board on a serial port.
-pub type ConnectedBoard = Host<SerialLine, SystemClock>;
+pub type ConnectedBoard = Host<ClaimedLine<SerialLine>, SystemClock>;
 
 /// The errors of a board on a serial port.
 pub type ConnectedBoardError = HostError<io::Error>;
@@ -187,13 +183,7 @@ fn connect(
             break claim;
         }
         let holder = control::holder(port);
-        let patience = match &holder {
-            // `stop` and `status` call it instead.
-            Some(holder) if holder.listens && !drives => Duration::ZERO,
-            Some(holder) if holder.listens => ENDING,
-            _ => SOON,
-        };
-        if begin.elapsed() < patience {
+        if !holder.as_ref().is_some_and(|holder| holder.listens) && begin.elapsed() < SOON {
             std::thread::sleep(Duration::from_millis(5));
             continue;
         }
@@ -205,6 +195,7 @@ fn connect(
         OpenError::Busy { .. } => busy(opening(port, &error)),
         _ => fine(opening(port, &error)),
     })?;
+    let line = ClaimedLine::new(line, claim.end_mark().map_err(unclaimed)?);
     let control = Control::new(claim, drives).map_err(unclaimed)?;
     // A wrong board is an input error: nothing was moved.
     let board =

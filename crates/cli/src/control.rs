@@ -28,11 +28,11 @@ mod program;
 #[cfg(unix)]
 pub use caller::{Caller, Reply, call};
 #[cfg(unix)]
-pub use claim::{PortClaim, claim, holder};
+pub use claim::{EndMark, PortClaim, claim, holder};
 #[cfg(unix)]
 use control_socket::ControlSocket;
 #[cfg(not(unix))]
-pub use none::{Caller, ControlSocket, PortClaim, Reply, call, claim, holder};
+pub use none::{Caller, ControlSocket, EndMark, PortClaim, Reply, call, claim, holder};
 
 use crate::found::{BlockFound, FoundBoard, Known};
 pub use crate::holder::Holder;

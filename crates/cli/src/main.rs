@@ -5,6 +5,7 @@ mod arguments;
 mod belt_ways;
 mod bitstream;
 mod capture;
+mod claimed_line;
 mod colour;
 mod commands;
 mod confirm;

@@ -90,16 +90,46 @@ impl PortClaim {
         self.tell();
     }
 
-    /// Writes the holder into the lock file. The content only serves messages, so a failed write is
-    /// ignored.
+    /// What marks the claim as ending.
+    ///
+    /// # Errors
+    /// The system gives no second handle of the lock file.
+    pub fn end_mark(&self) -> io::Result<EndMark> {
+        let file = self.lock.as_ref().map(|(file, _)| file.try_clone()).transpose()?;
+        Ok(EndMark { file, holder: Holder { listens: false, ..self.holder.clone() } })
+    }
+
+    /// Writes the holder into the lock file.
     fn tell(&mut self) {
-        if let Some((file, _)) = &mut self.lock
-            && let Ok(text) = serde_json::to_string(&self.holder)
-        {
-            let _ = file
-                .set_len(0)
-                .and_then(|()| file.rewind())
-                .and_then(|()| file.write_all(text.as_bytes()));
+        if let Some((file, _)) = &mut self.lock {
+            write(file, &self.holder);
+        }
+    }
+}
+
+/// Writes a holder into a lock file. The content serves messages and tells whether to wait for the
+/// holder, so a failed write is ignored.
+fn write(file: &mut File, holder: &Holder) {
+    if let Ok(text) = serde_json::to_string(holder) {
+        let _ = file
+            .set_len(0)
+            .and_then(|()| file.rewind())
+            .and_then(|()| file.write_all(text.as_bytes()));
+    }
+}
+
+/// Marks a claim as ending: its command listens no longer, and other commands wait for it.
+pub struct EndMark {
+    /// The lock file; `None` if the port is not a device.
+    file: Option<File>,
+    holder: Holder,
+}
+
+impl EndMark {
+    /// Marks the claim.
+    pub fn set(&mut self) {
+        if let Some(file) = &mut self.file {
+            write(file, &self.holder);
         }
     }
 }
@@ -142,6 +172,9 @@ pub(super) fn device(port: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::claimed_line::ClaimedLine;
+    use std::cell::Cell;
+    use std::rc::Rc;
 
     #[test]
     fn every_path_of_a_device_gives_the_same_number() {
@@ -177,6 +210,9 @@ mod tests {
             ..BuildFacts::default()
         });
         assert_eq!(held(&path), Some(Holder { watchdog: Some((50_000, 2000)), ..who("run") }));
+        first.end_mark().unwrap().set();
+        assert!(!held(&path).unwrap().listens);
+        assert!(take("jog").is_none());
         drop(first);
         assert_eq!(held(&path), None);
         // A killed holder leaves a file that nobody has locked.
@@ -186,5 +222,27 @@ mod tests {
         assert_eq!(held(&path), Some(who("jog")));
         drop(second);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_claim_is_ending_when_its_port_is_closed() {
+        /// A port that notes, when it is closed, whether the holder of its claim listens.
+        struct Port(PathBuf, Rc<Cell<Option<bool>>>);
+        impl Drop for Port {
+            fn drop(&mut self) {
+                self.1.set(held(&self.0).map(|holder| holder.listens));
+            }
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let holder =
+            Holder { pid: 7, command: "run".to_owned(), baud: 9600, listens: true, watchdog: None };
+        let claim = claim_in(|| Ok(folder.path().to_owned()), "/dev/null", holder).unwrap();
+        let claim = claim.expect("nobody has it");
+        let path = claim.lock.as_ref().unwrap().1.clone();
+        assert!(held(&path).unwrap().listens);
+        let listens = Rc::new(Cell::new(None));
+        let port = Port(path, listens.clone());
+        drop(ClaimedLine::new(port, claim.end_mark().unwrap()));
+        assert_eq!(listens.get(), Some(false));
     }
 }

@@ -234,7 +234,7 @@ fn a_port_that_is_held_is_refused_by_every_name() {
 fn a_command_that_is_about_to_end_is_waited_for() {
     let folder = folder();
     let board = Board::new(&folder, "");
-    // The claim of a command that has closed the port already.
+    // The claim of a command that is about to close the port, or has closed it.
     let device = std::fs::metadata(&board.port).unwrap().rdev();
     let user = rustix::process::geteuid().as_raw();
     let name = format!("{}-{}.lock", rustix::fs::major(device), rustix::fs::minor(device));
@@ -247,7 +247,7 @@ fn a_command_that_is_about_to_end_is_waited_for() {
         .join(name);
     let claim = File::create(&path).unwrap();
     claim.lock().unwrap();
-    let holder = r#"{"pid": 7, "command": "run", "baud": 3000000, "listens": true}"#;
+    let holder = r#"{"pid": 7, "command": "run", "baud": 3000000, "listens": false}"#;
     std::fs::write(&path, holder).unwrap();
     let mut child = drives(&folder, "jog x 1 --machine machine.toml", &board.port);
     std::thread::sleep(Duration::from_millis(200));
