@@ -1,5 +1,5 @@
-//! All tests of this crate in one program: one for each file would be linked, and generic functions
-//! compiled, many times.
+//! All integration tests of this crate, in one program. With a program for each file, what they
+//! share would be compiled and linked again for each.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod common;
