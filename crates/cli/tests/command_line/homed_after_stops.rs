@@ -241,7 +241,8 @@ fn axes_stay_homed_behind_the_ramp_of_a_third_signal() {
         std::thread::sleep(Duration::from_millis(20));
     }
     let told = document(host);
-    assert_eq!((&told["stopped_by"], &told["program"]["waits"]), (&"interrupt".into(), &0.into()));
+    let ended = (&told["stopped_by"], &told["program"]["waits"]);
+    assert_eq!(ended, (&"interrupt".into(), &0.into()), "{told}");
     homed.stands(&[]);
 }
 
