@@ -6,8 +6,9 @@
 //! another  "is in use by ..."                   waits             has it
 //! ```
 //!
-//! Between the two ends, the claim is on a port that nobody uses. It may even be on another device:
-//! once a pseudo-terminal is closed at both ends, the system gives its number to the next one.
+//! When the port is closed and the claim has not ended yet, nobody uses the port. The claim may even
+//! name another device then: it names a device by its number, and the system gives the number of a
+//! pseudo-terminal that is closed at both ends to the next one.
 
 use crate::control::EndMark;
 use carrystep_link::{Exchanged, Line};

@@ -2,7 +2,6 @@
 //! share would be compiled and linked again for each.
 
 #[path = "../../profile/tests/support/pages.rs"]
-#[allow(dead_code)]
 mod pages;
 mod support;
 

@@ -1,5 +1,4 @@
 //! A machine with known profiles, and the pulse train that an ideal generator makes of them.
-#![allow(dead_code)] // Each test binary uses a part of it.
 
 use carrystep_check::*;
 use carrystep_core::{PinTimes, Segment, StartPhase, Timebase};

@@ -176,6 +176,11 @@ mod tests {
     use std::cell::Cell;
     use std::rc::Rc;
 
+    fn who(command: &str) -> Holder {
+        let command = command.to_owned();
+        Holder { pid: 7, command, baud: 9600, listens: true, watchdog: None }
+    }
+
     #[test]
     fn every_path_of_a_device_gives_the_same_number() {
         let folder = tempfile::tempdir().unwrap();
@@ -192,13 +197,6 @@ mod tests {
     #[test]
     fn a_port_has_one_holder_at_a_time() {
         let folder = tempfile::tempdir().unwrap();
-        let who = |command: &str| Holder {
-            pid: 7,
-            command: command.to_owned(),
-            baud: 9600,
-            listens: true,
-            watchdog: None,
-        };
         let take =
             |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
         let mut first = take("run").expect("nobody has it");
@@ -234,9 +232,7 @@ mod tests {
             }
         }
         let folder = tempfile::tempdir().unwrap();
-        let holder =
-            Holder { pid: 7, command: "run".to_owned(), baud: 9600, listens: true, watchdog: None };
-        let claim = claim_in(|| Ok(folder.path().to_owned()), "/dev/null", holder).unwrap();
+        let claim = claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who("run")).unwrap();
         let claim = claim.expect("nobody has it");
         let path = claim.lock.as_ref().unwrap().1.clone();
         assert!(held(&path).unwrap().listens);

@@ -5,7 +5,7 @@ use crate::command::{Folder, Ran};
 use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
 use serde_json::Value;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write as _};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -245,10 +245,10 @@ fn a_command_that_is_about_to_end_is_waited_for() {
         .find(|path| path.is_dir())
         .unwrap()
         .join(name);
-    let claim = File::create(&path).unwrap();
+    let mut claim = File::create(&path).unwrap();
     claim.lock().unwrap();
     let holder = r#"{"pid": 7, "command": "run", "baud": 3000000, "listens": false}"#;
-    std::fs::write(&path, holder).unwrap();
+    claim.write_all(holder.as_bytes()).unwrap();
     let mut child = drives(&folder, "jog x 1 --machine machine.toml", &board.port);
     std::thread::sleep(Duration::from_millis(200));
     assert_eq!(child.try_wait().unwrap(), None, "it has ended: {}", said(&mut child));

@@ -1,7 +1,5 @@
 //! The programs that the tests read.
 
-#![allow(dead_code, reason = "each test uses a part of it")]
-
 use carrystep_gcode::{Canon, GcodeError, Interpreter, Options, Point, Step, ToolTable};
 use proptest::prelude::*;
 use std::io::Cursor;

@@ -1,8 +1,6 @@
 //! Programs, their plans, and the pins that the plans make by an accumulator that is written here,
 //! not by the models.
 
-#![allow(dead_code, reason = "each test uses a part")]
-
 use carrystep_check::{PathAxis, PathChecker, PathReport, PathSetup, Pin, PinChange, PinSink};
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::Row;

@@ -8,7 +8,6 @@
 //!
 //! A board may rest for any time between two stretches, and `simulate` does not. So clocks are
 //! counted from where each stretch would begin if it followed the one before at once.
-#![allow(dead_code, reason = "each test uses a part")]
 
 use crate::support::bus::Bus;
 use crate::support::recorder::{Recorder, edges_between};
@@ -110,11 +109,10 @@ impl Job {
         let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
         host.open(SESSION).unwrap();
         host.enable().unwrap();
-        let (ended, cuts) = drive(&mut host, &way, |progress| look(&end, &way, progress));
-        let positions = host.status().positions[..machine.axes.len()].to_vec();
+        let ended = drive(&mut host, &way, |progress| look(&end, &way, progress));
         drop(host);
         let board = Rc::into_inner(end.0).unwrap().into_inner().board;
-        Run::of(board, positions, ended, cuts)
+        Run::of(board, ended)
     }
 
     /// Drives a board on an SPI bus of this rate, Hz, through the program. `look` is called after
@@ -127,11 +125,10 @@ impl Job {
         let bus = bus.clocked(machine.timebase.clock_hz());
         let mut host = bus.connect_to(LineKind::Spi.build_id(&engine));
         host.enable().unwrap();
-        let (ended, cuts) = drive(&mut host, &way, |_| look(&bus));
-        let positions = host.status().positions[..machine.axes.len()].to_vec();
+        let ended = drive(&mut host, &way, |_| look(&bus));
         drop(host);
         let board = Rc::into_inner(bus.0).unwrap().into_inner().board;
-        Run::of(board, positions, Ok(ended.unwrap()), cuts)
+        Run::of(board, Ok(ended.unwrap()))
     }
 
     /// The rows of the program, as `run` sends them.
@@ -206,23 +203,17 @@ impl Job {
     }
 }
 
-/// Drives a board through all stretches, as long as they are done. Returns how the last one ended,
-/// and the number of cuts.
+/// Drives a board through all stretches, as long as they are done. Returns how the last one ended.
 fn drive<L: Line, C: Clock, const N: usize>(
     host: &mut Host<L, C, N>,
     way: &Way,
     mut look: impl FnMut(&Progress<'_>) -> Wish,
-) -> (Result<Ended, HostError<L::Error>>, u32) {
-    let (mut ended, mut cuts) = (Ok(Ended::Done), 0);
+) -> Result<Ended, HostError<L::Error>> {
+    let mut ended = Ok(Ended::Done);
     while matches!(ended, Ok(Ended::Done)) && { way.borrow_mut().begin() }.is_some() {
-        let mut granted = 0;
-        ended = host.stream(way, |progress: &Progress<'_>| {
-            granted = progress.queues.map_or(0, |queues| queues.cuts);
-            look(progress)
-        });
-        cuts += granted;
+        ended = host.stream(way, &mut look);
     }
-    (ended, cuts)
+    ended
 }
 
 /// What a run came to.
@@ -231,21 +222,14 @@ pub struct Run {
     pub levels: Vec<(u64, u8)>,
     /// The clocks in which the first segments of the stretches were loaded.
     pub loads: Vec<u64>,
-    pub positions: Vec<i32>,
     pub ended: Result<Ended, HostError<Died>>,
-    pub cuts: u32,
 }
 
 impl Run {
-    fn of(
-        board: Recorder,
-        positions: Vec<i32>,
-        ended: Result<Ended, HostError<Died>>,
-        cuts: u32,
-    ) -> Self {
+    fn of(board: Recorder, ended: Result<Ended, HostError<Died>>) -> Self {
         let loads = board.loads().to_vec();
         let recording = board.finish();
-        Self { edges: recording.edges, levels: recording.levels, loads, positions, ended, cuts }
+        Self { edges: recording.edges, levels: recording.levels, loads, ended }
     }
 }
 

@@ -1,6 +1,5 @@
 //! Compiles the generated header and the player with a C compiler, and runs them on a simulated
 //! timer.
-#![allow(dead_code)]
 
 use carrystep_table::{
     Kind, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer, TimerMode,

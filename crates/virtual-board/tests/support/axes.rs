@@ -255,7 +255,6 @@ impl<B: Make> Bench<B> {
     }
 
     /// The place of an axis' letter, rounded down to whole steps.
-    #[allow(dead_code)]
     pub fn place(&self, axis: usize) -> i32 {
         let world = self.0.borrow();
         world.axes[axis].place(&world.board)
@@ -281,7 +280,6 @@ impl<B: Make> Bench<B> {
     }
 
     /// Puts the switch of an axis at this position, and that of its other end as far away as before.
-    #[allow(dead_code)]
     pub fn put_edge(&self, axis: usize, position: i32) {
         let mut world = self.0.borrow_mut();
         let one = &mut world.axes[axis];

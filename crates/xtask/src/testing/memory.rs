@@ -89,23 +89,25 @@ impl TestTimes {
     /// The expected seconds of some tests of a binary, one for each.
     pub fn expect(&self, id: &str, tests: &[String]) -> Vec<f64> {
         let known = self.0.get(id);
-        let listed = |name: &str| KNOWN.iter().find(|(of, _)| *of == name).map(|(_, all)| *all);
-        let unlearned = |test: &String| {
-            let of_module = module(test).and_then(|own| {
-                let all = listed(&format!("{id}::{own}"))?;
-                let among = tests.iter().filter(|test| module(test) == Some(own));
-                Some((all, among.count()))
-            });
-            let (all, among) = of_module.or_else(|| Some((listed(id)?, tests.len())))?;
-            Some(all / among as f64)
-        };
         let expected = |test: &String| {
-            let each = unlearned(test).unwrap_or(UNKNOWN);
+            let each = listed(id, test, tests).unwrap_or(UNKNOWN);
             // A test that is new among known ones is taken for a short one.
             known.map_or(each, |known| known.get(test).copied().unwrap_or(each.min(UNKNOWN)))
         };
         tests.iter().map(expected).collect()
     }
+}
+
+/// What [`KNOWN`] has for one of the tests of a binary: the seconds of its module, or else of the
+/// binary, divided by their number of tests.
+fn listed(id: &str, test: &str, tests: &[String]) -> Option<f64> {
+    let seconds = |name: &str| KNOWN.iter().find(|(of, _)| *of == name).map(|(_, all)| *all);
+    let of_module = module(test).and_then(|own| {
+        let all = seconds(&format!("{id}::{own}"))?;
+        Some((all, tests.iter().filter(|test| module(test) == Some(own)).count()))
+    });
+    let (all, count) = of_module.or_else(|| Some((seconds(id)?, tests.len())))?;
+    Some(all / count as f64)
 }
 
 /// The module of a test, if it is in one.
