@@ -6,7 +6,7 @@ use carrystep_core::{Command, EngineBuild, PinTiming, Program, Segment, StartPha
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::{Event, Events};
 use carrystep_tests::engine_twins::{self, Came};
-use carrystep_tests::{dense, effort, engine_programs, gcode_job, lockstep, moves};
+use carrystep_tests::{dense, effort, engine_builds, engine_programs, gcode_job, lockstep, moves};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
@@ -33,7 +33,7 @@ fn engines(
 
 /// E-stop, limits, stops and silence of the host occur in any clock, whatever the host does.
 fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: LimitWiring, round: u32) {
-    let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
+    let build = engine_builds::build(axes, clock_hz, phases, StartPhase::Half, limits);
     // A round of two ticks has no room for other inputs than limits.
     let inputs = if round < 4 { [InputRow::default(); 2] } else { build.guard.inputs };
     let guard = Guard { round, watchdog: 80 / round, inputs, ..build.guard.clone() };
@@ -71,8 +71,8 @@ fn an_engine_with_several_adders() {
         (6, 2, 42_000_000, 1, LimitWiring::Each),
         (8, 8, 48_000_000, 16, LimitWiring::One),
     ] {
-        let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
-        let build = engine_programs::on_adders(build, adders);
+        let build = engine_builds::build(axes, clock_hz, phases, StartPhase::Half, limits);
+        let build = engine_builds::on_adders(build, adders);
         let came = engines(&build, 20, engine_programs::program(axes));
         assert!(came.taken > 0 && came.edges > 0, "{came:?}");
         assert!(came.leapt > came.clocks / 3, "{came:?}");
@@ -84,9 +84,9 @@ fn an_engine_with_several_adders() {
 #[test]
 fn a_kick_in_each_clock_about_the_end_of_the_watchdog() {
     for (adders, clock_hz) in [(1, 80_000_000), (6, 16_000_000)] {
-        let build = engine_programs::build(6, clock_hz, 4, StartPhase::Half, LimitWiring::None);
+        let build = engine_builds::build(6, clock_hz, 4, StartPhase::Half, LimitWiring::None);
         let guard = Guard { watchdog: 3, ..build.guard.clone() };
-        let build = engine_programs::on_adders(EngineBuild { guard, ..build }, adders);
+        let build = engine_builds::on_adders(EngineBuild { guard, ..build }, adders);
         let tick = u64::from(build.timebase.clocks_per_tick());
         let end = u64::from(build.guard.watchdog * build.guard.round) * tick;
         let segment = Segment { ticks: 200, v: 1 << 60, a: 0, j: 0, last: true };
@@ -107,8 +107,8 @@ fn a_kick_in_each_clock_about_the_end_of_the_watchdog() {
 #[test]
 fn an_engine_with_several_latches() {
     for count in [2, 4] {
-        let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
-        let build = engine_programs::with_latches(build, count);
+        let build = engine_builds::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
+        let build = engine_builds::with_latches(build, count);
         let came = engines(&build, 60, engine_programs::program_with_latches(6));
         assert!(came.leapt > came.clocks / 3 && came.edges > 1000, "{came:?}");
     }
@@ -117,7 +117,7 @@ fn an_engine_with_several_latches() {
 /// Each program contains a situation that the search for edges could get wrong.
 #[test]
 fn an_engine_of_many_edges() {
-    let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, LimitWiring::None);
+    let build = engine_builds::build(6, 80_000_000, 16, StartPhase::Zero, LimitWiring::None);
     let guard = Guard { watchdog: 0, ..build.guard.clone() };
     let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
     let programs = dense::program(500)

@@ -6,9 +6,8 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::engine_programs::{
-    build, on_adders, parameter_sets, run_programs, with_latches,
-};
+use carrystep_tests::engine_builds::{build, on_adders, parameter_sets, with_latches};
+use carrystep_tests::engine_programs::run_programs;
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.

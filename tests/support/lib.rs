@@ -7,6 +7,7 @@ pub mod board_session;
 pub mod closed_form;
 pub mod dense;
 pub mod effort;
+pub mod engine_builds;
 pub mod engine_programs;
 pub mod engine_twins;
 pub mod gcode_job;

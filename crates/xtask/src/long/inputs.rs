@@ -18,6 +18,7 @@ const LOCKSTEP: &[&str] = &[
     "hdl-out/core/",
     "tests/rung_4_model_equals_rust_hdl/",
     "tests/rung_5_model_equals_verilog/",
+    "tests/support/engine_builds.rs",
     "tests/support/engine_programs.rs",
     "tests/support/effort.rs",
 ];
@@ -98,6 +99,7 @@ pub const INPUTS: &[Inputs] = &[
             "crates/simulators/",
             "hdl-out/core/",
             "docs/mutants.md",
+            "tests/support/engine_builds.rs",
             "tests/support/engine_programs.rs",
             "tests/support/mutants",
             "tests/support/programs.rs",
