@@ -1,7 +1,6 @@
 //! FPGA families: their toolchains, their clock managers and the electrical standards of their
 //! pins. A new family is a variant of [`Family`] and a file of the folder `family`.
 
-use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 use schemars::JsonSchema;
@@ -13,6 +12,7 @@ mod block_ram;
 mod ecp5;
 mod gowin;
 mod ice40;
+mod part;
 mod pull_ups;
 mod spartan3;
 mod spartan3e;
@@ -20,6 +20,7 @@ mod spartan6;
 mod spartan7;
 
 pub use block_ram::BlockRam;
+pub use part::Part;
 pub use pull_ups::{PullUp, PullUps};
 
 /// An FPGA family. Boards are listed in the order of these variants.

@@ -22,7 +22,6 @@ mod configuration;
 mod error;
 mod family;
 mod measured;
-mod part;
 mod port;
 mod raw;
 mod reach;
@@ -32,9 +31,10 @@ mod toolchain;
 pub use block_rams::{Blocks, block_rams};
 pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
-pub use family::{BlockRam, Family, FpgaFamily, IoStandard, Placer, PllInput, PullUp, PullUps};
+pub use family::{
+    BlockRam, Family, FpgaFamily, IoStandard, Part, Placer, PllInput, PullUp, PullUps,
+};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
-pub use part::Part;
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};
 pub use self_test::{BoardSelfTest, SELF_TEST_BAUD};
 pub use toolchain::{ISE, Toolchain};

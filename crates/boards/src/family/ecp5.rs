@@ -1,8 +1,8 @@
 //! Lattice ECP5.
 
+use super::Part;
 use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, Placer, PllInput, PullUps};
-use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 

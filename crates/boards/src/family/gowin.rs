@@ -1,8 +1,8 @@
 //! Gowin LittleBee (GW1N) and Arora (GW2A), each with a memory in its package (R) or without.
 
+use super::Part;
 use super::block_ram::{BlockRam, OF_18_KBIT};
 use super::{FpgaFamily, Placer, PllInput, PullUps};
-use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 

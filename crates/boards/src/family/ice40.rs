@@ -1,8 +1,8 @@
 //! Lattice iCE40 LP, HX and UltraPlus.
 
+use super::Part;
 use super::block_ram::BlockRam;
 use super::{FpgaFamily, Placer, PllInput, PullUps};
-use crate::Part;
 use crate::clock::ClockManagers;
 use crate::toolchain::Toolchain;
 

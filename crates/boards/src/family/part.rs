@@ -1,6 +1,6 @@
 //! The FPGA of a board, and its names in the tools.
 
-use crate::Family;
+use super::Family;
 use schemars::JsonSchema;
 use serde::Serialize;
 
