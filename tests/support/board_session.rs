@@ -59,7 +59,7 @@ impl Session {
         let source = SourceText { path: "machine.toml".into(), text: text.into() };
         let gateware = Gateware::new(board, &board.parts[0], source).expect("gateware");
         assert_eq!(gateware.build().axes(), AXES);
-        let bench = LinkBench::uart(gateware.build(), gateware.uart().expect("a UART"));
+        let bench = LinkBench::rust_hdl(gateware.build(), gateware.uart().expect("a UART"));
         Self::recorded(board, gateware, bench, talk)
     }
 

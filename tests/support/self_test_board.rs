@@ -109,6 +109,16 @@ impl SelfTestSession {
         String::from_utf8(std::mem::take(&mut self.bench.text)).expect("ASCII")
     }
 
+    /// Executes cycles until the terminal has received a line, or this number of cycles; takes the
+    /// text that it has received.
+    pub fn run_until_said(&mut self, line: &str, clocks: u64) -> String {
+        let limit = self.cycles() + clocks;
+        while !self.bench.text.ends_with(line.as_bytes()) && self.cycles() < limit {
+            self.run(1);
+        }
+        self.text()
+    }
+
     /// Clocks in which the longest line is sent.
     pub fn longest_line(&self) -> u64 {
         let lengths = (0..=self.test.last_row()).map(|row| self.test.line(row, true).len() as u64);

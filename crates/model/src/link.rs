@@ -35,6 +35,9 @@ use line::End;
 use processor::{Inputs, LinkProcessor, Waits};
 use register_mirror::RegisterMirror;
 
+/// Levels of SCK and of the active-low chip select of an SPI at rest.
+pub const SPI_RESTS: [bool; 2] = [false, true];
+
 /// The bits of all latches.
 const LATCHES: u8 = (1 << MAX_LATCHES) - 1;
 
@@ -142,13 +145,36 @@ impl Link {
         !self.processor.minds_the_engine()
     }
 
-    /// Advances by one clock with default inputs from the engine; valid while [`Link::is_alone`].
-    pub fn clock_alone(&mut self, rx: bool, spi: [bool; 2]) {
-        self.clock(&LinkInputs { rx, spi, ..LinkInputs::default() });
+    /// Advances by at most `clocks` clocks with these levels from the host, as long as
+    /// [`Link::is_alone`], with default inputs from the engine. `changed` receives the number of
+    /// clocks after which the line to the host has another level, and the level. Returns the number
+    /// of clocks.
+    pub fn run_alone(
+        &mut self,
+        (rx, spi): (bool, [bool; 2]),
+        clocks: u64,
+        mut changed: impl FnMut(u64, bool),
+    ) -> u64 {
+        let inputs = LinkInputs { rx, spi, ..LinkInputs::default() };
+        let (mut done, mut level) = (0, self.tx());
+        while done < clocks && self.is_alone() {
+            let quiet = if spi == SPI_RESTS { self.quiet(rx).min(clocks - done) } else { 0 };
+            if quiet == 0 {
+                self.clock(&inputs);
+            } else {
+                self.pass(quiet, rx);
+            }
+            done += quiet.max(1);
+            if self.tx() != level {
+                level = !level;
+                changed(done, level);
+            }
+        }
+        done
     }
 
     /// Skips `clocks` clocks, at most [`Link::quiet`], with the line from the host at `rx`.
-    pub fn pass(&mut self, clocks: u64, rx: bool) {
+    fn pass(&mut self, clocks: u64, rx: bool) {
         self.processor.pass(clocks);
         self.line.pass(clocks, rx);
     }

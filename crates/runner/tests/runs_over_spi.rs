@@ -7,7 +7,7 @@
 use crate::support::bus::Bus;
 use crate::support::recorder::{Recorder, Recording, edges_between};
 use crate::support::wire::Faults;
-use crate::support::{CLOCK_HZ, End, MS, SESSION};
+use crate::support::{End, SESSION};
 use carrystep_core::Command;
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_files::{Machine, SourceText};
@@ -24,8 +24,11 @@ use std::fmt::Debug;
 use std::rc::Rc;
 use tempfile::TempDir;
 
-/// The rate of the bus. It is slow, because each edge of it takes the simulation time.
-const SCK_HZ: u64 = 2_000_000;
+/// The clock, Hz, the clocks of a millisecond, and the rate of the bus. They are slow, because each
+/// clock of the Verilog and each edge of the bus takes the simulation time.
+const CLOCK_HZ: u64 = 12_000_000;
+const MS: u64 = CLOCK_HZ / 1000;
+const SCK_HZ: u64 = 1_000_000;
 
 /// All axes move, and output 2 is switched in motion.
 const JOB: &str = "G21 G90 G64 P0.05 F3000\nM3 S12000\nG1 X3 Y2 A10\nM62 P2\nG3 X3 Y2 I-1 J1 B6 C9\n\
@@ -36,7 +39,7 @@ const END: [i32; 6] = [0, 40, 0, -200, 0, -30];
 
 fn machine(link: &str) -> Machine {
     let mut text = format!(
-        "[machine]\nclock_hz = 48_000_000\ntick_ns = 2000\nqueue_depth = 31\ncuts = true\n\
+        "[machine]\nclock_hz = {CLOCK_HZ}\ntick_ns = 8000\nqueue_depth = 31\ncuts = true\n\
          [machine.link]\n{link}\n[machine.outputs]\ncount = 3\npwm_divider = 2\nspindle = 0\n\
          spindle_rpm = 24_000\n"
     );
@@ -49,7 +52,7 @@ fn machine(link: &str) -> Machine {
         ("c", 10, "tb6600"),
     ] {
         text += &format!(
-            "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = {steps}\nspeed_limit = 200\n\
+            "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = {steps}\nspeed_limit = 150\n\
              accel_limit = 4000\ndriver = \"{driver}\"\n"
         );
     }
@@ -156,7 +159,7 @@ impl Run {
 fn over_uart(Job { machine, file, .. }: &Job) -> Run {
     let (engine, uart) = (machine.engine(), Uart::new(CLOCK_HZ, machine.baud).unwrap());
     let board = Recorder::new(ModelBoard::new(&engine, uart));
-    let end = End::of(board, uart, Faults::default(), 1);
+    let end = End::of(board, uart, Faults::default(), 1).clocked(CLOCK_HZ, 1);
     let mut host = end.connect_to(uart.build_id(&engine), Patience::default()).unwrap();
     host.open(SESSION).unwrap();
     let asked = drives(&mut host, file, &[], || end.0.borrow().board.cycle());
@@ -167,7 +170,7 @@ fn over_uart(Job { machine, file, .. }: &Job) -> Run {
 fn over_spi(Job { machine, file, .. }: &Job, requests: &[Request]) -> Run {
     let engine = machine.engine();
     let board = Recorder::new(ModelBoard::on_spi(&engine, SCK_HZ));
-    let bus = Bus::of(board, SCK_HZ, Faults::default(), 1);
+    let bus = Bus::of(board, SCK_HZ, Faults::default(), 1).clocked(CLOCK_HZ);
     let mut host = bus.connect_to(LineKind::Spi.build_id(&engine));
     let asked = drives(&mut host, file, requests, || bus.0.borrow().board.cycle());
     drop(host);
@@ -224,7 +227,7 @@ fn pulses(recording: &Recording, axis: u8) -> Vec<bool> {
 
 #[test]
 fn pulses_over_spi_are_those_over_uart_and_those_of_the_plan() {
-    let [spi, uart] = ["spi = true", "baud = 3_000_000"].map(job);
+    let [spi, uart] = ["spi = true", "baud = 1_500_000"].map(job);
     let planned = simulated(&spi);
     assert!(planned.0.len() > 2000 && planned.1.len() == 4, "{} edges", planned.0.len());
     assert!(planned == simulated(&uart), "the line changes the plan");

@@ -4,7 +4,7 @@
 mod tests;
 
 use crate::pin_levels::PinLevels;
-use crate::wire::{Driven, SPI_RESTS, Wire};
+use crate::wire::{Driven, Wire};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, Uart};
@@ -188,18 +188,13 @@ impl ModelBoard {
     /// Runs the link alone as long as the engine does not affect it, at most up to cycle `end`.
     /// Returns the cycle that it has reached.
     fn run_link(&mut self, end: u64) -> u64 {
-        let mut cycle = self.cycle();
-        while cycle < end && self.link.is_alone() {
-            let Driven { rx, spi, stays } = self.wire.drive(cycle);
-            let quiet =
-                if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
-            if quiet == 0 {
-                self.link.clock_alone(rx, spi);
-            } else {
-                self.link.pass(quiet, rx);
-            }
-            cycle += quiet.max(1);
-            self.wire.hear(cycle, self.link.tx());
+        let Self { engine, link, wire, .. } = self;
+        let mut cycle = engine.cycle();
+        while cycle < end && link.is_alone() {
+            let Driven { rx, spi, stays } = wire.drive(cycle);
+            let (begun, most) = (cycle, stays.clamp(1, end - cycle));
+            cycle += link.run_alone((rx, spi), most, |clocks, tx| wire.hear(begun + clocks, tx));
+            wire.reach(cycle);
         }
         cycle
     }

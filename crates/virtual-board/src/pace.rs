@@ -15,13 +15,13 @@ const GONE: Duration = Duration::from_secs(15);
 pub enum Pace {
     /// The board runs in real time.
     Real(Walk),
-    /// The board runs as fast as possible, but at most `ahead` clocks beyond the last byte from the
-    /// host, and not further than its queues allow ([`crate::SimulatedBoard::alone`]). A delayed
+    /// The board runs as fast as possible, but at most `ahead` clocks beyond the last byte on the
+    /// line, and not further than its queues allow ([`crate::SimulatedBoard::alone`]). A delayed
     /// host is therefore not considered dead, and its delays make no segment late.
     Fast {
-        /// Greatest number of clocks beyond the last byte.
+        /// Greatest number of clocks for which the line is idle.
         ahead: u64,
-        /// Real time and cycle of the last byte from the host.
+        /// Real time and cycle in which the line was busy at last, with requests or answers.
         heard: Option<(Instant, u64)>,
         /// Real-time pace for the time after the host is gone.
         alone: Walk,
@@ -64,7 +64,7 @@ impl Pace {
     }
 
     /// As fast as possible, for a board with this clock, Hz, but at most `ahead` clocks beyond the
-    /// last byte from the host.
+    /// last byte on the line.
     pub fn fast(clock_hz: u64, ahead: u64) -> Self {
         Self::Fast { ahead, heard: None, alone: Walk::new(clock_hz, 0) }
     }
@@ -74,7 +74,13 @@ impl Pace {
         matches!(self, Self::Fast { .. })
     }
 
-    /// Records that a byte from the host arrived in this cycle.
+    /// Whether a board that has reached its target goes on only behind a byte from the host. (If
+    /// the host stays silent for too long, it goes on without one.)
+    pub const fn needs_host(&self) -> bool {
+        matches!(self, Self::Fast { heard: Some(_), .. })
+    }
+
+    /// Records that the line is busy in this cycle: a byte is on it, or an answer is being assembled.
     pub fn hear(&mut self, cycle: u64) {
         if let Self::Fast { heard, .. } = self {
             *heard = Some((Instant::now(), cycle));

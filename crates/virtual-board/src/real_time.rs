@@ -18,6 +18,10 @@ const FULL: usize = 256;
 /// Time to sleep before the next look at the time and at the host.
 const NAP: Duration = Duration::from_micros(300);
 
+/// Greatest time for which a board that needs its host waits for a byte before it returns: somebody
+/// may want to end it.
+const WAIT: Duration = Duration::from_millis(5);
+
 /// Why a board cannot continue.
 #[derive(Debug, Error)]
 pub enum RealTimeError {
@@ -53,13 +57,12 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
     /// [`RealTimeError`] if the simulation or the terminal has failed.
     pub fn step(&mut self, to: &mut impl Edges) -> Result<(), RealTimeError> {
         if self.board.unsaid() < FULL {
-            let bytes = self.terminal.take();
-            if !bytes.is_empty() {
-                self.pace.hear(self.board.cycle());
-            }
-            bytes.into_iter().for_each(|byte| self.board.say(byte));
+            self.terminal.take().into_iter().for_each(|byte| self.board.say(byte));
         }
-        if self.pace.is_fast() && !self.terminal.is_open() {
+        if self.pace.is_fast() && self.board.talks() {
+            self.pace.hear(self.board.cycle());
+        }
+        if self.pace.is_fast() && !self.terminal.is_open(Duration::ZERO) {
             self.pace.lose();
         }
         let target = self.pace.target(self.board.cycle(), self.board.alone());
@@ -69,7 +72,8 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
         if !heard.is_empty() {
             self.terminal.give(&heard)?;
         }
-        if self.board.cycle() >= target && !(self.pace.is_fast() && self.board.talks()) {
+        let waits = self.board.cycle() >= target && !(self.pace.is_fast() && self.board.talks());
+        if waits && !(self.pace.needs_host() && self.terminal.is_open(WAIT)) {
             std::thread::sleep(NAP);
         }
         Ok(())

@@ -35,10 +35,11 @@ impl Terminal {
         &self.name
     }
 
-    /// Whether a host has the other end open.
-    pub fn is_open(&mut self) -> bool {
+    /// Whether a host has the other end open. If it has, waits for bytes from it, but not longer
+    /// than this time.
+    pub fn is_open(&mut self, wait: Duration) -> bool {
         // Neither fails: a field is set.
-        let _ = self.port.set_timeout(Duration::ZERO);
+        let _ = self.port.set_timeout(wait);
         let looked = self.port.read(&mut []);
         let _ = self.port.set_timeout(PATIENCE);
         !matches!(looked, Err(error) if error.kind() == ErrorKind::BrokenPipe)

@@ -3,6 +3,7 @@
 use crate::line::{LineReceiver, LineSender};
 use crate::spi::Master;
 use carrystep_core::link::Uart;
+use carrystep_model::SPI_RESTS;
 
 /// The host's end of the line.
 #[derive(Debug, Clone)]
@@ -21,9 +22,6 @@ pub(crate) struct Driven {
     /// Number of clocks, at least, for which these levels stay.
     pub stays: u64,
 }
-
-/// Levels of SCK and chip select when idle.
-pub(crate) const SPI_RESTS: [bool; 2] = [false, true];
 
 impl Wire {
     pub(crate) fn uart(clock_hz: u64, uart: Uart) -> Self {

@@ -17,15 +17,15 @@ use std::process::Child;
 use std::time::Duration;
 
 /// The clock is slow, because the Verilog takes time for each clock.
-const CLOCK_HZ: u64 = 20_000_000;
-const BAUD: u64 = 2_500_000;
+const CLOCK_HZ: u64 = 10_000_000;
+const BAUD: u64 = 1_250_000;
 
 /// Bits of a byte on the line.
 const BITS: u64 = 10;
 
 const HEAD: &str = r#"[machine]
-clock_hz = 20_000_000
-tick_ns = 4000
+clock_hz = 10_000_000
+tick_ns = 8000
 queue_depth = 31
 cuts = true
 
@@ -34,7 +34,7 @@ watchdog_ms = 4000
 debounce_us = 100
 
 [machine.link]
-baud = 2_500_000
+baud = 1_250_000
 
 [machine.inputs]
 probe = "low"

@@ -130,13 +130,20 @@ impl Readout {
         }
     }
 
-    /// All words of the present tick but those of switches, each with the clock in which it is
-    /// output.
-    pub(crate) fn words(&self, motion: &Motion) -> impl Iterator<Item = (u32, StateWord)> {
+    /// All words that the present tick outputs in these clocks of it, but those of switches, each
+    /// with its clock.
+    pub(crate) fn words(
+        &self,
+        motion: &Motion,
+        clocks: Range<u64>,
+    ) -> impl Iterator<Item = (u32, StateWord)> {
         (0..self.counts.len()).flat_map(move |axis| {
-            (0..TIME_SLOT_CLOCKS).filter_map(move |beat| {
+            let first = motion.build().first_clock_of(axis);
+            let beat_at = move |clock: u64| clock.saturating_sub(first.into()) as u32;
+            let end = beat_at(clocks.end).min(TIME_SLOT_CLOCKS);
+            (beat_at(clocks.start)..end).filter_map(move |beat| {
                 let word = self.word(motion, axis, beat)?;
-                Some((motion.build().first_clock_of(axis) + beat, word))
+                Some((first + beat, word))
             })
         })
     }

@@ -26,7 +26,7 @@ use following::Following;
 pub struct HostedEngine {
     engine: FastEngine,
     readout: Readout,
-    /// The words of a tick, each with its clock.
+    /// The words of a leap in its tick, each with its clock. Empty between two leaps.
     words: Vec<(u32, StateWord)>,
 }
 
@@ -81,19 +81,18 @@ impl HostedEngine {
         let begin = self.readout.begin(self.engine.core());
         let skipped = self.readout.is_live(self.engine.core())
             && self.leap_to_whole_tick(inputs, most, to) > 0;
-        let clock = self.core().clock_of_tick();
-        self.words.clear();
-        self.words.extend(self.readout.words(self.engine.core()));
-        let passed = if skipped {
-            self.pass_tick(inputs, to)
-        } else {
-            self.leap_within_tick(inputs, most, to)
-        };
-        let passed = u64::from(clock)..u64::from(clock) + passed;
-        self.words
-            .iter()
-            .filter(|(clock, _)| passed.contains(&u64::from(*clock)))
-            .for_each(|(_, word)| words(*word));
+        let first = u64::from(self.core().clock_of_tick());
+        let per_tick = u64::from(self.core().clocks_per_tick());
+        let end = if skipped { per_tick } else { first.saturating_add(most).min(per_tick) };
+        self.words.extend(self.readout.words(self.engine.core(), first..end));
+        let passed = first
+            + if skipped {
+                self.pass_tick(inputs, to)
+            } else {
+                self.leap_within_tick(inputs, most, to)
+            };
+        let output = self.words.drain(..).filter(|(clock, _)| u64::from(*clock) < passed);
+        output.for_each(|(_, word)| words(word));
         let clocks = self.cycle() - from;
         begin.switch_words(self.engine.core(), inputs, clocks, &mut words);
         clocks

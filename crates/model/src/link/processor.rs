@@ -128,12 +128,14 @@ impl LinkProcessor {
     }
 
     /// True if an instruction that contains one of these bits is executed in this clock.
+    #[inline]
     fn executes(&self, bit: Code) -> bool {
         self.stage == EXECUTE && self.code & bit != 0
     }
 
     /// True if an instruction that neither sets nor stores nor jumps is executed in this clock and
     /// contains all of these bits.
+    #[inline]
     fn does(&self, bits: Code) -> bool {
         let acts = self.executes(ACTS) && self.code & (SETS | STORES | JUMPS) == 0;
         acts && self.code & bits == bits
@@ -145,6 +147,7 @@ impl LinkProcessor {
     }
 
     /// True if reports of room count in this clock.
+    #[inline]
     fn asks_room(&self) -> bool {
         self.code & (SETS | STORES | JUMPS) == 0 && self.code & ROOM_WAIT == ROOM_WAIT
     }
@@ -154,6 +157,7 @@ impl LinkProcessor {
         self.a & 7
     }
 
+    #[inline]
     pub(super) fn outputs(&self) -> Outputs {
         let Self { a, x, clear, enable, .. } = *self;
         Outputs {
@@ -179,14 +183,48 @@ impl LinkProcessor {
 
     /// True if an instruction is executed that contains these and no others of three bits, each
     /// combination of which has a meaning of its own.
+    #[inline]
     fn tells(&self, bits: Code) -> bool {
         self.does(bits) && self.code & (CONTROL | KICK | BROKEN) == bits
     }
 
     pub(super) fn clock(&mut self, inputs: &Inputs<'_>) {
+        let room = inputs.engine.room.filter(|_| self.asks_room());
+        let begins = self.does(CRC_BEGIN);
+        if self.stage == EXECUTE {
+            self.execute(inputs);
+        } else {
+            self.read_memories();
+            self.stage += 1;
+        }
+        if let Some(room) = room.filter(|&room| room < self.room) {
+            self.room = room;
+        } else if begins {
+            self.room = MOST_ROOM;
+        }
+        if let Some(byte) = inputs.received {
+            self.ring[usize::from(self.written)] = byte;
+            self.written = after(self.written);
+        }
+    }
+
+    /// The address in the data memory that the instruction has.
+    fn place(&self) -> usize {
+        let page = usize::from(self.code & CONSTANTS) >> 1;
+        page + usize::from(if self.code & INDEXED != 0 { self.x } else { self.code as u8 })
+    }
+
+    /// The memories output the words of their addresses.
+    fn read_memories(&mut self) {
+        self.read = self.data[self.place()];
+        self.code = self.program[usize::from(self.pc)];
+        self.received = self.ring[usize::from(self.read_from)];
+    }
+
+    /// The last clock of an instruction, or one in which it waits.
+    fn execute(&mut self, inputs: &Inputs<'_>) {
         let Self { code, a, x, .. } = *self;
-        let page = usize::from(code & CONSTANTS) >> 1;
-        let place = page + usize::from(if code & INDEXED != 0 { x } else { code as u8 });
+        let place = self.place();
         let over = self.is_over(inputs);
         let told = self.tells_check(inputs.fact);
         let next_pc = if code & JUMPS != 0 && self.holds(inputs.engine) != (code & UNLESS != 0) {
@@ -195,23 +233,16 @@ impl LinkProcessor {
             after(self.pc)
         };
         let value = self.value(inputs.engine);
-        let sets = self.executes(SETS);
-        let stores = self.executes(STORES) && code & SETS == 0;
-        let acts = self.executes(ACTS) && code & JUMPS == 0;
+        let sets = code & SETS != 0;
+        let stores = code & STORES != 0 && !sets;
+        let acts = code & ACTS != 0 && code & JUMPS == 0;
         let controls = self.tells(CONTROL);
         let puts = self.does(PUTS) && over && self.is_segment();
-        let begins = self.does(CRC_BEGIN);
-        let room = inputs.engine.room.filter(|_| self.asks_room());
 
         // The memories are read before this clock writes to them.
-        self.code = self.program[usize::from(self.pc)];
-        self.read = self.data[place];
-        self.received = self.ring[usize::from(self.read_from)];
-
+        self.read_memories();
         self.crc.clock(told);
-        if self.stage != EXECUTE {
-            self.stage += 1;
-        } else if over {
+        if over {
             (self.stage, self.pc) = (0, next_pc);
         }
         if sets {
@@ -239,15 +270,6 @@ impl LinkProcessor {
         }
         if puts {
             self.put = (self.put + 1) % SEGMENT_WORDS;
-        }
-        if let Some(room) = room.filter(|&room| room < self.room) {
-            self.room = room;
-        } else if begins {
-            self.room = MOST_ROOM;
-        }
-        if let Some(byte) = inputs.received {
-            self.ring[usize::from(self.written)] = byte;
-            self.written = after(self.written);
         }
     }
 

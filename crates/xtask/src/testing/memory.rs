@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Binaries, and modules of binaries, that take long where nothing is remembered, with their seconds
 /// on one core.
-const KNOWN: [(&str, f64); 31] = [
+const KNOWN: [(&str, f64); 30] = [
     ("carrystep-cli::command_line", 880.0),
     ("carrystep-tests::rung_7_promises_are_proved", 320.0),
     ("carrystep-tests::a_board_is_its_verilog", 300.0),
@@ -38,7 +38,6 @@ const KNOWN: [(&str, f64); 31] = [
     ("carrystep-runner::runner::holds_on_a_board", 25.0),
     ("carrystep-runner::runner::pulses_of_simulate", 25.0),
     ("carrystep-virtual-board::virtual_board::gantry_homing", 20.0),
-    ("carrystep-hdl::golden_vectors", 15.0),
     ("carrystep-runner::runner::late_hosts", 15.0),
 ];
 

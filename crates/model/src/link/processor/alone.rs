@@ -21,6 +21,7 @@ pub(in crate::link) enum Waits {
 impl LinkProcessor {
     /// True if this clock depends on the engine's outputs or on its words of state, or changes an
     /// input of the engine other than the axis whose room it requests.
+    #[inline]
     pub(in crate::link) fn minds_the_engine(&self) -> bool {
         const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
         let acts = self.does(0) && self.code & TELLS != 0;
@@ -32,11 +33,13 @@ impl LinkProcessor {
 
     /// True from the clock on in which the memory is read for an instruction that loads its word
     /// into the CRC.
+    #[inline]
     fn reads_register(&self) -> bool {
         const READS: Code = ACTS | CRC_BEGIN | CRC_FEED;
         self.stage > 0 && self.code & (SETS | STORES | JUMPS) == 0 && self.code & READS == READS
     }
 
+    #[inline]
     pub(in crate::link) fn waits(&self) -> Waits {
         let polls = JUMPS | (Condition::Nothing as Code) << CONDITION | self.pc;
         if self.code == polls && self.read_from == self.written {
@@ -49,6 +52,7 @@ impl LinkProcessor {
     }
 
     /// Skips this many clocks in which the processor waits.
+    #[inline]
     pub(in crate::link) fn pass(&mut self, clocks: u64) {
         if self.waits() == Waits::ForByte {
             self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;
