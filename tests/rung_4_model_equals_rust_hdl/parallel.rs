@@ -65,7 +65,7 @@ fn every_profile() {
 
 #[test]
 fn a_move_of_the_shipped_machine_on_the_engine() {
-    lockstep::assert_engine_equals_model(Level::RustHdl, &moves::nudge());
+    lockstep::assert_engine_equals_model(Level::RustHdl, &moves::nudge(true));
 }
 
 /// The outputs and the pin of the PWM are compared in every clock, as all others are.

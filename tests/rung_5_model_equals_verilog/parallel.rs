@@ -107,9 +107,11 @@ fn a_program_in_gcode_on_the_engine_in_verilator() {
     lockstep::assert_engine_runs(Level::Verilator, &job.engine(), program, job.steps());
 }
 
+/// Rung 4 has the move back, too, and Verilator longer moves.
 #[test]
 fn a_move_of_the_shipped_machine_on_the_engine_in_icarus() {
-    lockstep::assert_engine_equals_model(Level::Icarus, &moves::nudge());
+    let and_back = effort::repeats_in_full();
+    lockstep::assert_engine_equals_model(Level::Icarus, &moves::nudge(and_back));
 }
 
 /// The cases of one start phase run side by side, one on each axis, and the edges are taken from
@@ -133,7 +135,7 @@ fn golden_vectors_in_verilator() {
 /// long cases are left to the run of repeats.
 #[test]
 fn golden_vectors_in_icarus() {
-    let is_run = |case: &Case| case.total_ticks <= 400_000 || effort::repeats_in_full();
+    let is_run = |case: &Case| case.total_ticks <= 200_000 || effort::repeats_in_full();
     for case in engine_vectors().into_iter().filter(is_run) {
         let build = lockstep::quick_build(16, case.phase());
         let (edges, p) = axis_bench::edges_in_icarus(&build, &case.segments());

@@ -51,13 +51,14 @@ fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
     carrystep_plan::plan::<f64>(&file).expect("a plan")
 }
 
-/// A short move of each axis of the shipped machine and back, and its engine: for levels that take
-/// microseconds a clock.
-pub fn nudge() -> (EngineBuild, Plan) {
+/// A short move of each axis of the shipped machine, or that move and one in which axes go back, and
+/// its engine: for levels that take microseconds a clock.
+pub fn nudge(and_back: bool) -> (EngineBuild, Plan) {
     let machine = Machine::load(&root().join("sim/six-axis.toml")).expect("the shipped machine");
     let engine = machine.engine();
     let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.025, y = -0.025, z = 0.005, a = 0.3, b = -0.05, c = 1 }\n";
-    let text = format!("{to}{}", to.replace("x = 0.025, y = -0.025", "x = -0.025, y = 0.025"));
+    let back = to.replace("x = 0.025, y = -0.025", "x = -0.025, y = 0.025");
+    let text = if and_back { format!("{to}{back}") } else { to.to_owned() };
     let source = SourceText { path: "nudge.toml".into(), text: text.into() };
     let file = MoveFile::of_moves(machine, source).expect("fine moves");
     (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))

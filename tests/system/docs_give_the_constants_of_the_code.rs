@@ -314,7 +314,7 @@ fn virtual_board_page_gives_the_times_of_its_pace() {
             format!("It makes up for at most {late} ms of a delay."),
             format!("or is silent for {} seconds of real time", word(gone)),
             format!(
-                "no longer ago than {ms} ms, and no longer than a {of_watchdog} of the watchdog's"
+                "idle for no longer than {ms} ms, and no longer than a {of_watchdog} of the watchdog's"
             ),
             format!("at most a {of_watchdog} of the watchdog's time has passed"),
             format!("has more than {} segments waiting", word(kept)),

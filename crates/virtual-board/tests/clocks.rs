@@ -77,7 +77,7 @@ fn compares(ppm: i64) {
         end.0.borrow_mut().handed_over = progress.handed_over;
         looks += 1;
         // The host has other work to do, which also makes this test fast.
-        end.wait(19);
+        end.wait(49);
         Wish::GoOn
     });
     assert_eq!(ended, Ok(Ended::Done));

@@ -77,6 +77,7 @@ const RUNS: &[Run] = &[
             "the_demo",
             "every_profile",
             "golden_vectors",
+            "a_move_of_the_shipped",
             "parameters_of_others",
             "random_machines",
             "homes_from_every_start",

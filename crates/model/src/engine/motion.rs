@@ -127,25 +127,19 @@ impl Motion {
 
     /// The outputs in this cycle for these inputs, without words of state.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
-        let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
         let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
-        let names = inputs.put.is_some_and(|put| put.word & CUT_WORD != 0);
         EngineOutputs {
-            put_ready: free && self.takes(put_axis, names),
+            put_ready: self.put_ready(inputs),
             cut_busy: self.cut.is_busy(),
             cut_refused: self.cut.refused || !self.build.cuts,
-            start_ready: free
-                && strobe
-                && self.armed.is_none()
-                && inputs.enable
-                && self.supervisor.is_warm(guard),
+            start_ready: self.start_ready(inputs),
             step: bits(&self.axis_models, |axis_model| axis_model.shaper.step),
             dir: bits(&self.axis_models, |axis_model| axis_model.shaper.dir),
             outputs: self.outputs.levels,
             pwm: self.outputs.pwm,
             enabled: self.supervisor.enabled,
-            idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
+            idle: self.is_idle(),
             fault: self.stop.fault,
             halted: self.stop.halted,
             resetting: self.reset.is_resetting(),
@@ -166,12 +160,33 @@ impl Motion {
         }
     }
 
+    /// True if the word that is offered in this cycle is accepted, or would be for the axis whose
+    /// room is asked.
+    fn put_ready(&self, inputs: &EngineInputs) -> bool {
+        let axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
+        let names = inputs.put.is_some_and(|put| put.word & CUT_WORD != 0);
+        self.stop.fault.is_none() && self.takes(axis, names)
+    }
+
+    /// True if a start is accepted in this cycle.
+    fn start_ready(&self, inputs: &EngineInputs) -> bool {
+        self.stop.fault.is_none()
+            && self.strobe()
+            && self.armed.is_none()
+            && inputs.enable
+            && self.supervisor.is_warm(&self.build.guard)
+    }
+
+    /// True if no axis moves and none will without the host.
+    fn is_idle(&self) -> bool {
+        self.rest == 2 && self.armed.is_none() && !self.pins_busy()
+    }
+
     /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &EngineInputs) {
-        let outputs = self.outputs(inputs);
-        let (strobe, before, reset) = (self.strobe(), self.stop, self.reset);
-        let build = Arc::clone(&self.build);
-        let guard = &build.guard;
+        let (put_ready, start_ready) = (self.put_ready(inputs), self.start_ready(inputs));
+        let (idle, strobe) = (self.is_idle(), self.strobe());
+        let (before, reset) = (self.stop, self.reset);
         // The order of these calls is the priority of the causes: the first one is latched. It is
         // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog,
         // interlock, stop.
@@ -179,35 +194,35 @@ impl Motion {
         let busy = self.pins_busy();
         let late = self.shape();
         if late != 0 {
-            stop.call(Cause::Overrun, late, guard);
+            stop.call(Cause::Overrun, late, &self.build.guard);
         }
         if strobe && self.supervisor.pressed() {
-            stop.call(Cause::EStop, 0, guard);
+            stop.call(Cause::EStop, 0, &self.build.guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        let missing = latch::arms_a_missing_one(guard, inputs);
+        let missing = latch::arms_a_missing_one(&self.build.guard, inputs);
         let breaks = nobody || inputs.broken || missing || self.misplaced || self.stray;
         if breaks && before.fault.is_none() {
-            stop.call(Cause::Protocol, 0, guard);
+            stop.call(Cause::Protocol, 0, &self.build.guard);
         }
         self.sample(inputs);
-        let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
+        let taken = inputs.put.filter(|_| put_ready && !nobody);
         self.stray = taken.is_some_and(|put| self.has_stray_bits(put));
         self.misplaced = taken.is_some_and(|put| !self.put(put));
         self.clock_outputs(strobe);
         // While the engine is at rest, a silent host calls no stop.
         let waits = self.rest == 2;
         if strobe {
-            stop = self.end_tick(inputs, &outputs, stop, busy);
+            stop = self.end_tick(inputs, start_ready, stop, busy);
         }
-        if strobe && self.supervisor.misses_the_host(guard) && !waits {
-            stop.call(Cause::Watchdog, 0, guard);
+        if strobe && self.supervisor.misses_the_host(&self.build.guard) && !waits {
+            stop.call(Cause::Watchdog, 0, &self.build.guard);
         }
         if strobe && self.interlock {
-            stop.call(Cause::Interlock, 0, guard);
+            stop.call(Cause::Interlock, 0, &self.build.guard);
         }
         if inputs.stop || reset.ending {
-            stop.call(Cause::Stop, 0, guard);
+            stop.call(Cause::Stop, 0, &self.build.guard);
             stop.frozen |= reset.ending;
         }
         if before.fault.is_some() {
@@ -215,9 +230,9 @@ impl Motion {
         }
         self.watch_interlock();
         self.clock_seek(inputs, strobe);
-        self.latch.clock(guard, inputs, strobe);
+        self.latch.clock(&self.build.guard, inputs, strobe);
         self.clock_cut(inputs, strobe);
-        self.supervisor.clock(guard, inputs, strobe, outputs.idle);
+        self.supervisor.clock(&self.build.guard, inputs, strobe, idle);
         self.stop = stop;
         if strobe && before.clearing {
             self.stop = Stop::default();

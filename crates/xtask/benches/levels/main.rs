@@ -129,6 +129,9 @@ fn measure(carrystep: &Path, smoke: bool) -> Result<BenchReport, String> {
     })
 }
 
+/// How often the fast model and Verilator take turns.
+const TURNS: usize = 6;
+
 fn row(
     density: &Density,
     moves: &Moves,
@@ -140,17 +143,20 @@ fn row(
     let most = most_clocks(moves, smoke);
     // Both take turns, so that a disturbance of the machine meets both.
     let (mut seconds, heard) = levels::fast(moves)?;
-    let run = toggling.run(&feed, most, None)?;
-    seconds = seconds.min(levels::fast(moves)?.0);
-    let again = toggling.run(&feed, most, None)?;
-    if most == clocks && run.positions != moves.outcome.last.position {
-        return Err(format!(
-            "{}: Verilator's positions are not those of the fast model",
-            density.name
-        ));
+    let mut their_seconds = f64::INFINITY;
+    for _ in 0..if smoke { 1 } else { TURNS } {
+        let run = toggling.run(&feed, most, None)?;
+        if most == clocks && run.positions != moves.outcome.last.position {
+            return Err(format!(
+                "{}: Verilator's positions are not those of the fast model",
+                density.name
+            ));
+        }
+        their_seconds = their_seconds.min(run.seconds);
+        seconds = seconds.min(levels::fast(moves)?.0);
     }
     let fast = clocks as f64 / seconds;
-    let verilator = most as f64 / run.seconds.min(again.seconds);
+    let verilator = most as f64 / their_seconds;
     if fast < density.wanted * verilator {
         failures.push(format!(
             "{}: {:.0} times Verilator, {} wanted",

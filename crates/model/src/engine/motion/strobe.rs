@@ -5,7 +5,7 @@
 use super::axis_model::AxisModel;
 use super::guard::Stop;
 use super::{Motion, bits};
-use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs};
+use carrystep_core::engine::{Cause, EngineInputs};
 use std::sync::Arc;
 
 impl Motion {
@@ -43,11 +43,11 @@ impl Motion {
     }
 
     /// Executes the strobe: commits the results of the tick, and returns the state of the stop
-    /// after it.
+    /// after it. A start that the host asks for is accepted if `start_ready`.
     pub(super) fn end_tick(
         &mut self,
         inputs: &EngineInputs,
-        outputs: &EngineOutputs,
+        start_ready: bool,
         mut stop: Stop,
         busy: bool,
     ) -> Stop {
@@ -81,7 +81,7 @@ impl Motion {
         }
         // The decision above was about the start that was armed before. The start that is accepted
         // now is decided about at the next strobe at the earliest.
-        if outputs.start_ready {
+        if start_ready {
             self.armed = inputs.start;
         }
         for (cause, axis) in &found {
