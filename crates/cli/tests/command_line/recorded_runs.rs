@@ -7,7 +7,7 @@
 use crate::board_here::BoardHere;
 use crate::command::Folder;
 use crate::recorder::Recorder;
-use crate::stops::{drives, moving, said};
+use crate::stops::{drives, said};
 use crate::virtual_boards::{document, passed};
 use carrystep_core::link::{LineKind, Uart};
 use carrystep_files::Machine;
@@ -65,8 +65,8 @@ fn machine() -> String {
     })
 }
 
-/// All axes move, output 3 is switched in motion, and z probes.
-const JOB: &str = "G21 G90 G64 P0.05 F1800\nM3 S12000 M8\nG1 X2 Y1 A10\nM62 P3\n\
+/// Behind a pause all axes move, output 3 is switched in motion, and z probes.
+const JOB: &str = "G21 G90 G64 P0.05 F1800\nM0\nM3 S12000 M8\nG1 X2 Y1 A10\nM62 P3\n\
     G1 X4 Y4 A-10 B8\nG3 X4 Y4 I-3 J1 C12\nM63 P3\nG1 X-4 Y2 A20 Z0.5\nG3 X-4 Y2 I3 J1 B-4\n\
     G1 X0 Y0 A0 C-6\nM9\nG38.2 Z-3 F240\nG1 Z[#5063 + 1] F900\nG1 X1 A5 B0 C0\nM5\nM2\n";
 
@@ -114,9 +114,7 @@ impl Recorded {
 
     fn begins(&self) -> Child {
         let Self { folder, board, .. } = self;
-        let mut child = drives(folder, "run job.ngc --machine machine.toml", &board.port);
-        moving(folder, &mut child, &board.port);
-        child
+        drives(folder, "run job.ngc --machine machine.toml", &board.port)
     }
 
     /// Waits until an axis has another position.
@@ -176,8 +174,10 @@ fn positions(told: &Value) -> [Value; 5] {
 fn recorded_run_replayed_on_the_verilog_is_the_same_in_every_clock() {
     let recorded = Recorded::new(JOB);
     let mut child = recorded.begins();
-    // The board is faster than the commands: it must still be in motion when they ask it to hold.
+    recorded.waits(&mut child, "pause in line 2");
+    // The board is faster than the commands: it must still be in motion when it is told to hold.
     recorded.asks("override --feed 10");
+    recorded.asks("resume");
     recorded.goes_on(&mut child);
     recorded.asks("hold");
     recorded.waits(&mut child, "hold in ");
@@ -186,10 +186,10 @@ fn recorded_run_replayed_on_the_verilog_is_the_same_in_every_clock() {
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.contains("line 12: the probe has tripped"), "{said}");
+    assert!(said.contains("line 13: the probe has tripped"), "{said}");
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
     let (program, feed) = (&told["program"], &told["program"]["overrides"]["feed"]);
-    assert_eq!((&program["waits"], feed), (&1.into(), &120.into()));
+    assert_eq!((&program["waits"], feed), (&2.into(), &120.into()));
     assert_eq!(positions(&told), [80, 0, 200, 0, 0]);
     let levels = recorded.replayed(&program["cuts"]);
     assert_eq!(levels, [0b0011, 0b1011, 0b0011, 0b0001, 0]);
