@@ -1,7 +1,7 @@
 //! A bench with link and engine, and a host at the other end of the line. The link is Rust-HDL's
-//! module, with its model in lock-step. The engine is its model, which rung 4 compares with
-//! Rust-HDL's engine in every clock; a bench with Rust-HDL's engine takes six times as long. A bench
-//! of models alone is the fastest.
+//! module, and its model runs in lock-step with it. The engine is a model, because a bench with
+//! Rust-HDL's engine takes six times as long; rung 4 compares these two in every clock. A bench in
+//! which the link, too, is only a model is the fastest.
 
 mod board;
 mod frames;

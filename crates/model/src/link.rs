@@ -145,10 +145,10 @@ impl Link {
         !self.processor.minds_the_engine()
     }
 
-    /// Advances by at most `clocks` clocks with these levels from the host, as long as
-    /// [`Link::is_alone`], with default inputs from the engine. `changed` receives the number of
-    /// clocks after which the line to the host has another level, and the level. Returns the number
-    /// of clocks.
+    /// Advances by at most `clocks` clocks, and not into the first clock in which the link needs the
+    /// engine ([`Link::is_alone`]). Meanwhile the host drives these levels of RX (or MOSI) and of SCK
+    /// and chip select. Whenever the line to the host changes, `changed` receives the number of clocks
+    /// so far and the new level. Returns the number of clocks that were executed.
     pub fn run_alone(
         &mut self,
         (rx, spi): (bool, [bool; 2]),

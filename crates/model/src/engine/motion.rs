@@ -160,8 +160,8 @@ impl Motion {
         }
     }
 
-    /// True if the word that is offered in this cycle is accepted, or would be for the axis whose
-    /// room is asked.
+    /// True if the engine accepts the word that the host offers in this cycle. If the host offers
+    /// none, true if the engine would accept one for the axis whose room the host asks for.
     fn put_ready(&self, inputs: &EngineInputs) -> bool {
         let axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
         let names = inputs.put.is_some_and(|put| put.word & CUT_WORD != 0);
