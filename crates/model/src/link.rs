@@ -158,13 +158,7 @@ impl Link {
         let inputs = LinkInputs { rx, spi, ..LinkInputs::default() };
         let (mut done, mut level) = (0, self.tx());
         while done < clocks && self.is_alone() {
-            let quiet = if spi == SPI_RESTS { self.quiet(rx).min(clocks - done) } else { 0 };
-            if quiet == 0 {
-                self.clock(&inputs);
-            } else {
-                self.pass(quiet, rx);
-            }
-            done += quiet.max(1);
+            done += self.run_until_the_line_changes(&inputs, clocks - done);
             if self.tx() != level {
                 level = !level;
                 changed(done, level);
@@ -173,10 +167,35 @@ impl Link {
         done
     }
 
-    /// Skips `clocks` clocks, at most [`Link::quiet`], with the line from the host at `rx`.
-    fn pass(&mut self, clocks: u64, rx: bool) {
-        self.processor.pass(clocks);
-        self.line.pass(clocks, rx);
+    /// Advances by one clock, or by several, at most `most`, in which the line only counts and the
+    /// processor either works or waits. Returns their number.
+    fn run_until_the_line_changes(&mut self, inputs: &LinkInputs, most: u64) -> u64 {
+        let waits = self.processor.waits();
+        let rests = inputs.spi == SPI_RESTS;
+        let quiet = if rests { self.line.quiet(inputs.rx, waits == Waits::ToSend) } else { 0 };
+        let clocks = match quiet.min(most) {
+            0 => {
+                self.clock(inputs);
+                return 1;
+            }
+            quiet if waits == Waits::No => self.work(quiet, &inputs.engine),
+            quiet => {
+                self.processor.pass(quiet);
+                quiet
+            }
+        };
+        self.line.pass(clocks, inputs.rx);
+        clocks
+    }
+
+    /// Runs the processor for at most `most` clocks, without the line. Returns their number.
+    fn work(&mut self, most: u64, engine: &EngineOutputs) -> u64 {
+        let (clocks, address) = self.processor.work(most, engine);
+        self.register_mirror.clock(address, engine.state);
+        if let Some(records) = &mut self.latch_records {
+            records.clock(address, None, engine);
+        }
+        clocks
     }
 
     /// Stores a word of state that the engine has output in a clock that the link has skipped, or

@@ -23,12 +23,10 @@ fn common_clocks_use_and_report_the_shortest_tick() {
         let note =
             format!("tick_ns = {tick_ns}, the shortest at {mhz} MHz in 16 phases with 1 axis");
         let proposal = "16000 ns is long: `phases = 4` would allow 4000 ns";
-        for command in [
-            "plan move.toml",
-            "simulate move.toml",
-            "simulate move.toml --core engine --level model",
-            "simulate move.toml --core parallel",
-        ] {
+        // The model executes each clock, so it runs at the slowest one only.
+        let model = (mhz == 25).then_some("simulate move.toml --core engine --level model");
+        let quick = ["plan move.toml", "simulate move.toml", "simulate move.toml --core parallel"];
+        for command in quick.into_iter().chain(model) {
             let ran = folder.run(command);
             assert_eq!(ran.status, 0, "{command} at {mhz} MHz: {}{}", ran.stdout, ran.stderr);
             assert!(ran.stdout.contains(&note), "{command}: {}", ran.stdout);

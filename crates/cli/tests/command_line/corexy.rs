@@ -7,7 +7,7 @@ use crate::sender::{Sender, Served};
 use crate::virtual_boards::{Board, passed};
 
 const MACHINE: &str = r#"[machine]
-clock_hz = 48_000_000
+clock_hz = 24_000_000
 tick_ns = 2000
 kinematics = "corexy"
 

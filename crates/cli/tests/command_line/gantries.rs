@@ -7,7 +7,7 @@ use crate::virtual_boards::{Board, passed};
 use std::collections::BTreeMap;
 
 const MACHINE: &str = r#"[machine]
-clock_hz = 48_000_000
+clock_hz = 30_000_000
 tick_ns = 2000
 
 [machine.guard]

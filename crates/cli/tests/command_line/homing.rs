@@ -10,7 +10,7 @@ use std::time::Duration;
 
 /// Three axes. z homes first, toward its high end; then x and y home together.
 const MACHINE: &str = r#"[machine]
-clock_hz = 48_000_000
+clock_hz = 24_000_000
 tick_ns = 2000
 
 [machine.guard]

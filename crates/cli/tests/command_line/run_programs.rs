@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Three axes, of which x can be homed. The watchdog is long, because the computer that runs these
 /// tests may be busy.
 pub const MACHINE: &str = r#"[machine]
-clock_hz = 48_000_000
+clock_hz = 24_000_000
 tick_ns = 2000
 
 [machine.guard]

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// A machine with two axes. Its watchdog is long, because the computer that runs these tests may be
 /// busy.
 pub const MACHINE: &str = r#"[machine]
-clock_hz = 48_000_000
+clock_hz = 24_000_000
 tick_ns = 2000
 
 [machine.guard]
@@ -288,7 +288,7 @@ fn impossible_virtual_boards_are_refused() {
     );
     board(
         &MACHINE.replace(
-            "clock_hz = 48_000_000\ntick_ns = 2000",
+            "clock_hz = 24_000_000\ntick_ns = 2000",
             "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]",
         ),
         "",

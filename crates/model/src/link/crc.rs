@@ -27,6 +27,11 @@ impl CrcUnit {
         self.count == 7
     }
 
+    /// The number of bits of a byte that come before the eighth one.
+    pub(super) fn left(self) -> u64 {
+        (7 - self.count).into()
+    }
+
     /// The whole register.
     pub(super) const fn word(self) -> u32 {
         self.sum

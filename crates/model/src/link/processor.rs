@@ -232,8 +232,8 @@ impl LinkProcessor {
         } else {
             after(self.pc)
         };
-        let value = self.value(inputs.engine);
         let sets = code & SETS != 0;
+        let value = if sets { self.value(inputs.engine) } else { 0 };
         let stores = code & STORES != 0 && !sets;
         let acts = code & ACTS != 0 && code & JUMPS == 0;
         let controls = self.tells(CONTROL);

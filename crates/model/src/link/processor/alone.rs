@@ -1,10 +1,11 @@
 //! Clocks in which the processor does not need the engine, so that the virtual board can execute
 //! the two one after the other, and clocks in which it only waits.
 
-use super::LinkProcessor;
+use super::{EXECUTE, Inputs, LinkProcessor};
+use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::processor::{
-    ACTS, BROKEN, CONDITION, CONTROL, CRC_BEGIN, CRC_FEED, Code, Condition, GOES, JUMPS, KICK,
-    PUTS, SETS, STARTS, STORES, ValueSource, WAIT,
+    ACTS, BROKEN, CONDITION, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, Code, Condition, GOES, JUMPS,
+    KICK, PUTS, SETS, STARTS, STORES, ValueSource, WAIT,
 };
 
 /// The reason for which the processor waits.
@@ -49,6 +50,31 @@ impl LinkProcessor {
         } else {
             Waits::No
         }
+    }
+
+    /// Executes at most `clocks` clocks, up to the first one in which the processor needs the engine
+    /// or waits; no byte is received meanwhile. Returns the number of clocks, and the address at
+    /// which the memory of registers is read in the last of them.
+    pub(in crate::link) fn work(&mut self, clocks: u64, engine: &EngineOutputs) -> (u64, u8) {
+        let inputs = Inputs { received: None, taken: false, fact: 0, engine };
+        let (mut done, mut address) = (0, self.x);
+        while done < clocks && !self.minds_the_engine() && self.waits() == Waits::No {
+            address = self.x;
+            if self.stage < EXECUTE {
+                self.read_memories();
+                self.stage += 1;
+                done += 1;
+            } else if self.does(CRC_STEP) && !self.crc.over() {
+                // Only the CRC changes before the eighth bit.
+                let bits = self.crc.left().min(clocks - done);
+                (0..bits).for_each(|_| self.crc.clock(self.tells_check(0)));
+                done += bits;
+            } else {
+                self.clock(&inputs);
+                done += 1;
+            }
+        }
+        (done, address)
     }
 
     /// Skips this many clocks in which the processor waits.
