@@ -178,23 +178,15 @@ impl Link {
                 self.clock(inputs);
                 return 1;
             }
-            quiet if waits == Waits::No => self.work(quiet, &inputs.engine),
+            // The word that the memory of registers outputs is not used before the next clock that is
+            // not alone, which reads it anew.
+            quiet if waits == Waits::No => self.processor.work(quiet, &inputs.engine),
             quiet => {
                 self.processor.pass(quiet);
                 quiet
             }
         };
         self.line.pass(clocks, inputs.rx);
-        clocks
-    }
-
-    /// Runs the processor for at most `most` clocks, without the line. Returns their number.
-    fn work(&mut self, most: u64, engine: &EngineOutputs) -> u64 {
-        let (clocks, address) = self.processor.work(most, engine);
-        self.register_mirror.clock(address, engine.state);
-        if let Some(records) = &mut self.latch_records {
-            records.clock(address, None, engine);
-        }
         clocks
     }
 

@@ -85,13 +85,15 @@ impl Folder {
         found
     }
 
-    /// The length of the longest file in the folder that a process has open. An output that the
-    /// process has begun has no name yet.
+    /// The length of the longest output in the folder that a process has begun. It has no name yet,
+    /// and Linux says so behind its place; an input that the process reads has one.
     #[cfg(target_os = "linux")]
     pub fn begun_by(&self, child: &Child) -> Option<u64> {
         let files = std::fs::read_dir(format!("/proc/{}/fd", child.id())).ok()?.flatten();
         let inside = files.filter(|file| {
-            std::fs::read_link(file.path()).is_ok_and(|to| to.starts_with(self.0.path()))
+            std::fs::read_link(file.path()).is_ok_and(|to| {
+                to.starts_with(self.0.path()) && to.to_string_lossy().ends_with(" (deleted)")
+            })
         });
         inside.filter_map(|file| file.path().metadata().ok()).map(|there| there.len()).max()
     }

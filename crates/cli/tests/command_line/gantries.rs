@@ -7,7 +7,7 @@ use crate::virtual_boards::{Board, passed};
 use std::collections::BTreeMap;
 
 const MACHINE: &str = r#"[machine]
-clock_hz = 30_000_000
+clock_hz = 24_000_000
 tick_ns = 2000
 
 [machine.guard]
@@ -177,7 +177,9 @@ pub fn positions(folder: &Folder, board: &Board) -> Vec<i64> {
 #[test]
 fn sender_homes_and_moves_both_motors_and_no_axis_into_its_closed_switch() {
     let folder = folder();
-    folder.write("machine.toml", (MACHINE.to_owned() + Z).replace("\"pair\"", "\"each\""));
+    // Four motors need a longer tick.
+    let machine = (MACHINE.to_owned() + Z).replace("\"pair\"", "\"each\"");
+    folder.write("machine.toml", machine.replace("tick_ns = 2000", "tick_ns = 4000"));
     let board = Board::new(&folder, "--min y=-200 --min y2=-40 --min z=-160 --fast");
     let served = Served::with(&folder, &format!("--port {}", board.port));
     let mut sender = Sender::tcp(&served);

@@ -226,11 +226,11 @@ fn axes_stay_homed_behind_the_ramp_of_a_limit() {
 
 #[test]
 fn axes_stay_homed_behind_the_ramp_of_a_third_signal() {
-    // y takes 12 s to come to rest, of which a fast board needs a part.
-    let homed = Homed::with(4000, "ramp", 4);
+    // y takes 2.5 s to come to rest, so that all signals come while it slows down.
+    let homed = Homed::with(4000, "ramp", 20);
     homed.folder.write("job.ngc", "G21 G90 F3000\nG1 X9 Y4000\nM2\n");
     let mut host = homed.program();
-    while positions(&moving(&homed.folder, &mut host, &homed.board.port))[1] < 30_000 {}
+    while positions(&moving(&homed.folder, &mut host, &homed.board.port))[1] < 8000 {}
     for _ in 0..3 {
         signal(&host, "-INT");
         // Signals that come together are one.

@@ -30,7 +30,7 @@ fn overrides_are_refused_by_name() {
 
 #[test]
 fn program_runs_at_its_overrides_and_ends_where_it_should() {
-    let folder = folder(LONG);
+    let folder = folder(&LONG.replace("[6]", "[10]"));
     let deep = "[machine]\nqueue_depth = 31\ncuts = true\n";
     folder.write("machine.toml", spindle(&MACHINE.replacen("[machine]\n", deep, 1)));
     let board = Board::new(&folder, "--vcd a.vcd --fast");

@@ -352,12 +352,12 @@ fn second_signal_ends_the_held_program_at_rest() {
 #[test]
 fn third_signal_ramps_the_axes_down() {
     let folder = folder("G21 G90 F3000\nG1 X4000\nM2\n");
-    // It takes half a minute to come to rest, of which a fast board needs a part.
-    let machine = MACHINE.replacen("accel_limit = 1000", "accel_limit = 4", 1);
+    // It takes 2.5 s to come to rest, so that all signals come while it slows down.
+    let machine = MACHINE.replacen("accel_limit = 1000", "accel_limit = 20", 1);
     folder.write("machine.toml", machine);
     let board = Board::new(&folder, "--fast");
     let mut child = begins(&folder, &board);
-    while positions(&moving(&folder, &mut child, &board.port))[0] < 30_000 {}
+    while positions(&moving(&folder, &mut child, &board.port))[0] < 8000 {}
     for _ in 0..3 {
         signal(&child);
         // Signals that come together are one.

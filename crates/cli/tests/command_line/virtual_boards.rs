@@ -280,11 +280,11 @@ fn impossible_virtual_boards_are_refused() {
         folder.write("bad.toml", machine);
         folder.run(&format!("virtual-board --machine bad.toml{options}"))
     };
-    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^3_100_000");
+    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^2_900_000");
     board(&odd, "").refuses_at(
         "bad.toml",
         place,
-        "the next ones that it makes are 3000000 and 3200000",
+        "the next ones that it makes are 2666666 and 3000000",
     );
     board(
         &MACHINE.replace(

@@ -53,13 +53,11 @@ impl LinkProcessor {
     }
 
     /// Executes at most `clocks` clocks, up to the first one in which the processor needs the engine
-    /// or waits; no byte is received meanwhile. Returns the number of clocks, and the address at
-    /// which the memory of registers is read in the last of them.
-    pub(in crate::link) fn work(&mut self, clocks: u64, engine: &EngineOutputs) -> (u64, u8) {
+    /// or waits; no byte is received meanwhile. Returns the number of clocks.
+    pub(in crate::link) fn work(&mut self, clocks: u64, engine: &EngineOutputs) -> u64 {
         let inputs = Inputs { received: None, taken: false, fact: 0, engine };
-        let (mut done, mut address) = (0, self.x);
+        let mut done = 0;
         while done < clocks && !self.minds_the_engine() && self.waits() == Waits::No {
-            address = self.x;
             if self.stage < EXECUTE {
                 self.read_memories();
                 self.stage += 1;
@@ -74,7 +72,7 @@ impl LinkProcessor {
                 done += 1;
             }
         }
-        (done, address)
+        done
     }
 
     /// Skips this many clocks in which the processor waits.
