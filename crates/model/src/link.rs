@@ -128,14 +128,15 @@ impl Link {
     }
 
     /// Returns the number of clocks in which nothing happens in the link, whatever the engine
-    /// outputs, provided that the line from the host stays at `rx`: the processor waits for a byte
-    /// or for the transmitter, and no bit is due. Returns 0 if something happens in this clock.
+    /// outputs, provided that the line from the host stays at `rx`, and an SPI at rest: the processor
+    /// waits for a byte or for the transmitter, and no bit is due. Returns 0 if something happens in
+    /// this clock.
     pub fn quiet(&self, rx: bool) -> u64 {
         let waits = self.processor.waits();
         if waits == Waits::No {
             return 0;
         }
-        self.line.quiet(rx, waits == Waits::ToSend)
+        self.line.quiet(rx, SPI_RESTS, waits == Waits::ToSend)
     }
 
     /// True if this clock does not depend on the engine's outputs and the link's outputs to the
@@ -171,8 +172,7 @@ impl Link {
     /// processor either works or waits. Returns their number.
     fn run_until_the_line_changes(&mut self, inputs: &LinkInputs, most: u64) -> u64 {
         let waits = self.processor.waits();
-        let rests = inputs.spi == SPI_RESTS;
-        let quiet = if rests { self.line.quiet(inputs.rx, waits == Waits::ToSend) } else { 0 };
+        let quiet = self.line.quiet(inputs.rx, inputs.spi, waits == Waits::ToSend);
         let clocks = match quiet.min(most) {
             0 => {
                 self.clock(inputs);

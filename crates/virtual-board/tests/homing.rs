@@ -3,7 +3,7 @@
 //! by more than the ramp requires.
 
 use crate::asked::homing_of;
-use crate::axes::{self, Bench, Make, Start, machine};
+use crate::axes::{self, Bench, Make, Start, machine, repeats_in_full, times_of_the_verilog};
 use crate::random::Random;
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
@@ -101,14 +101,16 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     edges[..machine.axes.len()].to_vec()
 }
 
-/// Homes twice from these starts.
-fn twice<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
+/// Homes from these starts, so many times, and finds the same places each time.
+fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64, times: usize) {
     let what = format!("{:?}, {starts:?}, seed {seed}", machine.guard.limits);
     let bench = Bench::<B>::new(machine, starts, seed);
     let first = homes(&bench, machine, &what);
-    let second = homes(&bench, machine, &format!("{what}, again"));
-    for (first, second) in first.iter().zip(&second) {
-        assert!(first.abs_diff(*second) <= 1, "{what}: {first}, then {second}");
+    for _ in 1..times {
+        let next = homes(&bench, machine, &format!("{what}, again"));
+        for (first, next) in first.iter().zip(&next) {
+            assert!(first.abs_diff(*next) <= 1, "{what}: {first}, then {next}");
+        }
     }
 }
 
@@ -116,7 +118,7 @@ fn twice<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
 /// of them, in turn, and the long run of repeats both.
 #[test]
 fn model_homes_from_every_start_in_each_wiring() {
-    let both = std::env::var_os("CARRYSTEP_REPEATS").is_some();
+    let both = repeats_in_full();
     let stops = [("ramp", "high"), ("freeze", "low")];
     let starts = STARTS.into_iter().flat_map(|x| STARTS.map(|y| [x, y]));
     let cases = ["pair", "each", "one"]
@@ -124,7 +126,7 @@ fn model_homes_from_every_start_in_each_wiring() {
         .flat_map(|limits| starts.clone().map(move |starts| (limits, starts)));
     for (number, (limits, starts)) in cases.enumerate() {
         for (stop, level) in if both { &stops[..] } else { &stops[number % 2..][..1] } {
-            twice::<ModelBoard>(&two(limits, stop, level), &starts, 1);
+            homes_to_the_same::<ModelBoard>(&two(limits, stop, level), &starts, 1, 2);
         }
     }
 }
@@ -136,7 +138,8 @@ fn verilog_homes_in_each_wiring() {
         ("each", "freeze", [Start::Closed, Start::Open]),
         ("one", "ramp", [Start::Bouncing, Start::Closed]),
     ] {
-        twice::<VerilatedBoard>(&two(limits, stop, "high"), &starts, 2);
+        let machine = two(limits, stop, "high");
+        homes_to_the_same::<VerilatedBoard>(&machine, &starts, 2, times_of_the_verilog());
     }
 }
 
@@ -186,7 +189,7 @@ fn random_machines(limits: &str, rest: u64) {
         let machine = random_machine(&mut random, limits);
         let starts: Vec<Start> =
             machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
-        twice::<ModelBoard>(&machine, &starts, seed);
+        homes_to_the_same::<ModelBoard>(&machine, &starts, seed, 2);
     }
 }
 

@@ -81,6 +81,9 @@ const RUNS: &[Run] = &[
             "parameters_of_others",
             "random_machines",
             "homes_from_every_start",
+            "verilog_homes_in_each_wiring",
+            "home_on_a_board_of_verilog",
+            "gantry_of_verilog",
         ],
     },
     Run {

@@ -59,13 +59,13 @@ impl End {
     }
 
     /// The number of clocks in which the line only counts, provided that it stays at `rx`, the
-    /// other pins of an SPI stay at rest, and `offered` stays the same.
-    pub(super) fn quiet(&self, rx: bool, offered: bool) -> u64 {
+    /// other pins of an SPI stay as they are, and `offered` stays the same.
+    pub(super) fn quiet(&self, rx: bool, [sck, select_n]: [bool; 2], offered: bool) -> u64 {
         match self {
             Self::Uart { receiver, transmitter } => {
                 receiver.quiet(rx).min(transmitter.quiet(offered))
             }
-            Self::Spi(spi) => spi.quiet(),
+            Self::Spi(spi) => spi.quiet([sck, select_n, rx]),
         }
     }
 

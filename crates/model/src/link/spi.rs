@@ -58,11 +58,15 @@ impl Spi {
         self.goes & 0x80 != 0
     }
 
-    /// The number of clocks in which nothing happens while the pins stay at rest: `u64::MAX` or 0.
-    pub(super) const fn quiet(&self) -> u64 {
-        let rests = self.sync.select_n && self.now.select_n && self.count == 0;
-        let low = !self.sync.sck && !self.now.sck && !self.before;
-        if rests && low { u64::MAX } else { 0 }
+    /// The number of clocks in which nothing happens while the pins stay at these levels: `u64::MAX`
+    /// or 0. While the chip is not selected, nobody reads MOSI.
+    pub(super) fn quiet(&self, [sck, select_n, mosi]: [bool; 3]) -> u64 {
+        let same = |pins: Pins| {
+            pins.sck == sck && pins.select_n == select_n && (select_n || pins.mosi == mosi)
+        };
+        let is_counted = !select_n || self.count == 0;
+        let stays = same(self.sync) && same(self.now) && self.before == sck && is_counted;
+        if stays { u64::MAX } else { 0 }
     }
 
     pub(super) fn clock(&mut self, [sck, select_n, mosi]: [bool; 3], taken: Option<u8>) {

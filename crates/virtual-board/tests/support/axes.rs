@@ -337,3 +337,14 @@ impl<B: Make> Line for Bench<B> {
         Ok(Exchanged { sent, received })
     }
 }
+
+/// True if what the Verilog only repeats behind the models must be run in full.
+pub fn repeats_in_full() -> bool {
+    std::env::var_os("CARRYSTEP_REPEATS").is_some()
+}
+
+/// How often a board of Verilog homes in a test: once, and twice in the long run of repeats. Boards of
+/// models home twice in every run.
+pub fn times_of_the_verilog() -> usize {
+    if repeats_in_full() { 2 } else { 1 }
+}
