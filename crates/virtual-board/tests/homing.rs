@@ -107,9 +107,9 @@ fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64, ti
     let bench = Bench::<B>::new(machine, starts, seed);
     let first = homes(&bench, machine, &what);
     for _ in 1..times {
-        let next = homes(&bench, machine, &format!("{what}, again"));
-        for (first, next) in first.iter().zip(&next) {
-            assert!(first.abs_diff(*next) <= 1, "{what}: {first}, then {next}");
+        let second = homes(&bench, machine, &format!("{what}, again"));
+        for (first, second) in first.iter().zip(&second) {
+            assert!(first.abs_diff(*second) <= 1, "{what}: {first}, then {second}");
         }
     }
 }
