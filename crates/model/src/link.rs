@@ -159,7 +159,7 @@ impl Link {
         let inputs = LinkInputs { rx, spi, ..LinkInputs::default() };
         let (mut done, mut level) = (0, self.tx());
         while done < clocks && self.is_alone() {
-            done += self.run_until_the_line_changes(&inputs, clocks - done);
+            done += self.advance(&inputs, clocks - done);
             if self.tx() != level {
                 level = !level;
                 changed(done, level);
@@ -168,9 +168,9 @@ impl Link {
         done
     }
 
-    /// Advances by one clock, or by several, at most `most`, in which the line only counts and the
-    /// processor either works or waits. Returns their number.
-    fn run_until_the_line_changes(&mut self, inputs: &LinkInputs, most: u64) -> u64 {
+    /// Advances by one clock, or, while the line only counts, by up to `most` clocks in which the
+    /// processor either works without the engine or waits. Returns the number of clocks.
+    fn advance(&mut self, inputs: &LinkInputs, most: u64) -> u64 {
         let waits = self.processor.waits();
         let quiet = self.line.quiet(inputs.rx, inputs.spi, waits == Waits::ToSend);
         let clocks = match quiet.min(most) {

@@ -6,6 +6,10 @@ use carrystep_boards::{board, boards};
 use carrystep_files::SourceText;
 use carrystep_verilog::{Gateware, shipped_machine};
 
+/// One more axis, in front of the first one.
+const ONE_MORE: &str = "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\n\
+    accel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]";
+
 /// The error for a board with one thing changed in the shipped machine file.
 fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let board = board(name).unwrap();
@@ -59,7 +63,7 @@ fn impossible_request_is_refused_with_an_alternative() {
         (
             "icestick",
             "[[machine.axis]]",
-            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            ONE_MORE,
             "icestick has pins for 6 axes, and none for 'c': leave out axes, or take another board",
         ),
         (
@@ -83,7 +87,7 @@ fn impossible_request_is_refused_with_an_alternative() {
         (
             "tang-nano-20k",
             "[[machine.axis]]",
-            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            ONE_MORE,
             "tang-nano-20k has pins for 6 axes, and none for 'c': leave out axes, or take another board",
         ),
     ];

@@ -2,7 +2,7 @@
 //! and the letter ends at its place, from any start and however the other letter stands.
 
 use crate::asked::homing_of;
-use crate::axes::{Bench, Make, Never, Start, machine, times_of_the_verilog};
+use crate::axes::{Bench, Make, Never, Start, machine};
 use crate::random::Random;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
@@ -49,11 +49,12 @@ fn home<B: Make>(bench: &Bench<B>, machine: &Machine) -> Result<[i32; 8], HostEr
     Ok(edges)
 }
 
-/// Homes so many times, and compares where the letters are with where their switches are.
-fn homes<B: Make>(machine: &Machine, starts: &[Start; 3], seed: u64, times: usize) {
+/// Homes as often as this kind of board does, and compares where the letters are with where their
+/// switches are.
+fn homes<B: Make>(machine: &Machine, starts: &[Start; 3], seed: u64) {
     let what = format!("{starts:?}, seed {seed}");
     let bench = Bench::<B>::new(machine, starts, seed);
-    for again in 0..times {
+    for again in 0..B::homes() {
         let edges =
             home(&bench, machine).unwrap_or_else(|error| panic!("{what}, {again}: {error}"));
         let round = u128::from(machine.guard.round);
@@ -90,18 +91,17 @@ fn letters_of_crossed_belts_home_from_every_start() {
         let order = [XYZ, ["z", "y", "x"], ["y", "z", "x"]][number % 3];
         let stop = if number % 2 == 0 { "ramp" } else { "freeze" };
         let machine = belts(order, toward, stop);
-        homes::<ModelBoard>(&machine, &[Start::Open; 3], number as u64, 2);
+        homes::<ModelBoard>(&machine, &[Start::Open; 3], number as u64);
         for seed in 0..2 {
             let any = [0; 3].map(|_| starts[random.below(3) as usize]);
-            homes::<ModelBoard>(&machine, &any, seed, 2);
+            homes::<ModelBoard>(&machine, &any, seed);
         }
     }
 }
 
 #[test]
 fn letters_of_crossed_belts_home_on_a_board_of_verilog() {
-    let machine = belts(XYZ, ["min", "max"], "ramp");
-    homes::<VerilatedBoard>(&machine, &[Start::Open; 3], 3, times_of_the_verilog());
+    homes::<VerilatedBoard>(&belts(XYZ, ["min", "max"], "ramp"), &[Start::Open; 3], 3);
 }
 
 /// The tool stays on the line along which it homes: the other letter does not move.

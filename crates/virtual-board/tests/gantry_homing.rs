@@ -2,7 +2,7 @@
 //! skew they begin, and a motor does not move further alone than the machine file allows.
 
 use crate::asked::homing_of;
-use crate::axes::{self, Bench, Make, Start, machine, times_of_the_verilog};
+use crate::axes::{self, Bench, Make, Start, machine};
 use crate::random::Random;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
@@ -73,11 +73,11 @@ fn skewed<B: Make>(machine: &Machine, start: Start, by: i32, seed: u64) -> Bench
     bench
 }
 
-fn squares<B: Make>(machine: &Machine, start: Start, by: i32, seed: u64, times: usize) {
+fn squares<B: Make>(machine: &Machine, start: Start, by: i32, seed: u64) {
     let what = format!("{:?}, {start:?}, skew by {by}, seed {seed}", machine.guard.limits);
     let bench = skewed::<B>(machine, start, by, seed);
     assert_eq!(skew(&bench, machine), by, "{what}");
-    for again in 0..times {
+    for again in 0..B::homes() {
         let places =
             home(&bench, machine).unwrap_or_else(|error| panic!("{what}, {again}: {error}"));
         let rests = machine.axes[0].home.unwrap().rests();
@@ -96,20 +96,19 @@ fn gantry_is_square_behind_homing_however_skew_it_begins() {
             assert_eq!(machine.axes[0].home.unwrap().toward == End::Max, toward == "max");
             for seed in 0..2 {
                 let by = random.below(90) as i32 - 45;
-                squares::<ModelBoard>(&machine, Start::Open, by, seed, 2);
+                squares::<ModelBoard>(&machine, Start::Open, by, seed);
             }
             // The first motor stands on its switch. The second one may, less deep: from deeper,
             // moving off would not open its switch.
             let open = if toward == "min" { 1 } else { -1 };
-            squares::<ModelBoard>(&machine, Start::Closed, 20 * open, 11, 2);
+            squares::<ModelBoard>(&machine, Start::Closed, 20 * open, 11);
         }
     }
 }
 
 #[test]
 fn gantry_of_verilog_is_square_behind_homing() {
-    let times = times_of_the_verilog();
-    squares::<VerilatedBoard>(&gantry("pair", "min"), Start::Open, 25, 3, times);
+    squares::<VerilatedBoard>(&gantry("pair", "min"), Start::Open, 25, 3);
 }
 
 #[test]

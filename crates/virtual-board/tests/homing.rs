@@ -3,7 +3,7 @@
 //! by more than the ramp requires.
 
 use crate::asked::homing_of;
-use crate::axes::{self, Bench, Make, Start, machine, repeats_in_full, times_of_the_verilog};
+use crate::axes::{self, Bench, Make, Start, machine, repeats_in_full};
 use crate::random::Random;
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
@@ -101,12 +101,12 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     edges[..machine.axes.len()].to_vec()
 }
 
-/// Homes from these starts, so many times, and finds the same places each time.
-fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64, times: usize) {
+/// Homes from these starts, as often as this kind of board does, and finds the same places each time.
+fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
     let what = format!("{:?}, {starts:?}, seed {seed}", machine.guard.limits);
     let bench = Bench::<B>::new(machine, starts, seed);
     let first = homes(&bench, machine, &what);
-    for _ in 1..times {
+    for _ in 1..B::homes() {
         let second = homes(&bench, machine, &format!("{what}, again"));
         for (first, second) in first.iter().zip(&second) {
             assert!(first.abs_diff(*second) <= 1, "{what}: {first}, then {second}");
@@ -126,7 +126,7 @@ fn model_homes_from_every_start_in_each_wiring() {
         .flat_map(|limits| starts.clone().map(move |starts| (limits, starts)));
     for (number, (limits, starts)) in cases.enumerate() {
         for (stop, level) in if both { &stops[..] } else { &stops[number % 2..][..1] } {
-            homes_to_the_same::<ModelBoard>(&two(limits, stop, level), &starts, 1, 2);
+            homes_to_the_same::<ModelBoard>(&two(limits, stop, level), &starts, 1);
         }
     }
 }
@@ -138,8 +138,7 @@ fn verilog_homes_in_each_wiring() {
         ("each", "freeze", [Start::Closed, Start::Open]),
         ("one", "ramp", [Start::Bouncing, Start::Closed]),
     ] {
-        let machine = two(limits, stop, "high");
-        homes_to_the_same::<VerilatedBoard>(&machine, &starts, 2, times_of_the_verilog());
+        homes_to_the_same::<VerilatedBoard>(&two(limits, stop, "high"), &starts, 2);
     }
 }
 
@@ -189,7 +188,7 @@ fn random_machines(limits: &str, rest: u64) {
         let machine = random_machine(&mut random, limits);
         let starts: Vec<Start> =
             machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
-        homes_to_the_same::<ModelBoard>(&machine, &starts, seed, 2);
+        homes_to_the_same::<ModelBoard>(&machine, &starts, seed);
     }
 }
 

@@ -85,8 +85,8 @@ impl Folder {
         found
     }
 
-    /// The length of the longest output in the folder that a process has begun. It has no name yet,
-    /// and Linux says so behind its place; an input that the process reads has one.
+    /// The length in bytes of the longest output that a process has begun in the folder. Such a file
+    /// has no name yet, so its link in `/proc` ends with ` (deleted)`. Inputs have names.
     #[cfg(target_os = "linux")]
     pub fn begun_by(&self, child: &Child) -> Option<u64> {
         let files = std::fs::read_dir(format!("/proc/{}/fd", child.id())).ok()?.flatten();

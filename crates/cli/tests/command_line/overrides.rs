@@ -33,8 +33,8 @@ fn program_runs_at_its_overrides_and_ends_where_it_should() {
     let folder = folder(LONG);
     let deep = "[machine]\nqueue_depth = 31\ncuts = true\n";
     let machine = spindle(&MACHINE.replacen("[machine]\n", deep, 1));
-    // A change leaves 40 ms of motion in the queues. A board with a fast clock is simulated slowly
-    // enough for a host on a busy computer.
+    // A new feed leaves 40 ms of motion in the queues. A board of 48 MHz takes twice as long to
+    // simulate them as one of 24 MHz, which a host on a busy computer needs to refill them.
     folder.write("machine.toml", machine.replace("24_000_000", "48_000_000"));
     let board = Board::new(&folder, "--vcd a.vcd --fast");
     let mut child = begins(&folder, &board);

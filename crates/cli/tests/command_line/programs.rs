@@ -59,7 +59,7 @@ fn every_program_is_simulated_and_stays_within_its_tolerance() {
 #[test]
 fn cores_and_levels_give_the_same_pulses() {
     let folder = folder("G64 P0.05 F1200\nG1 X2 Y1\nG2 X4 I1\nG1 X0 Y0 Z-0.5\n");
-    // The model executes each clock.
+    // The model executes each clock, so the machine has fewer of them in a second.
     let slow = MACHINE.replace("80_000_000\ntick_ns = 1000", "20_000_000\ntick_ns = 4000");
     folder.write("m.toml", slow);
     let run = |more: &str| {

@@ -27,7 +27,7 @@ impl CrcUnit {
         self.count == 7
     }
 
-    /// The number of bits of a byte that come before the eighth one.
+    /// The number of clocks until the eighth bit of the byte is shifted.
     pub(super) fn left(self) -> u64 {
         (7 - self.count).into()
     }

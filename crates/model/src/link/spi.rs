@@ -64,8 +64,8 @@ impl Spi {
         let same = |pins: Pins| {
             pins.sck == sck && pins.select_n == select_n && (select_n || pins.mosi == mosi)
         };
-        let is_counted = !select_n || self.count == 0;
-        let stays = same(self.sync) && same(self.now) && self.before == sck && is_counted;
+        let keeps_count = !select_n || self.count == 0;
+        let stays = same(self.sync) && same(self.now) && self.before == sck && keeps_count;
         if stays { u64::MAX } else { 0 }
     }
 

@@ -29,6 +29,13 @@ pub trait Make: SimulatedBoard + Sized {
     fn make(build: &EngineBuild, uart: Uart) -> Self;
     /// Ticks between two updates of the switches.
     fn slice(round: u32) -> u32;
+    /// How often a test homes such a board, each time from where it came to rest before.
+    fn homes() -> u32;
+}
+
+/// True in the long run that runs in full what ordinary runs shorten.
+pub fn repeats_in_full() -> bool {
+    std::env::var_os("CARRYSTEP_REPEATS").is_some()
 }
 
 impl Make for ModelBoard {
@@ -39,6 +46,10 @@ impl Make for ModelBoard {
     fn slice(round: u32) -> u32 {
         (round / 4).max(1)
     }
+
+    fn homes() -> u32 {
+        2
+    }
 }
 
 impl Make for VerilatedBoard {
@@ -48,6 +59,10 @@ impl Make for VerilatedBoard {
 
     fn slice(round: u32) -> u32 {
         round
+    }
+
+    fn homes() -> u32 {
+        if repeats_in_full() { 2 } else { 1 }
     }
 }
 
@@ -336,15 +351,4 @@ impl<B: Make> Line for Bench<B> {
         }
         Ok(Exchanged { sent, received })
     }
-}
-
-/// True if what the Verilog only repeats behind the models must be run in full.
-pub fn repeats_in_full() -> bool {
-    std::env::var_os("CARRYSTEP_REPEATS").is_some()
-}
-
-/// How often a board of Verilog homes in a test: once, and twice in the long run of repeats. Boards of
-/// models home twice in every run.
-pub fn times_of_the_verilog() -> usize {
-    if repeats_in_full() { 2 } else { 1 }
 }
