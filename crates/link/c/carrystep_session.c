@@ -360,7 +360,8 @@ static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *lin
     unsigned found = SINGLES;
     for (unsigned index = 0; index < SINGLES; index++) {
         bool due = session->singles[index].open &&
-                   (!session->singles[index].asked || now - session->singles[index].when >= session->resend);
+                   (!session->singles[index].asked || session->singles[index].lost ||
+                    now - session->singles[index].when >= session->resend);
         bool before = found == SINGLES ||
                       (session->singles[index].request.writes && !session->singles[found].request.writes);
         if (due && before) {
@@ -371,10 +372,25 @@ static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *lin
         return 0;
     }
     session->singles[found].asked = true;
+    session->singles[found].lost = false;
     session->singles[found].when = now;
+    session->singles[found].order = ++session->single_order;
+    session->singles[found].before = (uint8_t)(session->first + session->sent);
     return carrystep_encode(line, session->singles[found].sequence,
                             same(session, found, true, WRITES(CARRYSTEP_OPEN)) ? session->opening : session->number,
                             &session->singles[found].request);
+}
+
+/* Answers come in the order of requests: what was sent before a request that is answered, and has
+ * no answer, was lost, and is sent again. */
+static void ask_again(carrystep_session *session, bool written, uint8_t number)
+{
+    for (unsigned index = 0; index < SINGLES; index++) {
+        uint8_t own = written ? session->singles[index].before : session->singles[index].order;
+        if ((uint8_t)(number - own) < 0x80u) {
+            session->singles[index].lost = true;
+        }
+    }
 }
 
 /* Whether this answers one of these requests, which it completes. */
@@ -384,8 +400,12 @@ static bool answered(carrystep_session *session, const carrystep_answer *answer)
         if (same(session, index, answer->written, answer->address) && session->singles[index].asked &&
             session->singles[index].sequence == answer->sequence) {
             session->singles[index].open = false;
+            ask_again(session, false, session->singles[index].order);
             return true;
         }
+    }
+    if (answer->written) {
+        ask_again(session, true, answer->sequence);
     }
     return false;
 }

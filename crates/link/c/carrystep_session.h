@@ -53,9 +53,13 @@ typedef struct {
         uint8_t sequence;
         bool open;
         bool asked;
+        bool lost; /* a request that was sent behind it was answered */
         uint32_t when;
+        uint8_t order;  /* its place in the order of these requests */
+        uint8_t before; /* the number of the next write that was to be sent when it was */
     } singles[CARRYSTEP_MOST_AXES + 2u];
     uint8_t single_sequence;
+    uint8_t single_order;
     /* the gateware */
     uint16_t number;  /* the session that this host owns; 0: none */
     uint16_t opening; /* the session that it has asked for; 0: none */

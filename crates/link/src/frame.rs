@@ -71,6 +71,21 @@ impl Body {
         }
     }
 
+    /// Number of bytes of the frame with its CRC, before END and ESC are escaped; of a read, that
+    /// of an owner.
+    pub const fn bytes(&self) -> usize {
+        let words = match *self {
+            Self::Read { .. } => 0,
+            Self::Write { .. } => 1,
+            Self::Segment { .. } => SEGMENT_FRAME_WORDS,
+            Self::Segments(wide) => {
+                SEGMENTS_HEAD_WORDS + SEGMENTS_AXIS_WORDS * wide.mask.count_ones() as usize + 1
+            }
+            Self::Cut(_) => MOST_AXES as usize,
+        };
+        REQUEST_HEAD + SESSION_BYTES + 4 * words + CRC_BYTES
+    }
+
     /// Whether this is a write.
     pub const fn writes(&self) -> bool {
         !matches!(self, Self::Read { .. })

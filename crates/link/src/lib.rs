@@ -22,6 +22,7 @@ pub mod feeder;
 pub mod frame;
 pub mod host;
 pub mod line;
+pub mod pace;
 #[rustfmt::skip]
 pub mod registers;
 pub mod session;
@@ -43,6 +44,7 @@ pub use host::{AxisHoming, Homed, Homing, HomingFault, HomingStage, Wiring};
 pub use host::{AxisState, SeekSource, Snapshot};
 pub use host::{Clock, Ended, Host, HostError, Moment, Patience, Progress, Queues, Status, Wish};
 pub use line::{Exchanged, Line};
+pub use pace::LinkPace;
 pub use session::{Session, SessionLost, Timing, WriteError};
 pub use ticks::{ClockComparison, ClockDifference, TickCount};
 

@@ -297,7 +297,7 @@ impl<const N: usize> Session<N> {
     /// The next request to be sent at the time `now`, ms.
     pub fn transmit(&mut self, now: u32) -> Option<Request> {
         let Timing { resend, pause } = self.timing;
-        let single = self.singles.transmit(now, resend);
+        let single = self.singles.transmit(now, resend, self.window.sending());
         let (sequence, body) = single.or_else(|| self.window.transmit(now, resend, pause))?;
         let opens = matches!(body, Body::Write { address: OPEN, .. });
         let session = if opens { self.opening } else { self.number };
@@ -323,6 +323,9 @@ impl<const N: usize> Session<N> {
         self.unpowered = !answer.ready && !answer.fault;
         self.armed = answer.armed;
         let single = self.singles.answer(&answer);
+        if answer.written && !single {
+            self.singles.overtaken(answer.sequence);
+        }
         if answer.is_write_of(OPEN) {
             if single {
                 let opening = core::mem::take(&mut self.opening);

@@ -1,5 +1,7 @@
 //! Requests outside of the sequence of writes: reads, OPEN and STOP. An answer is matched to its
-//! request by number and address; a request without an answer is sent again.
+//! request by number and address; a request without an answer is sent again: after a time, or as
+//! soon as a request that was sent behind it is answered, because answers come in the order of
+//! requests.
 
 use crate::frame::{Answer, Body};
 use crate::registers::MOST_AXES;
@@ -14,7 +16,21 @@ struct Single {
     /// The word of a write; `None` for a read.
     word: Option<u32>,
     sequence: u8,
-    asked: Option<u32>,
+    /// How it was sent; `None` if it was not.
+    asked: Option<Asked>,
+}
+
+/// How a request was sent at last.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    /// When, ms.
+    at: u32,
+    /// Its place in the order of these requests.
+    order: u8,
+    /// The number of the next write that was to be sent then.
+    before: u8,
+    /// Whether a request that was sent behind it was answered.
+    is_lost: bool,
 }
 
 impl Single {
@@ -28,6 +44,7 @@ impl Single {
 pub struct Singles {
     places: [Option<Single>; READS + 2],
     sequence: u8,
+    order: u8,
 }
 
 impl Singles {
@@ -78,14 +95,16 @@ impl Singles {
     }
 
     /// The number and the body of the request to be sent at the time `now`, ms; writes come first.
-    /// A request without an answer is sent again after `resend` ms.
-    pub fn transmit(&mut self, now: u32, resend: u32) -> Option<(u8, Body)> {
+    /// A request without an answer is sent again after `resend` ms. `before` is the number of the next
+    /// write that is to be sent.
+    pub fn transmit(&mut self, now: u32, resend: u32, before: u8) -> Option<(u8, Body)> {
         let due = |single: &&mut Single| {
-            single.asked.is_none_or(|asked| now.wrapping_sub(asked) >= resend)
+            single.asked.is_none_or(|asked| asked.is_lost || now.wrapping_sub(asked.at) >= resend)
         };
         let due = self.places.iter_mut().flatten().filter(due);
         let single = due.min_by_key(|single| single.word.is_none())?;
-        single.asked = Some(now);
+        self.order = self.order.wrapping_add(1);
+        single.asked = Some(Asked { at: now, order: self.order, before, is_lost: false });
         let address = single.address;
         let body = match single.word {
             Some(word) => Body::Write { address, word },
@@ -94,7 +113,8 @@ impl Singles {
         Some((single.sequence, body))
     }
 
-    /// Whether this answer belongs to one of these requests, which it completes.
+    /// Whether this answer belongs to one of these requests, which it completes. Those that were sent
+    /// before it and have no answer are sent again.
     pub fn answer(&mut self, answer: &Answer) -> bool {
         let own = |place: &&mut Option<Single>| {
             place.is_some_and(|single| {
@@ -105,6 +125,27 @@ impl Singles {
                 single.asked.is_some() && same && single.sequence == answer.sequence
             })
         };
-        self.places.iter_mut().find(own).map(Option::take).is_some()
+        let place = self.places.iter_mut().find(own).and_then(Option::take);
+        let Some(Asked { order, .. }) = place.and_then(|single| single.asked) else {
+            return false;
+        };
+        self.ask_again(|asked| is_at_or_behind(order, asked.order));
+        true
     }
+
+    /// A write with this number was answered. Requests that were sent before it and have no answer
+    /// are sent again.
+    pub fn overtaken(&mut self, number: u8) {
+        self.ask_again(|asked| is_at_or_behind(number, asked.before));
+    }
+
+    fn ask_again(&mut self, is_lost: impl Fn(&Asked) -> bool) {
+        let asked = self.places.iter_mut().flatten().filter_map(|single| single.asked.as_mut());
+        asked.for_each(|asked| asked.is_lost |= is_lost(asked));
+    }
+}
+
+/// Whether this number is the other one, or one of the 127 behind it.
+const fn is_at_or_behind(number: u8, other: u8) -> bool {
+    number.wrapping_sub(other) < 0x80
 }

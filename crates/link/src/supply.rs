@@ -11,7 +11,10 @@
 
 use crate::command::{Command, OutputChange, Segment, WideSegment};
 use crate::frame::{Body, Request};
+use crate::pace::LinkPace;
 use crate::slip;
+use carrystep_core::Timebase;
+use core::fmt;
 use std::collections::VecDeque;
 use std::vec::Vec;
 use thiserror::Error;
@@ -22,7 +25,8 @@ const BITS_OF_BYTE: u64 = 10;
 /// A program that this line cannot carry in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "{baud} baud are too slow for this move: axis {axis} would run dry {at_ms} ms after the start, its next segment {late_us} us late; take a higher baud rate, a larger fit_ns, or fewer axes at once"
+    "{bottleneck} too slow for this move: axis {axis} would run dry {at_ms} ms after the start, its next segment {late_us} us late; take {}, a larger fit_ns, or fewer axes at once",
+    bottleneck.remedy()
 )]
 pub struct Starved {
     /// Number of the axis whose queue would run empty, from 0.
@@ -31,8 +35,42 @@ pub struct Starved {
     pub at_ms: u64,
     /// Delay of the axis' next segment, us, rounded up.
     pub late_us: u64,
-    /// Baud rate of the line, bits per second.
-    pub baud: u32,
+    /// What is too slow for that segment.
+    pub bottleneck: Bottleneck,
+}
+
+/// What limits how many segments come in a second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bottleneck {
+    /// The line.
+    Line {
+        /// Its baud rate, bits per second.
+        baud: u32,
+    },
+    /// The gateware, which stores a word of an axis in a tick.
+    Tick {
+        /// Its tick, ns.
+        ns: u64,
+    },
+}
+
+impl Bottleneck {
+    /// What makes it faster, with its article.
+    pub const fn remedy(self) -> &'static str {
+        match self {
+            Self::Line { .. } => "a higher baud rate",
+            Self::Tick { .. } => "a shorter tick",
+        }
+    }
+}
+
+impl fmt::Display for Bottleneck {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { baud } => write!(f, "{baud} baud are"),
+            Self::Tick { ns } => write!(f, "a tick of {ns} ns is"),
+        }
+    }
 }
 
 /// A segment to be transmitted: when its queue place becomes free, and when it must have arrived,
@@ -45,19 +83,19 @@ struct Job {
     outputs: OutputChange,
 }
 
-/// Checks that a UART at this baud rate delivers each segment before its axis needs it, provided
-/// that the host is never late.
+/// Checks that a UART at this baud rate delivers each segment before its axis needs it, and that a
+/// gateware with this clock takes them in time, provided that the host is never late.
 ///
 /// # Errors
 /// [`Starved`] gives the first axis whose queue would run empty.
 pub fn check(
     commands: &[Command],
     axes: u8,
-    tick_ns: u64,
+    timebase: Timebase,
     queue: usize,
     baud: u32,
 ) -> Result<(), Starved> {
-    let mut supply = Supply::new(axes, tick_ns, queue, baud);
+    let mut supply = Supply::new(axes, timebase, queue, baud);
     commands.iter().try_for_each(|command| supply.add(command))?;
     supply.finish()
 }
@@ -65,12 +103,13 @@ pub fn check(
 /// The same check for a program of any length, command by command.
 #[derive(Debug)]
 pub struct Supply {
-    tick_ns: u64,
+    timebase: Timebase,
     /// Number of segments that the queue of an axis holds.
     queue: usize,
     /// No segment is sent while those that wait last so long, ns.
     enough: u64,
     baud: u32,
+    pace: LinkPace,
     axes: Vec<Axis>,
     /// What changes with the next segment of axis 0.
     outputs: OutputChange,
@@ -91,12 +130,13 @@ struct Axis {
 }
 
 impl Supply {
-    /// A check of a build with so many axes, with ticks of `tick_ns` ns and queues of `queue`
-    /// segments, on a line of `baud` bits per second.
-    pub fn new(axes: u8, tick_ns: u64, queue: usize, baud: u32) -> Self {
+    /// A check of a build with so many axes, with this clock and tick and queues of `queue` segments,
+    /// on a line of `baud` bits per second.
+    pub fn new(axes: u8, timebase: Timebase, queue: usize, baud: u32) -> Self {
         let axes = (0..axes).map(|_| Axis::default()).collect();
+        let pace = LinkPace::new(timebase.clock_hz(), timebase.tick_ns(), baud);
         let (outputs, enough) = (OutputChange::NONE, u64::MAX);
-        Self { tick_ns, queue, enough, baud, axes, outputs, now: 0 }
+        Self { timebase, queue, enough, baud, pace, axes, outputs, now: 0 }
     }
 
     /// The same for a source that [does not fill](crate::SegmentSource::may_send) the queues: it
@@ -122,7 +162,7 @@ impl Supply {
         let none = OutputChange::NONE;
         let outputs = if number == 0 { core::mem::take(&mut self.outputs) } else { none };
         let Some(axis) = self.axes.get_mut(usize::from(number)) else { return Ok(()) };
-        let due = axis.tick.saturating_mul(self.tick_ns);
+        let due = axis.tick.saturating_mul(self.timebase.tick_ns());
         axis.tick = axis.tick.saturating_add(segment.ticks.into());
         axis.begins.push_back(due);
         axis.count += 1;
@@ -191,11 +231,16 @@ impl Supply {
         };
         let request = Request { sequence: 0, session: 0, body };
         let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
-        let takes = (bits * 1_000_000_000).div_ceil(u64::from(self.baud.max(1)));
-        self.now = now.saturating_add(takes);
+        let line = (bits * 1_000_000_000).div_ceil(u64::from(self.baud.max(1)));
+        let gateware = self.timebase.clock_to_ps(self.pace.clocks(&request.body)).div_ceil(1000);
+        self.now = now.saturating_add(line.max(gateware));
         if self.now > due {
             let late_us = (self.now - due).div_ceil(1000);
-            return Err(Starved { axis, at_ms: due / 1_000_000, late_us, baud: self.baud });
+            let bottleneck = match gateware > line {
+                true => Bottleneck::Tick { ns: self.timebase.tick_ns() },
+                false => Bottleneck::Line { baud: self.baud },
+            };
+            return Err(Starved { axis, at_ms: due / 1_000_000, late_us, bottleneck });
         }
         Ok(())
     }
@@ -205,6 +250,11 @@ impl Supply {
 mod tests {
     use super::*;
     use crate::command::Segment;
+
+    /// A clock of 80 MHz and a tick of 2 us.
+    fn clock() -> Timebase {
+        Timebase::new(80_000_000, 2000, 4).unwrap()
+    }
 
     /// A program of `count` segments of `ticks` ticks for each of six axes.
     fn even(count: u32, ticks: u32) -> Vec<Command> {
@@ -219,9 +269,9 @@ mod tests {
         // 500 segments per second of six axes with common ticks: 500 x 166 bytes x 10 bits =
         // 0.83 Mbit/s.
         let dense = even(1000, 1000);
-        assert_eq!(check(&dense, 6, 2000, 7, 921_600), Ok(()));
-        assert_eq!(check(&even(1000, 500), 6, 2000, 7, 3_000_000), Ok(()));
-        let starved = check(&dense, 6, 2000, 7, 800_000).unwrap_err();
+        assert_eq!(check(&dense, 6, clock(), 7, 921_600), Ok(()));
+        assert_eq!(check(&even(1000, 500), 6, clock(), 7, 3_000_000), Ok(()));
+        let starved = check(&dense, 6, clock(), 7, 800_000).unwrap_err();
         assert!(starved.late_us > 0 && starved.at_ms > 14, "{starved}");
     }
 
@@ -234,8 +284,8 @@ mod tests {
                 segment.ticks += u32::from(*axis);
             }
         }
-        assert_eq!(check(&apart, 6, 2000, 7, 1_600_000), Ok(()));
-        assert!(check(&apart, 6, 2000, 7, 921_600).is_err());
+        assert_eq!(check(&apart, 6, clock(), 7, 1_600_000), Ok(()));
+        assert!(check(&apart, 6, clock(), 7, 921_600).is_err());
     }
 
     /// A burst of short segments behind long ones: what waits has to last until it is over.
@@ -248,19 +298,31 @@ mod tests {
             }
         }
         let with = |ms: u64| {
-            let mut supply = Supply::new(6, 2000, 31, 500_000).with_enough(ms * 1_000_000);
+            let mut supply = Supply::new(6, clock(), 31, 500_000).with_enough(ms * 1_000_000);
             burst.iter().try_for_each(|command| supply.add(command))?;
             supply.finish()
         };
-        assert_eq!(with(1000), check(&burst, 6, 2000, 31, 500_000));
+        assert_eq!(with(1000), check(&burst, 6, clock(), 31, 500_000));
         assert_eq!((with(1000), with(100)), (Ok(()), Ok(())));
         assert!(with(20).is_err());
     }
 
     #[test]
+    fn gateware_with_a_long_tick_is_slower_than_its_line() {
+        let slow = Timebase::new(80_000_000, 50_000, 4).unwrap();
+        let starved = check(&even(1000, 60), 6, slow, 7, 3_000_000).unwrap_err();
+        assert_eq!(starved.bottleneck, Bottleneck::Tick { ns: 50_000 });
+        let said = std::format!("{starved}");
+        assert!(said.starts_with("a tick of 50000 ns is too slow for this move"), "{said}");
+        assert!(said.contains("take a shorter tick"), "{said}");
+        // The engine stores a word of a segment in a tick: 63 ticks for one of six axes.
+        assert_eq!(check(&even(1000, 100), 6, slow, 7, 3_000_000), Ok(()));
+    }
+
+    #[test]
     fn segments_queued_before_the_start_need_no_line_time() {
-        assert_eq!(check(&even(7, 1), 6, 2000, 7, 300), Ok(()));
-        assert!(check(&even(8, 1), 6, 2000, 7, 300).is_err());
-        assert_eq!(check(&[], 6, 2000, 7, 0), Ok(()));
+        assert_eq!(check(&even(7, 1), 6, clock(), 7, 300), Ok(()));
+        assert!(check(&even(8, 1), 6, clock(), 7, 300).is_err());
+        assert_eq!(check(&[], 6, clock(), 7, 0), Ok(()));
     }
 }

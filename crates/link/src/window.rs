@@ -80,6 +80,11 @@ impl<const N: usize> Window<N> {
         self.first.wrapping_add(self.length as u8)
     }
 
+    /// The sequence number of the next write that is sent.
+    pub const fn sending(&self) -> u8 {
+        self.first.wrapping_add(self.sent as u8)
+    }
+
     /// Appends a write.
     ///
     /// # Errors
@@ -126,7 +131,7 @@ impl<const N: usize> Window<N> {
         }
         self.busy = false;
         let body = *self.slots.get((self.at + self.sent) % N)?;
-        let sequence = self.first.wrapping_add(self.sent as u8);
+        let sequence = self.sending();
         self.sent += 1;
         self.reached = self.reached.max(self.sent);
         Some((sequence, body))

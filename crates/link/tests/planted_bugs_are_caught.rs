@@ -10,7 +10,7 @@ use crate::support::soak::{Soak, TICKS, soak};
 use crate::support::wire::Faults;
 
 /// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
-const IN_C: [(&str, &str, &str); 32] = [
+const IN_C: [(&str, &str, &str); 34] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
     ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
@@ -76,6 +76,16 @@ const IN_C: [(&str, &str, &str); 32] = [
         "nothing is sent again by time",
         "waited >= session->resend)",
         "false && waited >= session->resend)",
+    ),
+    (
+        "a read that another one has overtaken is waited for",
+        "ask_again(session, false,",
+        "if (0) ask_again(session, false,",
+    ),
+    (
+        "a read that a write has overtaken is waited for",
+        "ask_again(session, true,",
+        "if (0) ask_again(session, true,",
     ),
     (
         "a question is answered by any answer",

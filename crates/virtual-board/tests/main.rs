@@ -25,6 +25,7 @@ mod homing;
 mod host;
 mod latches;
 mod late_host;
+mod pace;
 mod page;
 mod rates;
 mod snapshots;

@@ -53,8 +53,7 @@ impl Moves {
     ) -> Result<Self, Failure> {
         let (machine, path) = (&source.machine, source.path.display().to_string());
         let axes = machine.axes.len() as u8;
-        let mut supply =
-            Some(Supply::new(axes, machine.timebase.tick_ns(), machine.queue, machine.baud));
+        let mut supply = Some(Supply::new(axes, machine.timebase, machine.queue, machine.baud));
         // A move that cannot be made is told before a line that is too slow.
         let mut starved = None;
         let belts = machine.clone();

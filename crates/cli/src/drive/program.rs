@@ -165,7 +165,7 @@ impl<'a> RowsLook<'a> {
         let machine = file.machine();
         let axes = machine.axes.len();
         let tick_ns = machine.timebase.tick_ns();
-        let supply = Supply::new(axes as u8, tick_ns, machine.queue, machine.baud);
+        let supply = Supply::new(axes as u8, machine.timebase, machine.queue, machine.baud);
         let supply = match machine.cuts {
             true => supply,
             false => supply.with_enough(Horizon::enough_ticks(tick_ns) * tick_ns),
@@ -214,11 +214,13 @@ impl<'a> RowsLook<'a> {
     }
 }
 
-fn starved(file: &ProgramFile, Starved { axis, at_ms, late_us, baud }: Starved) -> Failure {
+fn starved(file: &ProgramFile, error: Starved) -> Failure {
+    let Starved { axis, at_ms, late_us, bottleneck } = error;
     let name = file.path().display();
     Failure::input(format!(
-        "{name}: {baud} baud are too slow for this program: axis {axis} would run dry {at_ms} ms \
-         after the start, its next segment {late_us} us late; give [machine.link] a higher baud rate"
+        "{name}: {bottleneck} too slow for this program: axis {axis} would run dry {at_ms} ms after \
+         the start, its next segment {late_us} us late; give the machine file {}",
+        bottleneck.remedy()
     ))
 }
 

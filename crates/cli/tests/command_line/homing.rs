@@ -19,7 +19,7 @@ debounce_us = 100
 limits = "pair"
 
 [machine.link]
-baud = 3_000_000
+baud = 1_500_000
 
 [[machine.axis]]
 name = "x"

@@ -32,10 +32,7 @@ fn overrides_are_refused_by_name() {
 fn program_runs_at_its_overrides_and_ends_where_it_should() {
     let folder = folder(LONG);
     let deep = "[machine]\nqueue_depth = 31\ncuts = true\n";
-    let machine = spindle(&MACHINE.replacen("[machine]\n", deep, 1));
-    // A new feed leaves 40 ms of motion in the queues. A board of 48 MHz takes twice as long to
-    // simulate them as one of 24 MHz, which a host on a busy computer needs to refill them.
-    folder.write("machine.toml", machine.replace("24_000_000", "48_000_000"));
+    folder.write("machine.toml", spindle(&MACHINE.replacen("[machine]\n", deep, 1)));
     let board = Board::new(&folder, "--vcd a.vcd --fast");
     let mut child = begins(&folder, &board);
     moving(&folder, &mut child, &board.port);

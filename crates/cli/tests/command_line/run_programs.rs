@@ -20,7 +20,7 @@ watchdog_ms = 4000
 debounce_us = 100
 
 [machine.link]
-baud = 3_000_000
+baud = 1_500_000
 
 [machine.outputs]
 count = 2

@@ -17,7 +17,7 @@ watchdog_ms = 4000
 debounce_us = 100
 
 [machine.link]
-baud = 3_000_000
+baud = 1_500_000
 
 [[machine.axis]]
 name = "x"
@@ -280,7 +280,7 @@ fn impossible_virtual_boards_are_refused() {
         folder.write("bad.toml", machine);
         folder.run(&format!("virtual-board --machine bad.toml{options}"))
     };
-    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^2_900_000");
+    let (odd, place) = edit(MACHINE, "baud = 1_500_000", "baud = ^2_900_000");
     board(&odd, "").refuses_at(
         "bad.toml",
         place,
