@@ -179,7 +179,7 @@ impl Homed {
 
 /// `stop --clear` with and without the machine file.
 const CLEAR: &str = "stop --clear --machine machine.toml";
-const CLEAR_ANY: &str = "stop --clear --baud 3000000";
+const CLEAR_ANY: &str = "stop --clear --baud 1500000";
 
 #[test]
 fn axes_stay_homed_behind_the_ramp_of_the_watchdog() {

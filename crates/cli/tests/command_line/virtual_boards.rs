@@ -68,7 +68,8 @@ impl Board {
         let mut said = BufReader::new(child.stdout.take().unwrap());
         let mut line = String::new();
         said.read_line(&mut line).unwrap();
-        let (port, _) = line.split_once(": 3000000 baud, build ").expect(&line);
+        let (port, rest) = line.split_once(": ").expect(&line);
+        assert!(rest.contains(" baud, build "), "{line}");
         Self { port: port.to_owned(), child, said }
     }
 
@@ -262,13 +263,13 @@ fn e_stop_is_reported_and_latched_until_released_and_cleared() {
     let told = document(child);
     assert_eq!((&told["ended"], &told["cause"]), (&"fault".into(), &"e-stop".into()));
     let stop =
-        |options: &str| folder.run(&format!("stop --port {} --baud 3000000 {options}", board.port));
+        |options: &str| folder.run(&format!("stop --port {} --baud 1500000 {options}", board.port));
     let ran = stop("--clear");
     assert_eq!(ran.status, 1, "{}", ran.stdout);
     assert!(ran.stderr.contains("the e-stop is still pressed"), "{}", ran.stderr);
     let port = board.port.clone();
     board.press("estop 0");
-    let ran = folder.run(&format!("stop --port {port} --baud 3000000 --clear"));
+    let ran = folder.run(&format!("stop --port {port} --baud 1500000 --clear"));
     passed(&ran);
     passed(&folder.run(&format!("run move.toml --port {port}")));
 }
