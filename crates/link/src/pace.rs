@@ -30,9 +30,9 @@ impl LinkPace {
         Self { bit: (clock_hz + baud / 2) / baud, tick }
     }
 
-    /// Clocks for which the gateware is busy with a frame, at most (docs/protocol.md, "The time of a
-    /// frame"): it processes the bytes, hands one word of a segment in a tick to the engine, waits for
-    /// the engine's state of a whole tick, and sends the answer.
+    /// Clocks for which the gateware is busy with a frame, at most (docs/protocol.md, "The time of
+    /// a frame"): it processes the bytes, hands one word of a segment in a tick to the engine,
+    /// waits for the engine's state of a whole tick, and sends the answer.
     pub const fn clocks(self, frame: &Body) -> u64 {
         let axes = match frame {
             Body::Cut(_) => 1,

@@ -95,8 +95,8 @@ impl Singles {
     }
 
     /// The number and the body of the request to be sent at the time `now`, ms; writes come first.
-    /// A request without an answer is sent again after `resend` ms. `before` is the number of the next
-    /// write that is to be sent.
+    /// A request without an answer is sent again after `resend` ms. `before` is the number of the
+    /// next write that is to be sent.
     pub fn transmit(&mut self, now: u32, resend: u32, before: u8) -> Option<(u8, Body)> {
         let due = |single: &&mut Single| {
             single.asked.is_none_or(|asked| asked.is_lost || now.wrapping_sub(asked.at) >= resend)
@@ -113,8 +113,8 @@ impl Singles {
         Some((single.sequence, body))
     }
 
-    /// Whether this answer belongs to one of these requests, which it completes. Those that were sent
-    /// before it and have no answer are sent again.
+    /// Whether this answer belongs to one of these requests, which it completes. Those that were
+    /// sent before it and have no answer are sent again.
     pub fn answer(&mut self, answer: &Answer) -> bool {
         let own = |place: &&mut Option<Single>| {
             place.is_some_and(|single| {

@@ -130,8 +130,8 @@ struct Axis {
 }
 
 impl Supply {
-    /// A check of a build with so many axes, with this clock and tick and queues of `queue` segments,
-    /// on a line of `baud` bits per second.
+    /// A check of a build with so many axes, with this clock and tick and queues of `queue`
+    /// segments, on a line of `baud` bits per second.
     pub fn new(axes: u8, timebase: Timebase, queue: usize, baud: u32) -> Self {
         let axes = (0..axes).map(|_| Axis::default()).collect();
         let pace = LinkPace::new(timebase.clock_hz(), timebase.tick_ns(), baud);

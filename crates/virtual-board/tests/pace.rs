@@ -32,7 +32,8 @@ fn frame(random: &mut Random, axes: u32) -> Body {
     }
 }
 
-/// Sends frames faster than the gateware processes them, and measures the time from answer to answer.
+/// Sends frames faster than the gateware processes them, and measures the time from answer to
+/// answer.
 #[test]
 fn gateware_is_busy_with_a_frame_for_no_longer_than_its_page_says() {
     let mut random = Random::new(7);
