@@ -360,7 +360,7 @@ static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *lin
     unsigned found = SINGLES;
     for (unsigned index = 0; index < SINGLES; index++) {
         bool due = session->singles[index].open &&
-                   (!session->singles[index].asked || session->singles[index].lost ||
+                   (!session->singles[index].asked || session->singles[index].overtaken ||
                     now - session->singles[index].when >= session->resend);
         bool before = found == SINGLES ||
                       (session->singles[index].request.writes && !session->singles[found].request.writes);
@@ -371,8 +371,10 @@ static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *lin
     if (found == SINGLES) {
         return 0;
     }
+    session->singles[found].sent_again =
+        session->singles[found].asked && now - session->singles[found].when < session->resend;
+    session->singles[found].overtaken = false;
     session->singles[found].asked = true;
-    session->singles[found].lost = false;
     session->singles[found].when = now;
     session->singles[found].order = ++session->single_order;
     session->singles[found].before = (uint8_t)(session->first + session->sent);
@@ -381,14 +383,15 @@ static size_t send_single(carrystep_session *session, uint32_t now, uint8_t *lin
                             &session->singles[found].request);
 }
 
-/* Answers come in the order of requests: what was sent before a request that is answered, and has
- * no answer, was lost, and is sent again. */
-static void ask_again(carrystep_session *session, bool written, uint8_t number)
+/* A request was answered: `order` is its place among these requests or, of a write, its sequence
+ * number. Answers come in the order of requests, so those of these requests that were sent before it
+ * were lost. They are sent again, once until their time is over. */
+static void overtake(carrystep_session *session, bool is_write, uint8_t order)
 {
     for (unsigned index = 0; index < SINGLES; index++) {
-        uint8_t own = written ? session->singles[index].before : session->singles[index].order;
-        if ((uint8_t)(number - own) < 0x80u) {
-            session->singles[index].lost = true;
+        uint8_t own = is_write ? session->singles[index].before : session->singles[index].order;
+        if ((uint8_t)(order - own) < 0x80u && !session->singles[index].sent_again) {
+            session->singles[index].overtaken = true;
         }
     }
 }
@@ -400,12 +403,12 @@ static bool answered(carrystep_session *session, const carrystep_answer *answer)
         if (same(session, index, answer->written, answer->address) && session->singles[index].asked &&
             session->singles[index].sequence == answer->sequence) {
             session->singles[index].open = false;
-            ask_again(session, false, session->singles[index].order);
+            overtake(session, false, session->singles[index].order);
             return true;
         }
     }
     if (answer->written) {
-        ask_again(session, true, answer->sequence);
+        overtake(session, true, answer->sequence);
     }
     return false;
 }

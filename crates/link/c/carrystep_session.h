@@ -53,10 +53,11 @@ typedef struct {
         uint8_t sequence;
         bool open;
         bool asked;
-        bool lost; /* a request that was sent behind it was answered */
         uint32_t when;
-        uint8_t order;  /* its place in the order of these requests */
-        uint8_t before; /* the number of the next write that was to be sent when it was */
+        uint8_t order;   /* its place in the order of these requests */
+        uint8_t before;  /* sequence number of the next write that was to be sent then */
+        bool overtaken;  /* a request that was sent behind it was answered */
+        bool sent_again; /* it was sent again for that reason, and waits for its time */
     } singles[CARRYSTEP_MOST_AXES + 2u];
     uint8_t single_sequence;
     uint8_t single_order;

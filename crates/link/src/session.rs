@@ -324,7 +324,7 @@ impl<const N: usize> Session<N> {
         self.armed = answer.armed;
         let single = self.singles.answer(&answer);
         if answer.written && !single {
-            self.singles.overtaken(answer.sequence);
+            self.singles.answer_of_write(answer.sequence);
         }
         if answer.is_write_of(OPEN) {
             if single {

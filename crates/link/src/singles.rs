@@ -1,7 +1,7 @@
 //! Requests outside of the sequence of writes: reads, OPEN and STOP. An answer is matched to its
-//! request by number and address; a request without an answer is sent again: after a time, or as
-//! soon as a request that was sent behind it is answered, because answers come in the order of
-//! requests.
+//! request by number and address. A request without an answer is sent again after a time. Once in
+//! this time it is sent again as soon as a request that was sent behind it is answered, because
+//! answers come in the order of requests.
 
 use crate::frame::{Answer, Body};
 use crate::registers::MOST_AXES;
@@ -27,10 +27,19 @@ struct Asked {
     at: u32,
     /// Its place in the order of these requests.
     order: u8,
-    /// The number of the next write that was to be sent then.
+    /// Sequence number of the next write that was to be sent then.
     before: u8,
-    /// Whether a request that was sent behind it was answered.
-    is_lost: bool,
+    overtaken: Overtaken,
+}
+
+/// Whether a request that was sent behind another one was answered before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Overtaken {
+    No,
+    /// It was, so this one is to be sent again.
+    Yes,
+    /// It was, and this one was sent again for that reason; now it waits for its time.
+    SentAgain,
 }
 
 impl Single {
@@ -44,6 +53,7 @@ impl Single {
 pub struct Singles {
     places: [Option<Single>; READS + 2],
     sequence: u8,
+    /// Place of the request that was sent last, in the order of these requests.
     order: u8,
 }
 
@@ -98,13 +108,18 @@ impl Singles {
     /// A request without an answer is sent again after `resend` ms. `before` is the number of the
     /// next write that is to be sent.
     pub fn transmit(&mut self, now: u32, resend: u32, before: u8) -> Option<(u8, Body)> {
-        let due = |single: &&mut Single| {
-            single.asked.is_none_or(|asked| asked.is_lost || now.wrapping_sub(asked.at) >= resend)
+        let is_late = |asked: &Asked| now.wrapping_sub(asked.at) >= resend;
+        let is_due = |single: &&mut Single| {
+            single.asked.is_none_or(|asked| asked.overtaken == Overtaken::Yes || is_late(&asked))
         };
-        let due = self.places.iter_mut().flatten().filter(due);
+        let due = self.places.iter_mut().flatten().filter(is_due);
         let single = due.min_by_key(|single| single.word.is_none())?;
+        let overtaken = match single.asked {
+            Some(asked) if !is_late(&asked) => Overtaken::SentAgain,
+            _ => Overtaken::No,
+        };
         self.order = self.order.wrapping_add(1);
-        single.asked = Some(Asked { at: now, order: self.order, before, is_lost: false });
+        single.asked = Some(Asked { at: now, order: self.order, before, overtaken });
         let address = single.address;
         let body = match single.word {
             Some(word) => Body::Write { address, word },
@@ -113,8 +128,8 @@ impl Singles {
         Some((single.sequence, body))
     }
 
-    /// Whether this answer belongs to one of these requests, which it completes. Those that were
-    /// sent before it and have no answer are sent again.
+    /// Whether this answer belongs to one of these requests, which it completes. The others that were
+    /// sent before it are overtaken.
     pub fn answer(&mut self, answer: &Answer) -> bool {
         let own = |place: &&mut Option<Single>| {
             place.is_some_and(|single| {
@@ -129,19 +144,21 @@ impl Singles {
         let Some(Asked { order, .. }) = place.and_then(|single| single.asked) else {
             return false;
         };
-        self.ask_again(|asked| is_at_or_behind(order, asked.order));
+        self.overtake(|asked| is_at_or_behind(order, asked.order));
         true
     }
 
-    /// A write with this number was answered. Requests that were sent before it and have no answer
-    /// are sent again.
-    pub fn overtaken(&mut self, number: u8) {
-        self.ask_again(|asked| is_at_or_behind(number, asked.before));
+    /// A write with this sequence number was answered: it overtakes the requests that were sent before
+    /// it.
+    pub fn answer_of_write(&mut self, sequence: u8) {
+        self.overtake(|asked| is_at_or_behind(sequence, asked.before));
     }
 
-    fn ask_again(&mut self, is_lost: impl Fn(&Asked) -> bool) {
+    fn overtake(&mut self, was_before: impl Fn(&Asked) -> bool) {
         let asked = self.places.iter_mut().flatten().filter_map(|single| single.asked.as_mut());
-        asked.for_each(|asked| asked.is_lost |= is_lost(asked));
+        asked
+            .filter(|asked| asked.overtaken == Overtaken::No && was_before(asked))
+            .for_each(|asked| asked.overtaken = Overtaken::Yes);
     }
 }
 

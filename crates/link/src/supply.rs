@@ -1,10 +1,12 @@
-//! Checks before any motion whether a line can carry a program in time.
+//! Checks before any motion whether a line can carry a program in time, and whether the gateware can
+//! take it in time.
 //!
 //! ```text
 //! queue     of n places: segments 0 .. n - 1 are queued before the start; when segment k begins
 //!           to run, the place of segment k + n becomes free
-//! line      transmits one frame at a time, the most urgent first; segments of several axes with
-//!           the same begin and end are one frame
+//! line      transmits one frame at a time, the most urgent first, for as long as the line needs
+//!           or the gateware, whichever is slower; segments of several axes with the same begin
+//!           and end are one frame
 //! axis      |  k  | k + 1 | ... |  |  k + n           segment k + n must have arrived
 //!                                  ^                  before this moment
 //! ```
@@ -22,10 +24,11 @@ use thiserror::Error;
 /// Bits per byte on a UART: a start bit, eight data bits, a stop bit.
 const BITS_OF_BYTE: u64 = 10;
 
-/// A program that this line cannot carry in time.
+/// A program that this line cannot carry in time, or that the gateware cannot take in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "{bottleneck} too slow for this move: axis {axis} would run dry {at_ms} ms after the start, its next segment {late_us} us late; take {}, a larger fit_ns, or fewer axes at once",
+    "{bottleneck} too slow for this move: axis {axis} would run dry {at_ms} ms after the start, \
+     its next segment {late_us} us late; take {}, a larger fit_ns, or fewer axes at once",
     bottleneck.remedy()
 )]
 pub struct Starved {

@@ -10,7 +10,7 @@ use crate::support::soak::{Soak, TICKS, soak};
 use crate::support::wire::Faults;
 
 /// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
-const IN_C: [(&str, &str, &str); 34] = [
+const IN_C: [(&str, &str, &str); 35] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
     ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
@@ -78,15 +78,16 @@ const IN_C: [(&str, &str, &str); 34] = [
         "false && waited >= session->resend)",
     ),
     (
-        "a read that another one has overtaken is waited for",
-        "ask_again(session, false,",
-        "if (0) ask_again(session, false,",
+        "a read that overtakes another one is ignored",
+        "overtake(session, false,",
+        "if (0) overtake(session, false,",
     ),
     (
-        "a read that a write has overtaken is waited for",
-        "ask_again(session, true,",
-        "if (0) ask_again(session, true,",
+        "a write that overtakes a read is ignored",
+        "overtake(session, true,",
+        "if (0) overtake(session, true,",
     ),
+    ("an overtaken read is sent again each time", " && !session->singles[index].sent_again", ""),
     (
         "a question is answered by any answer",
         " &&\n            session->singles[index].sequence == answer->sequence",

@@ -102,11 +102,16 @@ fn table_of_the_page_follows_from_its_formula() {
     for (mhz, baud, tick_us) in [(80, 921_600, 1), (48, 3_000_000, 2), (48, 3_000_000, 20)] {
         let pace = LinkPace::new(mhz * 1_000_000, tick_us * 1000, baud);
         let byte = 10 * ((mhz * 1_000_000 + u64::from(baud) / 2) / u64::from(baud));
-        let times = [1, 6].map(|axes| {
+        let [six, one] = [6, 1].map(|axes| {
             let frame = frame(&mut Random::new(1), axes);
-            format!("{} and {} clocks", pace.clocks(&frame), (frame.bytes() as u64 + 2) * byte)
+            (pace.clocks(&frame), (frame.bytes() as u64 + 2) * byte)
         });
-        let end = format!("| {tick_us} us | {} | {} |", times[0], times[1]);
+        let full = match one.0.checked_sub(one.1) {
+            Some(behind) => format!("{} segments for one axis", (511 * byte).div_ceil(behind)),
+            None => "never".to_owned(),
+        };
+        let times = [six, one].map(|(gateware, line)| format!("{gateware} and {line} clocks"));
+        let end = format!("| {tick_us} us | {} | {} | {full} |", times[0], times[1]);
         let row = page.lines().find(|line| line.ends_with(&end));
         assert!(row.is_some_and(|row| row.starts_with(&format!("| {mhz} MHz |"))), "{end}");
     }
