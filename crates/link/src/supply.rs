@@ -24,6 +24,11 @@ use thiserror::Error;
 /// Bits per byte on a UART: a start bit, eight data bits, a stop bit.
 const BITS_OF_BYTE: u64 = 10;
 
+/// Time that a segment takes of the gateware, in percent of that of its frame. The rest is for reads:
+/// three axes on a tick of 80 us need 75 % of the gateware for their segments alone, and the host
+/// keeps up; on one of 90 us they need 83 %, and the queues run dry.
+const WITH_READS_PERCENT: u64 = 125;
+
 /// A program that this line cannot carry in time, or that the gateware cannot take in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
@@ -235,7 +240,8 @@ impl Supply {
         let request = Request { sequence: 0, session: 0, body };
         let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
         let line = (bits * 1_000_000_000).div_ceil(u64::from(self.baud.max(1)));
-        let gateware = self.timebase.clock_to_ps(self.pace.clocks(&request.body)).div_ceil(1000);
+        let clocks = self.pace.clocks(&request.body) * WITH_READS_PERCENT / 100;
+        let gateware = self.timebase.clock_to_ps(clocks).div_ceil(1000);
         self.now = now.saturating_add(line.max(gateware));
         if self.now > due {
             let late_us = (self.now - due).div_ceil(1000);

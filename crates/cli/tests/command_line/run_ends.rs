@@ -197,3 +197,25 @@ fn horizon_under_100_ms_is_warned_of() {
     passed(&ran);
     assert!(!ran.stderr.contains("the queues of the board hold"), "{}", ran.stderr);
 }
+
+/// With the tick of 90 us, queues did run dry when this was not checked; with 80 us they did not.
+#[test]
+fn program_that_the_gateware_cannot_take_in_time_moves_nothing() {
+    for (tick_ns, fits) in [(70_000, true), (90_000, false)] {
+        let folder = folder("G21 G90 F600\nG1 X5 Y3 Z-1\nG1 X0 Y0 Z0\nM2\n");
+        let machine = MACHINE
+            .replace("tick_ns = 2000", &format!("tick_ns = {tick_ns}"))
+            .replace("speed_limit = 50", "speed_limit = 5")
+            .replace("speed_limit = 20", "speed_limit = 1");
+        folder.write("machine.toml", machine);
+        let board = Board::new(&folder, "--fast");
+        let ran = run(&folder, &board, "");
+        if fits {
+            passed(&ran);
+            continue;
+        }
+        ran.refuses("a tick of 90000 ns is too slow for this program: axis 0 would run dry");
+        assert!(ran.stderr.contains("; give the machine file a shorter tick"), "{}", ran.stderr);
+        assert_eq!(positions(&status(&folder, &board)), [0, 0, 0]);
+    }
+}
