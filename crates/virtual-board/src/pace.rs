@@ -10,14 +10,20 @@ const BEHIND: Duration = Duration::from_millis(20);
 /// byte of any pseudo-terminal for 4.4 s.
 const GONE: Duration = Duration::from_secs(15);
 
+/// While an axis needs segments from its host, a fast board runs ahead by at most a part of what it
+/// may otherwise: a host that cuts the queues keeps 20 ms of them, and a cut that comes later is
+/// refused.
+const PART_IN_A_MOVE: u64 = 4;
+
 /// Decides up to which cycle a board may run.
 #[derive(Debug)]
 pub enum Pace {
     /// The board runs in real time.
     Real(Walk),
     /// The board runs as fast as possible, but at most `ahead` clocks beyond the last byte on the
-    /// line, and not further than its queues allow ([`crate::SimulatedBoard::alone`]). A delayed
-    /// host is therefore not considered dead, and its delays make no segment late.
+    /// line (a quarter of them while an axis needs its host), and not further than its queues allow
+    /// ([`crate::SimulatedBoard::alone`]). A delayed host is therefore not considered dead, and its
+    /// delays make no segment late.
     Fast {
         /// Greatest number of clocks for which the line is idle.
         ahead: u64,
@@ -102,8 +108,13 @@ impl Pace {
             Self::Fast { ahead, heard, alone: walk } => match *heard {
                 Some((when, at)) if when.elapsed() < GONE => {
                     *walk = Walk::new(walk.clock_hz, cycle);
-                    let reach = alone.map_or(u64::MAX, |clocks| cycle.saturating_add(clocks));
-                    (at + *ahead).min(reach).max(cycle)
+                    let target = match alone {
+                        None => at + *ahead,
+                        Some(clocks) => {
+                            (at + *ahead / PART_IN_A_MOVE).min(cycle.saturating_add(clocks))
+                        }
+                    };
+                    target.max(cycle)
                 }
                 _ => walk.target(cycle),
             },

@@ -211,9 +211,13 @@ fn cut_right_behind_a_refused_one_is_taken_for_itself() {
         let source = Rows::new(old.clone());
         source.borrow_mut().slow = 3;
         let (mut first, mut second, mut cuts, mut late) = (false, None, 0, false);
+        let mut furthest = 0;
         let ended = host.stream(&source, |progress: &Progress<'_>| {
             let Queues { sent, begun, cuts: now } = progress.queues.unwrap();
             cuts = now;
+            // The refusal of a cut makes nothing unknown that was known before.
+            assert!(begun >= furthest, "seed {seed}: {begun} rows have begun, {furthest} before");
+            furthest = begun;
             let keep = match (first, second) {
                 (false, _) if begun >= 3 + (seed % 20) as u32 => begun - 1,
                 (true, None) if source.borrow().refused == 1 => begun + 4,

@@ -24,6 +24,8 @@ pub(super) struct Cutting {
     wanted: Option<u32>,
     /// Number of cuts that were granted.
     granted: u32,
+    /// The greatest result of [`Self::begun`] so far.
+    begun: u32,
 }
 
 impl Cutting {
@@ -39,13 +41,14 @@ impl Cutting {
             *first = behind(status);
         }
         let (axes, depth) = (status.len() as u8, depth.min(STATUS_SLOT) as u8);
-        Self { first, axes, depth, wanted: None, granted: 0 }
+        Self { first, axes, depth, wanted: None, granted: 0, begun: 0 }
     }
 
     /// Number of segments of each axis of which the axis that is furthest is known to have begun to
-    /// run the last one.
+    /// run the last one. It never decreases: behind a cut that was refused, the room of the queues is
+    /// unknown until it has been read, but what had begun before has begun.
     pub fn begun<S: SegmentSource, const N: usize>(
-        &self,
+        &mut self,
         session: &Session<N>,
         feeder: &Feeder<S>,
     ) -> u32 {
@@ -53,7 +56,8 @@ impl Cutting {
             let waits = self.depth.saturating_sub(session.room(axis));
             feeder.sent(axis).saturating_sub(waits.into())
         };
-        (0..self.axes).map(of).max().unwrap_or_default()
+        self.begun = (0..self.axes).map(of).fold(self.begun, u32::max);
+        self.begun
     }
 
     /// Number of segments that every axis has got.

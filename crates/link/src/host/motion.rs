@@ -193,7 +193,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 return Ok(Ended::Done);
             }
             let snapshot = snapshot.as_ref();
-            let queues = cutting.as_ref().map(|cutting| Queues {
+            let queues = cutting.as_mut().map(|cutting| Queues {
                 sent: cutting.sent(&feeder),
                 begun: cutting.begun(&self.session, &feeder),
                 cuts: cutting.granted(),
