@@ -27,7 +27,8 @@ pub struct Uart {
 /// A baud rate that the clock cannot make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "a clock of {clock_hz} Hz does not make {baud} baud within {BAUD_PERCENT} %: the next ones that it makes are {below} and {above}"
+    "a clock of {clock_hz} Hz does not make {baud} baud within {BAUD_PERCENT} %: {}",
+    Possible(self)
 )]
 pub struct BaudError {
     /// The requested rate, bits per second.
@@ -38,6 +39,22 @@ pub struct BaudError {
     pub below: u64,
     /// The nearest higher rate that is possible, bits per second.
     pub above: u64,
+}
+
+/// The rates that are possible instead. Beyond the range of the clock there is only one.
+struct Possible<'a>(&'a BaudError);
+
+impl fmt::Display for Possible<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let BaudError { baud, below, above, .. } = *self.0;
+        if above < u64::from(baud) {
+            write!(f, "the greatest that it makes is {above}")
+        } else if below > u64::from(baud) {
+            write!(f, "the least that it makes is {below}")
+        } else {
+            write!(f, "the next ones that it makes are {below} and {above}")
+        }
+    }
 }
 
 impl Uart {
@@ -106,6 +123,10 @@ mod tests {
         assert_eq!(clocks(48_000_000, 3_060_000), Ok(16));
         let said = clocks(48_000_000, 3_100_000).unwrap_err().to_string();
         assert!(said.ends_with("the next ones that it makes are 3000000 and 3200000"), "{said}");
+        let said = clocks(24_000_000, 4_000_000).unwrap_err().to_string();
+        assert!(said.ends_with("within 2 %: the greatest that it makes is 3000000"), "{said}");
+        let said = clocks(48_000_000, 300).unwrap_err().to_string();
+        assert!(said.ends_with("within 2 %: the least that it makes is 1200"), "{said}");
         for (clock_hz, baud) in [
             (48_000_000, 0),
             (48_000_000, u32::MAX),
