@@ -21,8 +21,8 @@ pub struct Stages {
 
 impl Stages {
     fn new(build: EngineBuild, verilog: String) -> Self {
-        let netlist =
-            ice40::synthesise(&verilog, carrystep_verilog::ENGINE_NAME).expect("a netlist");
+        let netlist = ice40::synthesise(&verilog, carrystep_verilog::ENGINE_NAME, PART.device)
+            .expect("a netlist");
         let clock_hz = build.timebase.clock_hz();
         let placed = netlist.place(PART, clock_hz, 1).expect("a placed design");
         let read_back = placed.read_back(&netlist, &placed.asc).expect("a bitstream");

@@ -2,23 +2,26 @@
 //! `hdl-out/resources.md`, which `cargo xtask resources` measures completely. This test measures
 //! the size of all rows, and the clock of the rows marked `always`.
 
-use carrystep_boards::{Mapped, block_rams, board};
+use carrystep_boards::{Ice40Synthesis, Mapped, block_rams, board};
 use carrystep_core::engine::{LimitWiring, QUEUE_DEPTHS};
+use carrystep_files::SourceText;
 use carrystep_tests::{effort, moves, pages};
+use carrystep_tools::ice40::{self, NextpnrPart};
 use carrystep_tools::resources::{
     self, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, LINES, LINK_BUDGET, PAGE, ROWS,
 };
 use carrystep_tools::{adders, kept, xilinx};
-use carrystep_verilog::ENGINE_NAME;
+use carrystep_verilog::{ENGINE_NAME, Gateware, shipped_machine};
 
 #[test]
 fn every_engine_build_fits_its_budget_of_logic_cells() {
     let mut netlists = Vec::new();
     for row in &ROWS {
-        // Rows with the same axes, clock and tick share one netlist.
-        let build = (row.axes, row.clock_hz, row.tick_ns, row.queue, row.all);
+        // Rows of the same engine whose parts are synthesised alike share one netlist.
+        let synthesis = Ice40Synthesis::of(row.part.device, ENGINE_NAME);
+        let build = (row.axes, row.clock_hz, row.tick_ns, row.queue, row.all, synthesis);
         if !netlists.iter().any(|(other, _)| *other == build) {
-            netlists.push((build, resources::synthesised(row).expect("a netlist")));
+            netlists.push((build.clone(), resources::synthesised(row).expect("a netlist")));
         }
         let (_, netlist) = netlists.iter().find(|(other, _)| *other == build).expect("a netlist");
         let found = netlist.size(row.part).expect("a size");
@@ -58,6 +61,52 @@ fn placed_engines_reach_their_clock() {
         assert!(mhz.is_some(), "no seed reaches the clock of {row:?}");
     }
     kept::say();
+}
+
+/// Further inputs and outputs on the pins of the SPI, with a latch.
+const BESIDE_UART: &str = "\
+[machine.inputs]
+probe = \"low\"
+interlock = \"high\"
+latches = [{ source = \"probe\", edge = \"falling\", looks = 2 }]
+
+[machine.outputs]
+count = 2
+
+";
+
+/// The most logic cells that this engine, link and UART may take of the 1280 of an iCEstick.
+const ICESTICK_CELLS: u32 = 1270;
+
+#[test]
+fn an_icestick_has_probe_interlock_latch_and_two_outputs_beside_six_axes() {
+    let icestick = board("icestick").expect("a board");
+    let text = shipped_machine(icestick, &icestick.clocks[0]).expect("a machine");
+    let text = text.replace("[machine.link]", &format!("{BESIDE_UART}[machine.link]"));
+    let source = SourceText { path: "machine.toml".into(), text: text.into() };
+    let gateware = Gateware::new(icestick, &icestick.parts[0], source).expect("gateware");
+    let build = gateware.build();
+    assert_eq!(
+        (build.axes(), build.guard.latches.len(), build.outputs.exist),
+        (6, 1, 0b11),
+        "{BESIDE_UART} has an effect"
+    );
+
+    let files = gateware.files().expect("its files");
+    let pcf = files.into_iter().find(|file| file.name.ends_with(".pcf")).expect("its pins").text;
+    let verilog = gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text);
+    let part = &icestick.parts[0];
+    let part = NextpnrPart { device: &part.name, package: &part.package };
+    let netlist = ice40::synthesise(&verilog.collect::<String>(), &gateware.top(), part.device);
+    let clock_hz = build.timebase.clock_hz();
+    let placed = netlist.expect("a netlist").place_on(part, &pcf, clock_hz, 1).expect("a design");
+    let (size, mhz) = (placed.size, placed.mhz);
+    effort::say(&format!("icestick with all that its pins hold: {size:?}, {mhz} MHz"));
+    kept::say();
+    assert!(size.logic_cells <= ICESTICK_CELLS, "{size:?}");
+    assert!(mhz * 1e6 >= clock_hz as f64, "{mhz} MHz");
+    let told = format!("{} of the 1280 logic cells", size.logic_cells);
+    assert!(icestick.notes.iter().any(|note| note.contains(&told)), "the board's notes: {told}");
 }
 
 #[test]

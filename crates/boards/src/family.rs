@@ -12,6 +12,7 @@ mod block_ram;
 mod ecp5;
 mod gowin;
 mod ice40;
+mod ice40_synthesis;
 mod part;
 mod pull_ups;
 mod spartan3;
@@ -20,6 +21,7 @@ mod spartan6;
 mod spartan7;
 
 pub use block_ram::BlockRam;
+pub use ice40_synthesis::Ice40Synthesis;
 pub use part::Part;
 pub use pull_ups::{PullUp, PullUps};
 

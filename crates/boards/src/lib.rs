@@ -32,7 +32,8 @@ pub use block_rams::{Blocks, block_rams};
 pub use configuration::{ConfigurationMode, Gate, Shared};
 pub use error::BoardError;
 pub use family::{
-    BlockRam, Family, FpgaFamily, IoStandard, Part, Placer, PllInput, PullUp, PullUps,
+    BlockRam, Family, FpgaFamily, Ice40Synthesis, IoStandard, Part, Placer, PllInput, PullUp,
+    PullUps,
 };
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{BoardPort, OSCILLATOR, PORTS, Way};

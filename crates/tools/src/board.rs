@@ -71,7 +71,7 @@ fn ice40_bitstream(
 ) -> Result<Built, SynthesisError> {
     let part = NextpnrPart { device: &job.part.name, package: &job.part.package };
     stage("yosys");
-    let netlist = ice40::synthesise_for(job.verilog, job.top, part.device)?;
+    let netlist = ice40::synthesise(job.verilog, job.top, part.device)?;
     let (seed, placed) = first_that_reaches(
         job.clock_hz,
         |seed| {

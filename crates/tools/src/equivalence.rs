@@ -3,13 +3,13 @@
 //!
 //! Both stages are cut at their block RAMs. The words that a memory reads become free inputs, equal
 //! on both sides; the addresses, data and enables of a memory become outputs, which must be equal.
-//! Both sides then have the same flip-flops, matched by name. The induction step is: if all
-//! flip-flops and all words read are equal, then all outputs, all inputs of the memories and the
+//! Both sides then have the same flip-flops, which [`Registers`] matches. The induction step is: if
+//! all flip-flops and all words read are equal, then all outputs, all inputs of the memories and the
 //! next values of the flip-flops are equal.
 //!
-//! The induction does not cover the initial state. All flip-flops of an iCE40 are 0 after
-//! configuration, and a simulation from configuration confirms the equal start. [`memories`]
-//! compares the modes and the initial contents of the memories themselves.
+//! The induction begins equal: all flip-flops of an iCE40 are 0 after configuration, and exactly the
+//! registers that start at 1 must be stored inverted. A simulation from configuration confirms it.
+//! [`memories`] compares the modes and the initial contents of the memories themselves.
 //!
 //! Three steps are not proved but only simulated: how yosys reads the Verilog, its word-level
 //! optimisation, and its choice of block RAMs for memories (`synth_ice40` up to `map_ffram`). All
@@ -18,7 +18,7 @@
 use crate::SynthesisError;
 use crate::cells::{self, ICE40, pattern};
 use crate::ice40::Netlist;
-use crate::inverses::with_inverses;
+use crate::registers::{self, Registers, Words};
 use crate::tool::{self, YOSYS};
 use std::collections::BTreeMap;
 
@@ -43,20 +43,23 @@ pub fn verilog_and_netlist(
     verilog: &str,
 ) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
-    let gold = format!(
-        "read_verilog core.v; {}; opt_expr -mux_undef; {CUT}; \
-         simplemap t:* t:$dff t:$sdff t:$dffe t:$sdffe t:$sdffce %u %u %u %u %d; opt_expr; opt_merge; opt_expr; opt_clean; \
-         splitnets -ports {top}; select -set kept t:*dff* %co1:+[Q] x:* %u; select -set logic w:* @kept %d; rename -hide @logic",
-        to_words(top)
-    );
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", core)?;
-    tool::yosys(
-        folder.path(),
-        &format!("read_verilog core.v; {}; write_json words.json", to_words(top)),
-    )?;
-    let words = tool::read(folder.path(), "words.json")?;
-    prove(top, &gold, core, &with_inverses(verilog, &words, netlist.json()))
+    let script = format!(
+        "read_verilog core.v; {}; opt_expr -mux_undef; {CUT}; \
+         simplemap t:* t:$dff t:$sdff t:$dffe t:$sdffe t:$sdffce %u %u %u %u %d; opt_expr; opt_merge; opt_expr; opt_clean; \
+         splitnets -ports {top}; {}; select {top}; write_rtlil -selected words.il",
+        to_words(top),
+        registers::written(top, "words.json"),
+    );
+    tool::yosys_of_pip(folder.path(), &script)?;
+    let [words, names] = ["words.il", "words.json"].map(|name| tool::read(folder.path(), name));
+    let found = Registers::of(core, netlist)?;
+    let gold = format!(
+        "read_rtlil gold.txt; {}; select -set logic w:* x:* w:register.* %u %d; rename -hide @logic",
+        found.renamed(top, &Words::read(&names?, top)?)?
+    );
+    prove(top, &gold, &words?, &found.added_to(verilog))
 }
 
 /// Compares the netlist with the bitstream that was read back.
@@ -68,7 +71,7 @@ pub fn netlist_and_bitstream(
     read_back: &str,
 ) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
-    prove(top, &cells_in("core.v", top), &netlist.verilog, read_back)
+    prove(top, &cells_in("gold.txt", top), &netlist.verilog, read_back)
 }
 
 /// The block RAMs to which `synth_ice40` maps the memories of Verilog, as [`memories`].
@@ -79,7 +82,7 @@ pub fn memories_of_verilog(core: &str, top: &str) -> Result<Memories, SynthesisE
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", core)?;
     let script = format!("read_verilog core.v; {}; write_verilog -noattr words.v", to_words(top));
-    tool::yosys(folder.path(), &script)?;
+    tool::yosys_of_pip(folder.path(), &script)?;
     Ok(memories(&tool::read(folder.path(), "words.v")?))
 }
 
@@ -123,15 +126,17 @@ fn hexadecimal(binary: &str) -> String {
 /// outputs become inputs.
 const CUT: &str = "setundef -undriven -zero; expose -evert t:SB_RAM40_4K";
 
-/// Commands that read a design of cells and cut it.
+/// Commands that read a design of cells and cut it. A wire of one bit has the same name whether it was
+/// declared as a row of one or not.
 fn cells_in(file: &str, top: &str) -> String {
     format!(
-        "read_verilog cells.v {file}; blackbox SB_RAM40_4K; hierarchy -top {top}; proc; flatten; {CUT}; opt_clean; \
-         splitnets -ports"
+        "read_verilog cells.v {file}; blackbox SB_RAM40_4K; hierarchy -top {top}; proc; flatten; \
+         setattr -unset single_bit_vector w:*; {CUT}; opt_clean; splitnets -ports"
     )
 }
 
-/// Proves that two designs are equivalent.
+/// Proves that two designs are equivalent. `gold` are commands that read one of them from
+/// `gold.txt`.
 fn prove(
     top: &str,
     gold: &str,
@@ -140,9 +145,11 @@ fn prove(
 ) -> Result<EquivalenceVerdict, SynthesisError> {
     let folder = tool::folder()?;
     let both = format!("{gold_text}{gate_text} SB_RAM40_4K");
-    for (name, text) in
-        [("core.v", gold_text), ("gate.v", gate_text), ("cells.v", &cells::models(&ICE40, &both)?)]
-    {
+    for (name, text) in [
+        ("gold.txt", gold_text),
+        ("gate.v", gate_text),
+        ("cells.v", &cells::models(&ICE40, &both)?),
+    ] {
         tool::write(folder.path(), name, text)?;
     }
     let gate = cells_in("gate.v", top);
@@ -151,7 +158,7 @@ fn prove(
          design -copy-from gold -as gold gold; design -copy-from gate -as gate gate; equiv_make gold gate equiv; delete gold gate; \
          hierarchy -top equiv; select -assert-none t:SB_*; check -assert; equiv_induct -seq 1; tee -o status.txt equiv_status"
     );
-    tool::yosys(folder.path(), &script)?;
+    tool::yosys_of_pip(folder.path(), &script)?;
     let status = tool::read(folder.path(), "status.txt")?;
     let counts = pattern(r"(\d+) are proven and (\d+) are unproven")
         .captures(&status)

@@ -4,7 +4,7 @@
 use crate::nextpnr_log::NextpnrLog;
 use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR, PYTHON};
 use crate::{SynthesisError, cells, read_back};
-use carrystep_boards::Part;
+use carrystep_boards::Ice40Synthesis;
 use serde_json::Value;
 use std::path::Path;
 
@@ -38,6 +38,8 @@ impl Size {
 /// A synthesised design.
 pub struct Netlist {
     top: String,
+    /// The commands that made it.
+    synthesis: Ice40Synthesis,
     /// The design in the format that nextpnr reads.
     json: String,
     /// The design as Verilog made of cells. Simulators need their models: see
@@ -60,37 +62,42 @@ pub struct PlacedDesign {
     placement: Value,
 }
 
-/// Synthesises Verilog.
-///
-/// The script is that of `synth_ice40`, except that names are also assigned before logic is mapped.
-/// A register that starts at 1 is stored inverted, and is then mostly called `NAME_$_NOT__Y_A`,
-/// which the proofs look for.
+/// Synthesises Verilog for the part of this name, with the commands of the boards' scripts
+/// ([`Ice40Synthesis`]).
 ///
 /// # Errors
 /// [`SynthesisError`] if yosys is missing or refuses the text, or if a file cannot be used.
-pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
-    synthesise_with(verilog, top, "")
+pub fn synthesise(verilog: &str, top: &str, device: &str) -> Result<Netlist, SynthesisError> {
+    synthesised(verilog, top, Ice40Synthesis::of(device, top), tool::newest_yosys)
 }
 
-/// As [`synthesise`], with the options that the scripts of the boards have for this part
-/// ([`Part::synthesis`]).
-///
-/// # Errors
-/// As [`synthesise`].
-pub fn synthesise_for(verilog: &str, top: &str, device: &str) -> Result<Netlist, SynthesisError> {
-    synthesise_with(verilog, top, Part::synthesis(device))
+/// Synthesises Verilog with Debian's yosys and its `synth_ice40` without options, as the cores of
+/// other projects were.
+pub(crate) fn synthesise_as_others(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
+    let synth = format!("synth_ice40 -top {top} -run");
+    let synthesis = Ice40Synthesis {
+        to_flip_flops: format!("{synth} begin:map_luts"),
+        to_cells: format!("{synth} map_luts:"),
+    };
+    synthesised(verilog, top, synthesis, tool::yosys)
 }
 
-fn synthesise_with(verilog: &str, top: &str, option: &str) -> Result<Netlist, SynthesisError> {
+fn synthesised(
+    verilog: &str,
+    top: &str,
+    synthesis: Ice40Synthesis,
+    yosys: impl Fn(&Path, &str) -> Result<String, SynthesisError>,
+) -> Result<Netlist, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
     let script = format!(
-        "read_verilog core.v; synth_ice40 {option} -top {top} -run begin:map_luts; autoname; \
-         synth_ice40 {option} -top {top} -run map_luts: -json core.json; write_verilog -noattr netlist.v"
+        "read_verilog core.v; {} -json core.json; write_verilog -noattr netlist.v",
+        synthesis.commands()
     );
-    tool::yosys(folder.path(), &script)?;
+    yosys(folder.path(), &script)?;
     let read = |name| tool::read(folder.path(), name);
-    Ok(Netlist { top: top.to_owned(), json: read("core.json")?, verilog: read("netlist.v")? })
+    let (json, verilog) = (read("core.json")?, read("netlist.v")?);
+    Ok(Netlist { top: top.to_owned(), synthesis, json, verilog })
 }
 
 impl Netlist {
@@ -100,11 +107,6 @@ impl Netlist {
     /// [`SynthesisError`] if yosys' models are not found.
     pub fn simulated(&self) -> Result<String, SynthesisError> {
         cells::with_models(&self.verilog)
-    }
-
-    /// The netlist as yosys' JSON.
-    pub(crate) fn json(&self) -> &str {
-        &self.json
     }
 
     /// The resources that the netlist uses, without a placement.
@@ -207,6 +209,11 @@ impl Netlist {
     /// Name of the top module.
     pub(crate) fn top(&self) -> &str {
         &self.top
+    }
+
+    /// The commands that made it.
+    pub(crate) fn synthesis(&self) -> &Ice40Synthesis {
+        &self.synthesis
     }
 }
 

@@ -10,7 +10,7 @@ use carrystep_core::tick::mhz;
 use carrystep_tools::adders;
 use carrystep_tools::board::page;
 use carrystep_tools::clock_modules::{CellModels, clock_module, simulated, spartans};
-use carrystep_tools::resources::{self, FAMILIES, PAGE, ROWS, RowMeasurement};
+use carrystep_tools::resources::{self, FAMILIES, Measurements, PAGE, ROWS, RowMeasurement};
 use carrystep_tools::{SynthesisError, xilinx};
 use std::error::Error;
 use std::io::Write as _;
@@ -140,14 +140,16 @@ fn resources() -> Outcome {
     say(&format!("ECP5: {ecp5:?}"));
     let gowin = resources::gowin()?;
     say(&format!("Gowin: {gowin:?}"));
-    let text = resources::page(&rows, &links, &families, &ecp5, &gowin);
+    let as_others = resources::BESIDE_OTHERS.iter().map(RowMeasurement::as_others);
+    let beside_others = as_others.collect::<Result<Vec<_>, _>>()?;
+    say(&format!("as other cores: {beside_others:?}"));
+    let [all, xilinx] = [rows.len(), families.len()];
+    let text = resources::page(&Measurements { rows, links, families, ecp5, gowin, beside_others });
     write(PAGE, &text)?;
     resources::check(&text)?;
     // A line for the table of `cargo xtask long`.
     say(&format!(
-        "FIGURES {} rows of iCE40, {} of Xilinx, one each of ECP5 and Gowin, all within its budget",
-        rows.len(),
-        families.len()
+        "FIGURES {all} rows of iCE40, {xilinx} of Xilinx, one each of ECP5 and Gowin, all within its budget"
     ));
     Ok(())
 }

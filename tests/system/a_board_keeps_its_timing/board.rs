@@ -24,7 +24,7 @@ fn an_icestick_moves_six_axes_with_its_delays() {
     let gateware = &session.gateware;
     let (top, clock_hz) = (gateware.top(), gateware.build().timebase.clock_hz());
     let part = NextpnrPart { device: &board.parts[0].name, package: &board.parts[0].package };
-    let netlist = ice40::synthesise_for(&session.verilog, &top, part.device).expect("a netlist");
+    let netlist = ice40::synthesise(&session.verilog, &top, part.device).expect("a netlist");
     // The seed with which the shipped script reaches the clock.
     let placed =
         netlist.place_on(part, &session.file(".pcf"), clock_hz, 1).expect("a placed design");

@@ -105,7 +105,7 @@ struct Small {
 
 impl Small {
     fn new() -> Self {
-        let netlist = ice40::synthesise(VERILOG, TOP).expect("a netlist");
+        let netlist = ice40::synthesise(VERILOG, TOP, PART.device).expect("a netlist");
         let placed = netlist.place(PART, CLOCK_HZ, 1).expect("a placed design");
         Self { placed, vectors: recorded(CYCLES) }
     }

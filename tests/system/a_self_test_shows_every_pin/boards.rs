@@ -82,7 +82,7 @@ fn read_back(board: &Board, session: &SelfTestSession) -> String {
             .verilog;
     }
     let part = &board.parts[0];
-    let netlist = ice40::synthesise_for(&session.verilog, &session.top(), &part.name);
+    let netlist = ice40::synthesise(&session.verilog, &session.top(), &part.name);
     let netlist = netlist.expect("a netlist");
     let part = NextpnrPart { device: &part.name, package: &part.package };
     let placed = netlist.place_on(part, &session.pcf(), session.clock_hz(), 1).expect("a design");

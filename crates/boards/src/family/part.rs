@@ -24,15 +24,6 @@ pub struct Part {
 }
 
 impl Part {
-    /// Options of yosys' `synth_ice40` for the iCE40 of this name.
-    ///
-    /// The eight logic cells of a tile share one clock enable. The option replaces enables of fewer
-    /// than four flip-flops by logic; without it the design does not fit in an HX1K. In an
-    /// UltraPlus, which has more cells and is half as fast, it costs speed.
-    pub fn synthesis(name: &str) -> &'static str {
-        if name.starts_with("up") { "" } else { "-dffe_min_ce_use 4" }
-    }
-
     /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`; that of
     /// Lattice for an ECP5: `LFE5U-25F-6BG381C`; that of Gowin: `GW1NR-LV9QN88PC6/I5`. For an
     /// iCE40, its name and package.

@@ -71,7 +71,7 @@ pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
         ];
         let mut all = Size { logic_cells: 0, block_rams: 0 };
         for (verilog, name) in parts {
-            let found = ice40::synthesise_for(&verilog.map_err(failed)?, name, row.part.device)?
+            let found = ice40::synthesise(&verilog.map_err(failed)?, name, row.part.device)?
                 .size(row.part)?;
             all.logic_cells += found.logic_cells;
             all.block_rams += found.block_rams;

@@ -16,6 +16,7 @@ const SHIPPED_TIME: &str = "clock_hz = 80_000_000\ntick_ns = 1000\n";
 
 /// A top level that connects all ports of the engine to two pins by way of registers.
 const HARNESS: &str = include_str!("harness.v");
+const HARNESS_NAME: &str = "budget_harness";
 
 /// Measurements of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,12 +33,29 @@ impl RowMeasurement {
     /// # Errors
     /// [`SynthesisError`] if a tool is missing or fails.
     pub fn of(row: &EngineRow) -> Result<Self, SynthesisError> {
-        let size = synthesised(row)?.size(row.part)?;
+        Self::reached(row, &synthesised(row)?, placed(row)?)
+    }
+
+    /// The same, synthesised as the cores of other projects were.
+    ///
+    /// # Errors
+    /// As [`RowMeasurement::of`].
+    pub fn as_others(row: &EngineRow) -> Result<Self, SynthesisError> {
+        let netlist = ice40::synthesise_as_others(&verilog(row)?, ENGINE_NAME)?;
+        let in_harness = ice40::synthesise_as_others(&harnessed(row)?, HARNESS_NAME)?;
+        Self::reached(row, &netlist, speeds(row, in_harness))
+    }
+
+    fn reached(
+        row: &EngineRow,
+        netlist: &Netlist,
+        speeds: impl Iterator<Item = Result<f64, SynthesisError>>,
+    ) -> Result<Self, SynthesisError> {
         let mut mhz = [0.0; SEEDS.len()];
-        for (mhz, reached) in mhz.iter_mut().zip(placed(row)?) {
+        for (mhz, reached) in mhz.iter_mut().zip(speeds) {
             *mhz = reached?;
         }
-        Ok(Self { size, mhz })
+        Ok(Self { size: netlist.size(row.part)?, mhz })
     }
 
     /// Clock of the best seed, MHz.
@@ -66,7 +84,7 @@ pub fn verilog(row: &EngineRow) -> Result<String, SynthesisError> {
 /// # Errors
 /// [`SynthesisError`] if there is no such engine, or if yosys is missing or fails.
 pub fn synthesised(row: &EngineRow) -> Result<Netlist, SynthesisError> {
-    ice40::synthesise_for(&verilog(row)?, ENGINE_NAME, row.part.device)
+    ice40::synthesise(&verilog(row)?, ENGINE_NAME, row.part.device)
 }
 
 /// Build parameters of a row's engine.
@@ -106,9 +124,18 @@ pub(crate) fn failed(error: impl Into<Box<dyn std::error::Error>>) -> SynthesisE
 pub fn placed(
     row: &EngineRow,
 ) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
-    let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
-    let netlist =
-        ice40::synthesise_for(&(verilog(row)? + &harness), "budget_harness", row.part.device)?;
-    let row = *row;
-    Ok(SEEDS.into_iter().map(move |seed| Ok(netlist.place(row.part, row.clock_hz, seed)?.mhz)))
+    Ok(speeds(row, ice40::synthesise(&harnessed(row)?, HARNESS_NAME, row.part.device)?))
+}
+
+/// A row's engine in its harness.
+fn harnessed(row: &EngineRow) -> Result<String, SynthesisError> {
+    Ok(verilog(row)? + &HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes)))
+}
+
+fn speeds(
+    row: &EngineRow,
+    in_harness: Netlist,
+) -> impl Iterator<Item = Result<f64, SynthesisError>> {
+    let EngineRow { part, clock_hz, .. } = *row;
+    SEEDS.into_iter().map(move |seed| Ok(in_harness.place(part, clock_hz, seed)?.mhz))
 }
