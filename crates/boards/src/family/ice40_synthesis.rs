@@ -25,9 +25,9 @@ pub struct Ice40Synthesis {
 impl Ice40Synthesis {
     /// The commands for module `top` in the part of this name.
     ///
-    /// abc9 knows the delays of the part. Its script `flow2` keeps the smallest of several mappings.
-    /// nextpnr 0.4 does not know `$scopeinfo`, in which newer versions of yosys record modules that
-    /// they have flattened.
+    /// abc9 knows the delays of the part. Its script `flow2` keeps the smallest of several
+    /// mappings. nextpnr 0.4 does not know `$scopeinfo`, in which newer versions of yosys record
+    /// modules that they have flattened.
     pub fn of(part: &str, top: &str) -> Self {
         let device = DEVICES.into_iter().find(|(device, _)| part.starts_with(device));
         let (device, wire_ps) = device.unwrap_or(DEVICES[0]);
