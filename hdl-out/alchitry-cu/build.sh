@@ -12,7 +12,21 @@ yosys=${YOSYS:-$newest} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-ice
 
 # abc9 maps logic with the delays of the part. Carry chains of a few bits need fewer cells as LUTs.
 # nextpnr 0.4 does not know $scopeinfo.
-"$yosys" -q -l yosys.log -p 'read_verilog carrystep_alchitry_cu_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; scratchpad -copy abc9.script.flow2 abc9.script; scratchpad -set synth_ice40.abc9.W 450; synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run begin:map_gates; techmap t:$alu r:Y_WIDTH<=5 %i; opt -full; synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run map_gates:map_luts; delete t:$scopeinfo; synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run map_luts: -json carrystep_alchitry_cu_top.json'
+"$yosys" -q -l yosys.log -p '
+read_verilog carrystep_alchitry_cu_top.v
+read_verilog carrystep_clock.v
+read_verilog ../core/carrystep_uart.v
+read_verilog ../core/carrystep_link.v
+read_verilog ../core/carrystep_engine.v
+scratchpad -copy abc9.script.flow2 abc9.script
+scratchpad -set synth_ice40.abc9.W 450
+synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run begin:map_gates
+techmap t:$alu r:Y_WIDTH<=5 %i
+opt -full
+synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run map_gates:map_luts
+delete t:$scopeinfo
+synth_ice40 -abc9 -device hx -dffe_min_ce_use 3 -top carrystep_alchitry_cu_top -run map_luts: -json carrystep_alchitry_cu_top.json
+'
 # If nextpnr finds no placement, or none that reaches 80 MHz, the loop tries another seed:
 # near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do

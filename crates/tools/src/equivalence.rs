@@ -19,7 +19,7 @@ use crate::SynthesisError;
 use crate::cells::{self, ICE40, pattern};
 use crate::ice40::Netlist;
 use crate::registers::{self, Registers, Words};
-use crate::tool::{self, YOSYS};
+use crate::tool::{self, YOSYS_OF_PIP};
 use std::collections::BTreeMap;
 
 /// Result of a proof.
@@ -126,8 +126,8 @@ fn hexadecimal(binary: &str) -> String {
 /// outputs become inputs.
 const CUT: &str = "setundef -undriven -zero; expose -evert t:SB_RAM40_4K";
 
-/// Commands that read a design of cells and cut it. A wire of one bit has the same name whether it was
-/// declared as a row of one or not.
+/// Commands that read a design of cells and cut it. A wire of one bit gets the same name whether it
+/// was declared with a range (`[0:0]`) or without one.
 fn cells_in(file: &str, top: &str) -> String {
     format!(
         "read_verilog cells.v {file}; blackbox SB_RAM40_4K; hierarchy -top {top}; proc; flatten; \
@@ -166,6 +166,8 @@ fn prove(
     match counts {
         Some((proved, 0)) if proved > 0 => Ok(EquivalenceVerdict::Proved(proved)),
         Some((proved, open)) if open > 0 => Ok(EquivalenceVerdict::Open(open, proved + open)),
-        _ => Err(SynthesisError::Unread { tool: YOSYS.name, what: "the verdict".to_owned() }),
+        _ => {
+            Err(SynthesisError::Unread { tool: YOSYS_OF_PIP.name, what: "the verdict".to_owned() })
+        }
     }
 }

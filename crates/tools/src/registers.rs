@@ -9,7 +9,7 @@
 
 use crate::SynthesisError;
 use crate::ice40::Netlist;
-use crate::tool::{self, YOSYS};
+use crate::tool::{self, YOSYS_OF_PIP};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -42,9 +42,9 @@ impl Registers {
             Ok(folder)
         };
         let folder = synthesised(&written(top, "flip-flops.json"))?;
-        let found = Module::read(&tool::read(folder.path(), "flip-flops.json")?, top)?;
+        let found = flip_flops(&tool::read(folder.path(), "flip-flops.json")?, top)?;
 
-        let numbers: String = (found.flip_flops.keys().enumerate())
+        let numbers: String = (found.keys().enumerate())
             .map(|(number, cell)| format!("setattr -set {NUMBER} {number} c:{cell}; "))
             .collect();
         let cells = &synthesis.to_cells;
@@ -54,11 +54,10 @@ impl Registers {
         if tool::read(folder.path(), "netlist.v")? != netlist.verilog {
             return Err(unread("a netlist of this Verilog"));
         }
-        let mapped = Module::read(&tool::read(folder.path(), "core.json")?, top)?;
-        let mapped: BTreeMap<Option<usize>, &FlipFlop> =
-            mapped.flip_flops.values().map(|mapped| (mapped.number, mapped)).collect();
-        let registers = found.flip_flops.values().enumerate().map(|(number, found)| {
-            let wire = mapped.get(&Some(number)).and_then(|mapped| mapped.wires.first());
+        let mapped = flip_flops(&tool::read(folder.path(), "core.json")?, top)?;
+        let mapped: BTreeMap<_, _> = mapped.values().map(|one| (one.number, &one.wires)).collect();
+        let registers = found.values().enumerate().map(|(number, found)| {
+            let wire = mapped.get(&Some(number)).and_then(|wires| wires.first());
             let names = if found.wires.is_empty() { &found.inverses } else { &found.wires };
             Some(Register {
                 names: names.clone(),
@@ -143,7 +142,7 @@ fn escaped(name: &str) -> String {
 }
 
 fn unread(what: &str) -> SynthesisError {
-    SynthesisError::Unread { tool: YOSYS.name, what: what.to_owned() }
+    SynthesisError::Unread { tool: YOSYS_OF_PIP.name, what: what.to_owned() }
 }
 
 /// A flip-flop of the part.
@@ -156,47 +155,39 @@ struct FlipFlop {
     inverses: Vec<String>,
 }
 
-/// A module's flip-flops by the names of their cells.
-struct Module {
-    flip_flops: BTreeMap<String, FlipFlop>,
-}
-
-impl Module {
-    fn read(json: &str, top: &str) -> Result<Self, SynthesisError> {
-        let module = module(json, top)?;
-        let parts = |part: &str| module[part].as_object().cloned().unwrap_or_default();
-        let (mut names, mut inverses) =
-            (BTreeMap::<_, Vec<String>>::new(), BTreeMap::<_, Vec<_>>::new());
-        for (name, wire) in parts("netnames").iter().filter(|(name, _)| !name.starts_with('$')) {
-            let bits = wire["bits"].as_array().map_or(&[][..], Vec::as_slice);
-            let first = wire["offset"].as_u64().unwrap_or(0);
-            for (place, bit) in (first..).zip(bits) {
-                let name = if bits.len() == 1 { name.clone() } else { format!("{name}[{place}]") };
-                names.entry(bit.as_u64()).or_default().push(name);
-            }
+/// The flip-flops of a module, from yosys' JSON, by the names of their cells.
+fn flip_flops(json: &str, top: &str) -> Result<BTreeMap<String, FlipFlop>, SynthesisError> {
+    let module = module(json, top)?;
+    let parts = |part: &str| module[part].as_object().cloned().unwrap_or_default();
+    let (mut names, mut inverses) =
+        (BTreeMap::<_, Vec<String>>::new(), BTreeMap::<_, Vec<_>>::new());
+    for (name, wire) in parts("netnames").iter().filter(|(name, _)| !name.starts_with('$')) {
+        let bits = wire["bits"].as_array().map_or(&[][..], Vec::as_slice);
+        let first = wire["offset"].as_u64().unwrap_or(0);
+        for (place, bit) in (first..).zip(bits) {
+            let name = if bits.len() == 1 { name.clone() } else { format!("{name}[{place}]") };
+            names.entry(bit.as_u64()).or_default().push(name);
         }
-        let cells = parts("cells");
-        let bit = |cell: &Value, port: &str| cell["connections"][port][0].as_u64();
-        for cell in cells.values().filter(|cell| cell["type"] == "$_NOT_") {
-            inverses.entry(bit(cell, "A")).or_default().push(bit(cell, "Y"));
-        }
-        let named = |bit: &Option<u64>| names.get(bit).cloned().unwrap_or_default();
-        let flip_flop = |cell: &Value| {
-            let output = bit(cell, "Q");
-            let number = cell["attributes"][NUMBER].as_str();
-            FlipFlop {
-                number: number.and_then(|digits| usize::from_str_radix(digits, 2).ok()),
-                wires: named(&output),
-                inverses: inverses.get(&output).into_iter().flatten().flat_map(named).collect(),
-            }
-        };
-        let is_one =
-            |cell: &Value| cell["type"].as_str().is_some_and(|name| name.starts_with("SB_DFF"));
-        let flip_flops = cells.iter().filter(|(_, cell)| is_one(cell));
-        Ok(Self {
-            flip_flops: flip_flops.map(|(name, cell)| (name.clone(), flip_flop(cell))).collect(),
-        })
     }
+    let cells = parts("cells");
+    let bit = |cell: &Value, port: &str| cell["connections"][port][0].as_u64();
+    for cell in cells.values().filter(|cell| cell["type"] == "$_NOT_") {
+        inverses.entry(bit(cell, "A")).or_default().push(bit(cell, "Y"));
+    }
+    let named = |bit: &Option<u64>| names.get(bit).cloned().unwrap_or_default();
+    let flip_flop = |cell: &Value| {
+        let output = bit(cell, "Q");
+        let number = cell["attributes"][NUMBER].as_str();
+        FlipFlop {
+            number: number.and_then(|digits| usize::from_str_radix(digits, 2).ok()),
+            wires: named(&output),
+            inverses: inverses.get(&output).into_iter().flatten().flat_map(named).collect(),
+        }
+    };
+    let is_flip_flop =
+        |cell: &Value| cell["type"].as_str().is_some_and(|name| name.starts_with("SB_DFF"));
+    let flip_flops = cells.iter().filter(|(_, cell)| is_flip_flop(cell));
+    Ok(flip_flops.map(|(name, cell)| (name.clone(), flip_flop(cell))).collect())
 }
 
 /// A module of yosys' JSON, in which bits are numbers.

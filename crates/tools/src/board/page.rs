@@ -187,7 +187,9 @@ pub fn page(all: &AllMeasured) -> String {
 What the gateware of each board takes: the shipped machine's six axes, UART link with CRC, limits, e-stop and watchdog, all in the folders beside this page. `cargo xtask long boards` builds all of them and writes
 this page; the tests build `icestick` and `icesugar` and compare their rows. None was ever tried on real hardware.
 
-By yosys 0.70, nextpnr 0.4 and icetime, on the pins of the board; the first of five seeds that reaches the clock, or else the best. A tick is as short as the part's clock makes it: six axes take 80 clocks.
+By yosys 0.70, nextpnr 0.4 and icetime, on the pins of the board; the first of five seeds with which
+nextpnr reaches the clock, or else the best. A tick is as short as the part's clock makes it: six
+axes take 80 clocks.
 
 | board | part | logic cells | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | icetime, MHz | seed | reached |
 |---|---|---|---|---|---|---|---|---|---|---|

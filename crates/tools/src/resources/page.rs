@@ -32,8 +32,8 @@ pub fn page(found: &Measurements) -> String {
     let Measurements { rows, links, families, ecp5, gowin, beside_others } = found;
     let mut text = format!(
         "# What the engine costs\n\n\
-         Written by `cargo xtask resources` with yosys 0.70 and nextpnr 0.4; `tests/system/engine_fits_its_budget.rs` fails where a change goes \
-         over budget.\n\
+         Written by `cargo xtask resources` with yosys 0.70 and nextpnr 0.4;\n\
+         `tests/system/engine_fits_its_budget.rs` fails where a change goes over budget.\n\
          The engine is that of `sim/six-axis.toml`, at the clock and tick of the row: third order, 64-bit \
          registers, queues of seven segments, 16 phases, guard, position registers, real drivers' timings.\n\
          Logic cells are those of the core alone; Fmax is that between registers of core and harness, the best of seeds {SEEDS:?}.\n\n\
@@ -53,8 +53,8 @@ pub fn page(found: &Measurements) -> String {
         text += &link_line(name, found);
     }
     text += "\n## Xilinx\n\n\
-         Cells by yosys 0.23 (`synth_xilinx -nowidelut -flatten`), which calls these families experimental; not placed. The engine of the \
-         first row. A carry cell\nis one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, which is written bit by \
+         Cells by yosys 0.23 (`synth_xilinx -nowidelut -flatten`), which calls these families\n\
+         experimental; not placed. The engine of the first row. A carry cell\nis one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, which is written bit by \
          bit: the boards of that family have it in LUTs\n(decision 38).\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n";
     for (family, found) in FAMILIES.iter().zip(families) {
@@ -62,8 +62,8 @@ pub fn page(found: &Measurements) -> String {
     }
     text += &format!(
         "\n## ECP5\n\n\
-         Engine, link and UART together, by yosys 0.23 (`synth_ecp5`): *all*, queues {} deep, {} MHz. LUTs as nextpnr counts them: with two for each carry cell. \
-         The clock that is reached\non each board is in [boards.md](boards.md).\n\n\
+         Engine, link and UART together, by yosys 0.23 (`synth_ecp5`): *all*, queues {} deep, {} MHz.\n\
+         LUTs as nextpnr counts them: with two for each carry cell. The clock that is reached\non each board is in [boards.md](boards.md).\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n{}",
         ECP5.of.queue,
         ECP5.of.clock_hz / 1_000_000,
@@ -77,9 +77,10 @@ pub fn page(found: &Measurements) -> String {
         cells_line(&GOWIN, gowin)
     );
     text += "\n## Beside others\n\n\
-         Six axes on one flow: `synth_ice40` of yosys 0.23, nextpnr 0.4, HX8K, three seeds, median, the core alone; none of the others has \
-         limits or a guard in it.\nOurs are placed for the clock of their row. The boards map them by other commands (decision 114), to the \
-         cells of the first table.\n\n\
+         Six axes on one flow: `synth_ice40` of yosys 0.23, nextpnr 0.4, HX8K, three seeds, median, the\n\
+         core alone; none of the others has limits or a guard in it. Ours are placed for the clock of\n\
+         their row. The scripts of the boards map ours by other commands (decision 114), to the cells of\n\
+         the first table.\n\n\
          | core | ramp in hardware | pin timing enforced | queue | logic cells | Fmax, MHz |\n|---|---|---|---|---|---|\n";
     text += &beside(beside_others);
     text

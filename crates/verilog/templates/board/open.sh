@@ -12,7 +12,12 @@ yosys=${YOSYS:-$newest} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-ice
 
 # abc9 maps logic with the delays of the part. Carry chains of a few bits need fewer cells as LUTs.
 # nextpnr 0.4 does not know $scopeinfo.
-"$yosys" -q -l yosys.log -p 'read_verilog {{ sources | join(" ") }}; {{ part.synthesis }} -json {{ top }}.json'
+"$yosys" -q -l yosys.log -p '
+{% for source in sources %}
+read_verilog {{ source }}
+{% endfor %}
+{{ part.synthesis | replace("; ", "\n") }} -json {{ top }}.json
+'
 # If nextpnr finds no placement, or none that reaches {{ mhz }} MHz, the loop tries another seed:
 # near the limits of a part the result depends on the seed.
 for seed in 1 2 3 4 5 none; do
