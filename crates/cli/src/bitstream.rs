@@ -1,6 +1,7 @@
 //! Makes the bitstream of a board from its files, and reports what the tools have told.
 
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::output;
 use crate::progress::Stages;
 use carrystep_boards::{Board, Part};
@@ -102,8 +103,16 @@ pub fn make(
     let file = out.join(format!("{top}.{}", board.bitstream));
     let mut whole = output::OutputFile::create(&file)?;
     let mut stages = Stages::new();
-    let built = build(&job, &mut |stage| stages.next(stage))?;
+    let built = build(&job, &mut |stage| stages.next(stage));
     drop(stages);
+    // Ctrl-C in a terminal ends the tools, too.
+    if interrupt::is_asked() {
+        return Err(Failure::Run(format!(
+            "interrupted: no bitstream was made; {} has the files that it is made of",
+            out.display()
+        )));
+    }
+    let built = built?;
     let mut made = Made {
         logic_cells: Use { used: built.size.logic_cells, of: part.logic_cells },
         block_rams: Use { used: built.size.block_rams, of: Some(part.block_rams) },

@@ -25,7 +25,10 @@ pub(crate) fn run(
     }
     let text = text(&[output.stdout, output.stderr].concat());
     let lines: Vec<&str> = text.trim().lines().collect();
-    let message = lines[lines.len().saturating_sub(LAST_LINES)..].join("\n");
+    let mut message = lines[lines.len().saturating_sub(LAST_LINES)..].join("\n");
+    if message.is_empty() {
+        message = output.status.to_string();
+    }
     Err(SynthesisError::Tool { tool: tool.name, message })
 }
 
@@ -68,4 +71,17 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<(), Synthes
 pub(crate) fn folder() -> Result<tempfile::TempDir, SynthesisError> {
     let context = || "cannot make a temporary folder".to_owned();
     tempfile::tempdir().map_err(|source| SynthesisError::Io { context: context(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tool_that_fails_silently_is_reported_with_its_status() {
+        let silent = Tool { name: "false", version: None, purpose: "", install: &[] };
+        let folder = folder().expect("a folder");
+        let error = run(&silent, folder.path(), &[]).expect_err("it fails");
+        assert!(error.to_string().contains("exit status: 1"), "{error}");
+    }
 }

