@@ -4,7 +4,7 @@
 //! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. The exact check
 //! (`check.rs`) repeats every bound that is kept here.
 
-use crate::edges::triples;
+use crate::edges::{pairs, product, triples};
 use crate::limits::ExactLimits;
 
 /// What a run of one cubic should do, in the direction of travel.
@@ -36,6 +36,17 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
+    /// The distance in units that A and J add in `n` ticks, or `None` if the magnitude of what J
+    /// adds is 2^120 or more.
+    pub fn distance(self, n: u64) -> Option<i128> {
+        let Self { a, j } = self;
+        let by_acceleration = match (u32::try_from(n), i64::try_from(a)) {
+            (Ok(n), Ok(a)) => product(pairs(n.into()), a),
+            _ => i128::from(n) * (i128::from(n) - 1) / 2 * a,
+        };
+        Some(by_acceleration + jerk_distance(n.into(), j)?)
+    }
+
     /// The nearest registers with which a falling run of `ticks` ticks travels `distance` and comes
     /// to rest without reversing.
     pub fn landing(self, ticks: i128, distance: i128, limits: &ExactLimits) -> Self {
@@ -87,12 +98,66 @@ impl Wanted {
     }
 
     fn accelerated(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
-        let Self { ticks: n, distance, .. } = *self;
-        if n < 2 {
+        if self.ticks < 2 {
             return None;
         }
+        let by_jerk = jerk_distance(self.ticks, j)?;
+        self.unbounded(j, by_jerk, limits).or_else(|| self.bounded(j, by_jerk, limits))
+    }
+
+    /// V changes by A + k J from tick k to the next. In the middle of these changes this is A +
+    /// (n - 2)/2 J, which should equal the wanted acceleration.
+    fn nearest(&self, j: i128) -> i128 {
+        let bent = match (i64::try_from(self.ticks - 2), i64::try_from(j)) {
+            (Ok(n), Ok(j)) => product(n, j),
+            _ => (self.ticks - 2) * j,
+        };
+        (self.doubled_middle - bent) / 2
+    }
+
+    /// The wanted A, if it keeps all bounds of [`Self::bounded`] and the numbers have an ordinary
+    /// size. That is so for most runs, and it takes no division.
+    fn unbounded(&self, j: i128, by_jerk: i128, limits: &ExactLimits) -> Option<Bend> {
+        let register = |value: i128| i64::try_from(value).ok();
+        let n = i64::from(u32::try_from(self.ticks).ok()?);
+        let wanted = self.nearest(j);
+        let (a, small_j) = (register(wanted)?, register(j)?);
+        // The product is below 2^126, and so no sum of these distances overflows.
+        let ordinary = 1 << 120;
+        let by_acceleration = product(pairs(n.cast_unsigned()), a);
+        let fastest = product(n, register(limits.fastest())?);
+        let least = product(n, register(self.least)?);
+        let last_tick = product(n - 1, small_j);
+        if !(0..ordinary).contains(&self.distance) || fastest >= ordinary {
+            return None;
+        }
+        let most = limits.acceleration;
+        let kept = |a: i128| -most <= a && a <= most;
+        let ends = kept(wanted) && kept(wanted - j) && kept(wanted + last_tick);
+        // n V in the first tick and in the last.
+        let first = self.distance - by_jerk - by_acceleration;
+        let last = self.distance + 2 * by_jerk + by_acceleration;
+        let speeds = first >= least && last >= 0 && first <= fastest && last <= fastest;
+        let signs = if self.doubled_middle >= 0 {
+            wanted >= 0 && wanted + last_tick >= 0
+        } else {
+            wanted <= 0 && wanted + last_tick <= 0
+        };
+        let starts = || {
+            let start = product(n, register(limits.start_speed + limits.tolerance)?);
+            // n^2 A is twice the distance that A adds, and n A.
+            let squares = by_acceleration.checked_mul(6)?.checked_add(3 * product(n, a))?;
+            let rest = (by_jerk - self.distance + start).checked_mul(6)? - 2 * product(n, small_j);
+            squares.checked_add(rest).filter(|&slow| slow >= 0)
+        };
+        let keeps = ends && speeds && (signs || !self.one_way);
+        (keeps && (!self.first || starts().is_some())).then_some(Bend { a: wanted, j })
+    }
+
+    /// The A nearest to the wanted one within all bounds.
+    fn bounded(&self, j: i128, by_jerk: i128, limits: &ExactLimits) -> Option<Bend> {
+        let Self { ticks: n, distance, .. } = *self;
         let pairs = n * (n - 1) / 2;
-        let by_jerk = jerk_distance(n, j)?;
         let last_tick = (n - 1) * j;
         let fastest = n * limits.fastest();
         let mut a = Range { low: -limits.acceleration, high: limits.acceleration };
@@ -125,10 +190,7 @@ impl Wanted {
             slow.keep(3 * n * n, 6 * (by_jerk - distance + n * start) - 2 * n * j);
             a.low = slow.low.min(a.high);
         }
-        // V changes by A + k J from tick k to the next. In the middle of these changes this is A +
-        // (n - 2)/2 J, which should equal the wanted acceleration.
-        let nearest = (self.doubled_middle - (n - 2) * j) / 2;
-        Some(Bend { a: nearest.clamp(a.low, a.high), j })
+        Some(Bend { a: self.nearest(j).clamp(a.low, a.high), j })
     }
 }
 
@@ -138,7 +200,11 @@ pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
         return Some(0);
     }
     let triples = triples(u32::try_from(n).ok()?.into());
-    triples.checked_mul(j).filter(|distance| distance.abs() < 1 << 120)
+    let distance = match (i64::try_from(triples), i64::try_from(j)) {
+        (Ok(few), Ok(j)) => Some(product(few, j)),
+        _ => triples.checked_mul(j),
+    };
+    distance.filter(|distance| distance.abs() < 1 << 120)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! All computations here are in integers and independent of how the segments were found. The rules
 //! may change only together with [`Broken`].
 
-use crate::edges::{speed, travel};
+use crate::edges::{product, speed, travel};
 use crate::error::Broken;
 use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
@@ -28,23 +28,28 @@ pub(crate) fn check(
 ) -> Result<Peaks, Broken> {
     let mut peaks = [0_i128; 3];
     let (mut ticks, mut distance) = (0_u64, 0_i128);
+    let mut fastest = 0;
+    let mut pass = |v: i128| {
+        let onward = if duty.backward { -v } else { v };
+        if onward < 0 {
+            return Err(Broken::Sign);
+        }
+        fastest = fastest.max(i64::try_from(onward).map_err(|_| Broken::Overspeed)?);
+        Ok(())
+    };
     for segment in segments {
-        for v in speeds(segment) {
-            if (duty.backward && v > 0) || (!duty.backward && v < 0) {
-                return Err(Broken::Sign);
-            }
-            if v.abs() >= 1 << 63 {
-                return Err(Broken::Overspeed);
-            }
-            peaks[0] = peaks[0].max(v.abs());
+        end_speeds(segment).into_iter().try_for_each(&mut pass)?;
+        if let Some(inner) = turning_speeds(segment) {
+            inner.into_iter().try_for_each(&mut pass)?;
         }
         let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-        let end = a + (i128::from(segment.ticks) - 1) * j;
+        let end = a + product(i64::from(segment.ticks) - 1, segment.j);
         peaks[1] = peaks[1].max(a.abs()).max(end.abs());
         peaks[2] = peaks[2].max(j.abs());
         ticks += u64::from(segment.ticks);
         distance += travel(segment, segment.ticks.into());
     }
+    peaks[0] = fastest.into();
     if ticks != duty.ticks || distance != duty.distance {
         return Err(Broken::Landing);
     }
@@ -85,13 +90,23 @@ pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits)
 /// V in the first and last tick, and on both sides of the zero of A if that lies between them. The
 /// extremes of V are among these values.
 pub fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+    end_speeds(segment).into_iter().chain(turning_speeds(segment).into_iter().flatten())
+}
+
+/// V in the first and in the last tick.
+fn end_speeds(segment: &Segment) -> [i128; 2] {
+    [segment.v.into(), speed(segment, u64::from(segment.ticks) - 1)]
+}
+
+/// V on both sides of the zero of A, if that lies inside the segment.
+fn turning_speeds(segment: &Segment) -> Option<[i128; 2]> {
     let last = u64::from(segment.ticks) - 1;
-    let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-    let turns = (a < 0) != (a + i128::from(last) * j < 0);
-    let vertex = if turns { u64::try_from((-a).div_euclid(j)).unwrap_or(0) } else { 0 };
-    let inner = turns.then(|| [vertex, vertex + 1].map(|k| k.min(last)));
-    let segment = *segment;
-    [0, last].into_iter().chain(inner.into_iter().flatten()).map(move |k| speed(&segment, k))
+    let (a, j) = (i128::from(segment.a), segment.j);
+    let turns = (a < 0) != (a + product(last.cast_signed(), j) < 0);
+    turns.then(|| {
+        let vertex = u64::try_from((-a).div_euclid(j.into())).unwrap_or(0);
+        [vertex, vertex + 1].map(|k| speed(segment, k.min(last)))
+    })
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::{Machine, PathKind};
 use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
@@ -57,10 +58,10 @@ pub(crate) fn demand<F: Real>(
     let own: Vec<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
         .map(|(&limits, steps)| (float(steps.unsigned_abs()), limits))
         .collect();
-    let mut axes = own.clone();
     let straight = moved.path == PathKind::Straight;
+    let mut axes = Cow::Borrowed(&own[..]);
     if straight {
-        line::share_limits(moved.profile, &mut axes);
+        line::share_limits(moved.profile, axes.to_mut());
     }
     let refused = |axis: usize, refusal: LimitRefusal, least_time| {
         let (axis, refusal) = if straight {

@@ -14,7 +14,8 @@ use crate::limits::{ExactLimits, float_limits};
 use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
-use crate::slow;
+use crate::share::Room;
+use crate::slow::{self, Pulses};
 use crate::units;
 use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_core::ProfileKind;
@@ -36,7 +37,10 @@ mod motion;
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::<F>::new(&file.machine)?;
-    let moves = file.moves.iter().map(|moved| planner.plan(moved)).collect::<Result<_, _>>()?;
+    let mut moves = Vec::with_capacity(file.moves.len());
+    for moved in &file.moves {
+        moves.push(planner.plan(moved)?);
+    }
     Ok(Plan { build: planner.build, moves })
 }
 
@@ -101,11 +105,11 @@ impl<F: Real> Planner<F> {
             .drafts(asked, moved.time.as_ref())
             .map_err(|error| self.explained(asked, error))?;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
-        let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
-            self.finish(Place { asked, axis }, draft, rest, &clock)
-                .map_err(|b| broken(index, &self.machine.axes[axis], b))
-        });
-        let planned = planned.collect::<Result<Vec<_>, _>>()?;
+        let mut planned = Vec::with_capacity(drafts.len());
+        for (axis, draft) in drafts.into_iter().enumerate() {
+            let finished = self.finish(Place { asked, axis }, draft, rest, &clock);
+            planned.push(finished.map_err(|b| broken(index, &self.machine.axes[axis], b))?);
+        }
         let start_tick = self.ticks + rest;
         self.ticks = start_tick + clock.ticks;
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
@@ -132,11 +136,13 @@ impl<F: Real> Planner<F> {
         time: Option<&BigDecimal>,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
-        let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { asked, axis }, profile, &clock)
-                .map_err(|b| broken(asked.index, &self.machine.axes[axis], b))
-        });
-        Ok((clock, drafts.collect::<Result<_, _>>()?))
+        let mut room = Room::default();
+        let mut drafts = Vec::with_capacity(profiles.len());
+        for (axis, profile) in profiles.into_iter().enumerate() {
+            let draft = self.draft(Place { asked, axis }, profile, &clock, &mut room);
+            drafts.push(draft.map_err(|b| broken(asked.index, &self.machine.axes[axis], b))?);
+        }
+        Ok((clock, drafts))
     }
 
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
@@ -167,6 +173,7 @@ impl<F: Real> Planner<F> {
         place: Place<'_>,
         profile: SharedProfile<F>,
         clock: &Clock<F>,
+        room: &mut Room,
     ) -> Result<Draft<F>, Broken> {
         let Place { asked, axis } = place;
         let steps = asked.moved.steps[axis];
@@ -179,19 +186,21 @@ impl<F: Real> Planner<F> {
                 rest: 0,
             });
         }
-        let segments = self.motion(place, steps, &*profile, clock, 0)?;
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
+        let pulses = Pulses::new(&*profile, clock, steps, (timebase, phase), 0);
+        let segments = self.motion(place, &pulses, room)?;
         let backward = steps < 0;
-        let edge = |k| {
-            edges::edge(&segments, phase.start_value(), backward, k, timebase)
+        let edge = |k, guess| {
+            edges::edge(&segments, phase.start_value(), backward, (k, guess), timebase)
                 .ok_or(Broken::Landing)
         };
+        let [first, last] = pulses.ticks();
         let strokes = Strokes {
             backward,
             motion: i128::from(edges::first_motion(&segments))
                 * i128::from(timebase.clocks_per_tick()),
-            first_edge: edge(1)?,
-            last_edge: edge(steps.unsigned_abs())?,
+            first_edge: edge(1, first)?,
+            last_edge: edge(steps.unsigned_abs(), last)?,
         };
         let rest =
             self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
@@ -236,7 +245,9 @@ impl<F: Real> Planner<F> {
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
             if borrows(phase, backward) {
                 (early, borrowed) = (Some(0), 1);
-                motion = self.motion(place, steps, &*profile, clock, borrowed)?;
+                let build = (&self.build.timebase, phase);
+                let pulses = Pulses::new(&*profile, clock, steps, build, borrowed);
+                motion = self.motion(place, &pulses, &mut Room::default())?;
             }
         }
         let duty = Duty {
@@ -260,8 +271,8 @@ impl<F: Real> Planner<F> {
                 &self.build.timebase,
             );
         }
-        let mut segments = before;
-        segments.append(&mut motion);
+        let mut segments = motion;
+        segments.splice(0..0, before);
         if let Some(last) = segments.last_mut() {
             last.last = true;
         }
@@ -279,7 +290,8 @@ impl<F: Real> Planner<F> {
 /// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
 /// limit of the gateware's counter.
 fn still(mut ticks: u64) -> Vec<Segment> {
-    let mut segments = Vec::new();
+    let count = ticks.div_ceil(u32::MAX.into());
+    let mut segments = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
     while ticks > 0 {
         let length = u32::try_from(ticks).unwrap_or(u32::MAX);
         segments.push(Segment { ticks: length, v: 0, a: 0, j: 0, last: false });

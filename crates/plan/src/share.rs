@@ -26,6 +26,15 @@ pub(crate) struct Piece {
     pub by_pulse: bool,
 }
 
+/// The room in which the motions of a move are divided, one after the other.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    /// The ticks at which pieces begin, and the end of the move.
+    cuts: Vec<u64>,
+    /// The pieces of the motion that was divided last.
+    pub pieces: Vec<Piece>,
+}
+
 /// How a breakpoint that falls inside a tick is treated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Breakpoints<F> {
@@ -37,7 +46,8 @@ pub(crate) enum Breakpoints<F> {
 }
 
 /// Divides the move at its breakpoints and at the ends of the parts that `care` names. `fastest` is
-/// the greatest distance that the axis may travel in a tick, in units.
+/// the greatest distance that the axis may travel in a tick, in units. The pieces are then in
+/// `room`.
 ///
 /// Floats share the distance out. The greatest piece takes what their rounding leaves, so that the
 /// sum is exactly `total`.
@@ -52,18 +62,20 @@ pub(crate) fn share<F: Real>(
     breakpoints: Breakpoints<F>,
     care: &Care<F>,
     fastest: i128,
-) -> Result<Vec<Piece>, Broken> {
+    Room { cuts, pieces }: &mut Room,
+) -> Result<(), Broken> {
     let tick_at =
         |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
     let zones: Vec<[u64; 2]> = care.by_pulse.iter().map(|zone| zone.map(tick_at)).collect();
     let behind = care.behind.map(|(ends, units)| (ends.map(tick_at), units));
-    let mut cuts = cuts(profile, clock, breakpoints);
+    cuts.clear();
+    cut(profile, clock, breakpoints, cuts);
     cuts.extend(zones.iter().chain(behind.as_ref().map(|(ends, _)| ends)).flatten());
     cuts.sort_unstable();
     cuts.dedup();
-    let mut pieces = pieces(profile, clock, total, &cuts).ok_or(Broken::Range)?;
+    divide(profile, clock, total, cuts, pieces).ok_or(Broken::Range)?;
     if let Some((ends, units)) = behind {
-        fall_behind(&mut pieces, ends, units, fastest).ok_or(Broken::Slow)?;
+        fall_behind(pieces, ends, units, fastest).ok_or(Broken::Slow)?;
     }
     for [begin, end] in zones {
         let inside = |piece: &Piece| (begin..end).contains(&piece.first);
@@ -77,11 +89,11 @@ pub(crate) fn share<F: Real>(
         }
     }
     let mut start = 0;
-    for piece in &mut pieces {
+    for piece in pieces {
         piece.start = start;
         start += piece.units;
     }
-    Ok(pieces)
+    Ok(())
 }
 
 /// Keeps the axis behind between the two ticks: takes units from a piece before the first tick, and
@@ -103,23 +115,26 @@ fn fall_behind(
     (room(late) >= 0).then_some(())
 }
 
-/// The pieces between the cuts, which travel `total` units together. Their `start` is not yet set.
-fn pieces<F: Real>(
+/// Sets the pieces between the cuts, which travel `total` units together. Their `start` is not yet
+/// set. Returns `None` if a float is out of range.
+fn divide<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     total: i128,
     cuts: &[u64],
-) -> Option<Vec<Piece>> {
-    let mut pieces = Vec::with_capacity(cuts.len());
+    pieces: &mut Vec<Piece>,
+) -> Option<()> {
+    pieces.clear();
+    let mut sum = 0;
     for ends in cuts.windows(2) {
         let (first, ticks) = (ends[0], ends[1] - ends[0]);
         let units = distance(profile, clock, first, ticks)?;
+        sum += units;
         pieces.push(Piece { first, ticks, start: 0, units, by_pulse: false });
     }
-    let sum: i128 = pieces.iter().map(|piece| piece.units).sum();
     let greatest = pieces.iter_mut().max_by_key(|piece| piece.units)?;
     greatest.units += total - sum;
-    (greatest.units >= 0).then_some(pieces)
+    (greatest.units >= 0).then_some(())
 }
 
 /// Distance over whole ticks, in units. It is computed from a mean speed and not from the
@@ -136,13 +151,14 @@ pub(crate) fn distance<F: Real>(
     Some(units::nearest(mean * (used * clock.tick))?.max(0))
 }
 
-/// The ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
-fn cuts<F: Real>(
+/// Adds the ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
+fn cut<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     breakpoints: Breakpoints<F>,
-) -> Vec<u64> {
-    let mut cuts = vec![0, clock.ticks];
+    cuts: &mut Vec<u64>,
+) {
+    cuts.extend([0, clock.ticks]);
     // A fitted move that comes to rest may do so up to a tick later.
     let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
     if clock.last < F::one() && !rests {
@@ -175,5 +191,4 @@ fn cuts<F: Real>(
             cuts.push((before + 1).min(clock.ticks));
         }
     }
-    cuts
 }

@@ -17,6 +17,14 @@ pub(crate) fn toward_zero<F: Real>(steps: F) -> Option<i128> {
 }
 
 fn scaled<F: Real>(steps: F, round: bool) -> Option<i128> {
+    // The product by a power of two is exact.
+    let units = steps.to_f64()? * 2_f64.powi(FRACTION_BITS.cast_signed());
+    if units.abs() < 2_f64.powi(62) {
+        let whole = units as i64;
+        let rest = units - whole as f64;
+        let away = round && rest.abs() >= 0.5;
+        return Some(i128::from(whole) + if away { rest.signum() as i128 } else { 0 });
+    }
     if !steps.is_finite() {
         return None;
     }

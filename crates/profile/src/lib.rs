@@ -41,7 +41,7 @@ pub use growing::{ListEnd, Reader, Source};
 pub use line::Course;
 pub use logistic::{LogisticRamp, SHORTFALL};
 pub use own::{OwnRamp, Shape};
-pub use profile::{Profile, Real, SharedProfile};
+pub use profile::{Profile, Rates, Real, SharedProfile};
 pub use ramp::Ramp;
 pub use ramped::RampedMove;
 pub use refusal::{Limit, LimitRefusal, Limits};

@@ -47,6 +47,11 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     /// out.
     fn jerk(&self, t: F) -> F;
 
+    /// [`Self::speed`], [`Self::acceleration`] and [`Self::jerk`] at one time, in one call.
+    fn rates(&self, t: F) -> Rates<F> {
+        Rates { speed: self.speed(t), acceleration: self.acceleration(t), jerk: self.jerk(t) }
+    }
+
     /// Time at which the axis passes position `x` (0..=distance, steps), seconds.
     ///
     /// The result is well conditioned near rest at both ends of the move.
@@ -92,6 +97,24 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
             left = right;
         }
         sum
+    }
+}
+
+/// How fast an axis moves at one time, and how fast that changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rates<F> {
+    /// Speed, steps/s.
+    pub speed: F,
+    /// Acceleration, steps/s^2.
+    pub acceleration: F,
+    /// Jerk, steps/s^3.
+    pub jerk: F,
+}
+
+impl<F: Real> Rates<F> {
+    /// Whether the speed is constant.
+    pub fn are_level(&self) -> bool {
+        self.acceleration.is_zero() && self.jerk.is_zero()
     }
 }
 

@@ -12,7 +12,7 @@ use crate::error::Broken;
 use crate::fit::Fitter;
 use crate::run::Writer;
 use crate::search::QUICK;
-use crate::share::{Breakpoints, Piece, share};
+use crate::share::{Breakpoints, Piece, Room, share};
 use crate::slow::Pulses;
 use carrystep_core::Segment;
 use carrystep_core::fixed::ONE_STEP;
@@ -27,45 +27,37 @@ const LEAST_RATIO: f64 = 64.0;
 const ROUNDED: f64 = 0.01;
 
 impl<F: Real> Planner<F> {
-    /// Returns the segments of the motion alone. The rest before it has already travelled
-    /// `borrowed` units (0 or 1) of the distance.
+    /// Returns the segments of the motion alone, in which the axis gives these pulses.
     pub(super) fn motion(
         &self,
         place: Place<'_>,
-        steps: i64,
-        profile: &dyn Profile<F>,
-        clock: &Clock<F>,
-        borrowed: i128,
+        pulses: &Pulses<'_, F>,
+        room: &mut Room,
     ) -> Result<Vec<Segment>, Broken> {
-        let total = i128::from(steps.unsigned_abs()) * ONE_STEP - borrowed;
+        let &Pulses { profile, clock, phase, backward, borrowed, .. } = pulses;
+        let clock = &clock;
+        let total = i128::from(pulses.count) * ONE_STEP - borrowed;
         let Move { profile: kind, fit_ns, .. } = *place.asked.moved;
         let limits = self.limits(place, profile);
-        let (phase, backward) = (self.build.phase, steps < 0);
-        let mut writer = Writer {
-            profile,
-            clock: *clock,
-            limits: &limits,
-            phase,
-            backward,
-            segments: Vec::new(),
-            ahead: 0,
-        };
         let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
         let breakpoints = if kind.is_fitted() {
             Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
         } else {
             Breakpoints::Kept
         };
-        let pulses = Pulses {
+        share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest(), room)?;
+        let pieces = &room.pieces[..];
+        let mut writer = Writer {
             profile,
             clock: *clock,
+            limits: &limits,
             phase,
             backward,
-            count: steps.unsigned_abs(),
-            phases: self.build.timebase.phases(),
-            borrowed,
+            // Where a piece lands, its remainder takes a segment of its own, and a rest may take
+            // two.
+            segments: Vec::with_capacity(2 * pieces.len() + 2),
+            ahead: 0,
         };
-        let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
         // Along a line, the distances of the ramps depend on its direction. Hardly any two lines
         // share a kept fit, and making one takes longer than a fit of this move alone.
@@ -77,7 +69,7 @@ impl<F: Real> Planner<F> {
             // that are curved and belong to a fitted kind of profile are fitted. The rest are
             // exact.
             if piece.by_pulse {
-                writer.placed(piece, &pulses)?;
+                writer.placed(piece, pulses)?;
             } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
                 let pulses = pulses.count;
                 let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
@@ -108,7 +100,7 @@ impl<F: Real> Planner<F> {
                     risen = segments;
                 }
             } else {
-                writer.piece(piece, !kind.is_fitted() || must_land(&pieces, index))?;
+                writer.piece(piece, !kind.is_fitted() || must_land(pieces, index))?;
             }
         }
         Ok(writer.segments)
