@@ -74,12 +74,16 @@ pub(crate) fn demand<F: Real>(
     };
 
     let mut least = F::zero();
-    for (axis, (steps, limits)) in
-        axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero())
-    {
-        let time = kinds::least_time(moved.profile, *steps, limits)
+    let mut fastest = Vec::with_capacity(axes.len());
+    for (axis, (steps, limits)) in axes.iter().enumerate() {
+        if steps.is_zero() {
+            fastest.push(None);
+            continue;
+        }
+        let found = kinds::fastest(moved.profile, *steps, limits)
             .map_err(|refusal| refused(axis, refusal, None))?;
-        least = least.max(time);
+        least = least.max(found.time);
+        fastest.push(Some(found));
     }
     let clock = match time {
         Some(time) => given(time, &timebase, machine.phase, index)?,
@@ -97,12 +101,12 @@ pub(crate) fn demand<F: Real>(
     // all axes.
     let mut worst: Option<(usize, LimitRefusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
-    for (axis, (steps, limits)) in axes.iter().enumerate() {
-        if steps.is_zero() {
+    for (axis, ((steps, limits), fastest)) in axes.iter().zip(&fastest).enumerate() {
+        let Some(fastest) = fastest else {
             profiles.push(Arc::new(Constant::rest(clock.seconds)));
             continue;
-        }
-        match kinds::whole(moved.profile, *steps, clock.seconds, limits) {
+        };
+        match kinds::after(moved.profile, *steps, clock.seconds, limits, fastest) {
             Ok(profile) => profiles.push(profile),
             Err(refusal) => {
                 if worst.is_none_or(|(_, other)| other.least_time < refusal.least_time) {

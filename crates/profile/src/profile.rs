@@ -86,16 +86,22 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
             return self.speed(from);
         }
         let two = real::<F>(2.0);
-        let inner = self.breakpoints().iter().copied().filter(|&b| b > from && b < to);
-        let mut left = from;
-        let mut sum = F::zero();
-        for right in inner.chain(std::iter::once(to)) {
+        let gauss = |left: F, right: F| {
             let (middle, half) = (left + (right - left) / two, (right - left) / two);
             let offset = half / real::<F>(3.0).sqrt();
-            let mean = (self.speed(middle - offset) + self.speed(middle + offset)) / two;
-            sum = sum + mean * ((right - left) / whole);
+            (self.speed(middle - offset) + self.speed(middle + offset)) / two
+        };
+        let mut left = from;
+        let mut sum = F::zero();
+        for &right in self.breakpoints().iter().filter(|&&b| b > from && b < to) {
+            sum = sum + gauss(left, right) * ((right - left) / whole);
             left = right;
         }
+        if left == from {
+            // A single piece is the whole, and its part is 1.
+            return gauss(from, to);
+        }
+        sum = sum + gauss(left, to) * ((to - left) / whole);
         sum
     }
 }
