@@ -38,6 +38,7 @@ pub(crate) struct Bend {
 impl Bend {
     /// The distance in units that A and J add in `n` ticks, or `None` if the magnitude of what J
     /// adds is 2^120 or more.
+    #[inline]
     pub fn distance(self, n: u64) -> Option<i128> {
         let Self { a, j } = self;
         let by_acceleration = match (u32::try_from(n), i64::try_from(a)) {
@@ -92,71 +93,67 @@ impl Wanted {
     /// limit at both ends of the run, and A and J within their limits. If there are none with J,
     /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
-        let most = limits.jerk.unwrap_or(i128::MAX);
-        let with_jerk = self.accelerated(self.jerk.clamp(-most, most), limits);
-        with_jerk.or_else(|| self.accelerated(0, limits)).unwrap_or_default()
+        let j = limits.jerk.map_or(self.jerk, |most| self.jerk.clamp(-most, most));
+        self.unbounded(j, limits)
+            .or_else(|| self.bounded(j, limits))
+            .or_else(|| self.bounded(0, limits))
+            .unwrap_or_default()
     }
 
-    fn accelerated(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
-        if self.ticks < 2 {
-            return None;
-        }
-        let by_jerk = jerk_distance(self.ticks, j)?;
-        self.unbounded(j, by_jerk, limits).or_else(|| self.bounded(j, by_jerk, limits))
-    }
-
-    /// V changes by A + k J from tick k to the next. In the middle of these changes this is A +
-    /// (n - 2)/2 J, which should equal the wanted acceleration.
-    fn nearest(&self, j: i128) -> i128 {
-        let bent = match (i64::try_from(self.ticks - 2), i64::try_from(j)) {
-            (Ok(n), Ok(j)) => product(n, j),
-            _ => (self.ticks - 2) * j,
-        };
-        (self.doubled_middle - bent) / 2
-    }
-
-    /// The wanted A, if it keeps all bounds of [`Self::bounded`] and the numbers have an ordinary
-    /// size. That is so for most runs, and it takes no division.
-    fn unbounded(&self, j: i128, by_jerk: i128, limits: &ExactLimits) -> Option<Bend> {
+    /// What [`Self::bounded`] returns, where the wanted A keeps all bounds and the numbers have an
+    /// ordinary size. That is so for most runs, and it takes no division.
+    fn unbounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
         let register = |value: i128| i64::try_from(value).ok();
         let n = i64::from(u32::try_from(self.ticks).ok()?);
-        let wanted = self.nearest(j);
-        let (a, small_j) = (register(wanted)?, register(j)?);
-        // The product is below 2^126, and so no sum of these distances overflows.
-        let ordinary = 1 << 120;
-        let by_acceleration = product(pairs(n.cast_unsigned()), a);
-        let fastest = product(n, register(limits.fastest())?);
-        let least = product(n, register(self.least)?);
-        let last_tick = product(n - 1, small_j);
-        if !(0..ordinary).contains(&self.distance) || fastest >= ordinary {
+        let by_jerk = jerk_distance(self.ticks, j)?;
+        let j = register(j)?;
+        if n < 2 {
             return None;
         }
-        let most = limits.acceleration;
-        let kept = |a: i128| -most <= a && a <= most;
-        let ends = kept(wanted) && kept(wanted - j) && kept(wanted + last_tick);
+        let a = register(self.doubled_middle)?.checked_sub((n - 2).checked_mul(j)?)? / 2;
+        // The acceleration at both ends of the run; A is between the two.
+        let ends = [a.checked_sub(j)?, a.checked_add((n - 1).checked_mul(j)?)?];
+        let most = register(limits.acceleration).unwrap_or(i64::MAX);
+        let falls = self.doubled_middle < 0;
+        let signs = [a, ends[1]].map(|a| if falls { a <= 0 } else { a >= 0 });
+        if ends.iter().any(|&end| end < -most || most < end)
+            || (self.one_way && signs.contains(&false))
+        {
+            return None;
+        }
+        // The product is below 2^126. With a distance below 2^120, as what J adds is, no sum of them
+        // overflows.
+        let by_acceleration = product(pairs(n.cast_unsigned()), a);
+        if !(0..1 << 120).contains(&self.distance) {
+            return None;
+        }
         // n V in the first tick and in the last.
         let first = self.distance - by_jerk - by_acceleration;
         let last = self.distance + 2 * by_jerk + by_acceleration;
-        let speeds = first >= least && last >= 0 && first <= fastest && last <= fastest;
-        let signs = if self.doubled_middle >= 0 {
-            wanted >= 0 && wanted + last_tick >= 0
-        } else {
-            wanted <= 0 && wanted + last_tick <= 0
-        };
-        let starts = || {
-            let start = product(n, register(limits.start_speed + limits.tolerance)?);
-            // n^2 A is twice the distance that A adds, and n A.
-            let squares = by_acceleration.checked_mul(6)?.checked_add(3 * product(n, a))?;
-            let rest = (by_jerk - self.distance + start).checked_mul(6)? - 2 * product(n, small_j);
-            squares.checked_add(rest).filter(|&slow| slow >= 0)
-        };
-        let keeps = ends && speeds && (signs || !self.one_way);
-        (keeps && (!self.first || starts().is_some())).then_some(Bend { a: wanted, j })
+        let range = 0..=product(n, register(limits.fastest())?);
+        if !range.contains(&first) || !range.contains(&last) || first < i128::from(n) * self.least {
+            return None;
+        }
+        if self.first {
+            // 6 n times the room below the start speed, of V - A/2 + J/3. Both products by n are
+            // below 2^96.
+            let room = product(n, register(limits.start_speed + limits.tolerance)?) - first;
+            let bend = a.checked_mul(3)?.checked_sub(j.checked_mul(2)?)?;
+            if 6 * room + product(n, bend) < 0 {
+                return None;
+            }
+        }
+        Some(Bend { a: a.into(), j: j.into() })
     }
 
     /// The A nearest to the wanted one within all bounds.
-    fn bounded(&self, j: i128, by_jerk: i128, limits: &ExactLimits) -> Option<Bend> {
+    #[cold]
+    fn bounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
         let Self { ticks: n, distance, .. } = *self;
+        if n < 2 {
+            return None;
+        }
+        let by_jerk = jerk_distance(n, j)?;
         let pairs = n * (n - 1) / 2;
         let last_tick = (n - 1) * j;
         let fastest = n * limits.fastest();
@@ -190,7 +187,10 @@ impl Wanted {
             slow.keep(3 * n * n, 6 * (by_jerk - distance + n * start) - 2 * n * j);
             a.low = slow.low.min(a.high);
         }
-        Some(Bend { a: self.nearest(j).clamp(a.low, a.high), j })
+        // V changes by A + k J from tick k to the next. In the middle of these changes this is A +
+        // (n - 2)/2 J, which should equal the wanted acceleration.
+        let nearest = (self.doubled_middle - (n - 2) * j) / 2;
+        Some(Bend { a: nearest.clamp(a.low, a.high), j })
     }
 }
 

@@ -26,9 +26,8 @@ pub(crate) fn check(
     duty: &Duty,
     limits: &ExactLimits,
 ) -> Result<Peaks, Broken> {
-    let mut peaks = [0_i128; 3];
+    let (mut fastest, mut acceleration, mut jerk) = (0_i64, 0_i128, 0_i128);
     let (mut ticks, mut distance) = (0_u64, 0_i128);
-    let mut fastest = 0;
     let mut pass = |v: i128| {
         let onward = if duty.backward { -v } else { v };
         if onward < 0 {
@@ -42,24 +41,26 @@ pub(crate) fn check(
         if let Some(inner) = turning_speeds(segment) {
             inner.into_iter().try_for_each(&mut pass)?;
         }
-        let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-        let end = a + product(i64::from(segment.ticks) - 1, segment.j);
-        peaks[1] = peaks[1].max(a.abs()).max(end.abs());
-        peaks[2] = peaks[2].max(j.abs());
+        let a = i128::from(segment.a);
+        acceleration = acceleration.max(a.abs());
+        if segment.j != 0 {
+            let end = a + product(i64::from(segment.ticks) - 1, segment.j);
+            acceleration = acceleration.max(end.abs());
+            jerk = jerk.max(i128::from(segment.j).abs());
+        }
         ticks += u64::from(segment.ticks);
         distance += travel(segment, segment.ticks.into());
     }
-    peaks[0] = fastest.into();
     if ticks != duty.ticks || distance != duty.distance {
         return Err(Broken::Landing);
     }
-    if peaks[0] > limits.speed + limits.tolerance {
+    if i128::from(fastest) > limits.speed + limits.tolerance {
         return Err(Broken::Speed);
     }
-    if peaks[1] > limits.acceleration + 1 {
+    if acceleration > limits.acceleration + 1 {
         return Err(Broken::Acceleration);
     }
-    if limits.jerk.is_some_and(|most| peaks[2] > most + 1) {
+    if limits.jerk.is_some_and(|most| jerk > most + 1) {
         return Err(Broken::Jerk);
     }
     let start = segments.first().map_or(0, |first| start_speed(first, duty.backward, limits));
@@ -68,9 +69,9 @@ pub(crate) fn check(
     }
     let register = |value: i128| u64::try_from(value).map_err(|_| Broken::Range);
     Ok(Peaks {
-        speed: register(peaks[0])?,
-        acceleration: register(peaks[1])?,
-        jerk: register(peaks[2])?,
+        speed: fastest.unsigned_abs(),
+        acceleration: register(acceleration)?,
+        jerk: register(jerk)?,
         start_speed: register(start)?,
     })
 }
@@ -99,7 +100,11 @@ fn end_speeds(segment: &Segment) -> [i128; 2] {
 }
 
 /// V on both sides of the zero of A, if that lies inside the segment.
+#[inline]
 fn turning_speeds(segment: &Segment) -> Option<[i128; 2]> {
+    if segment.j == 0 {
+        return None;
+    }
     let last = u64::from(segment.ticks) - 1;
     let (a, j) = (i128::from(segment.a), segment.j);
     let turns = (a < 0) != (a + product(last.cast_signed(), j) < 0);

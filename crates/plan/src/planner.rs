@@ -8,7 +8,7 @@ use crate::asked::Asked;
 use crate::check::{Duty, check};
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
-use crate::edges;
+use crate::edges::{self, Edges};
 use crate::error::{Broken, PlanError};
 use crate::limits::{ExactLimits, float_limits};
 use crate::longest::longest_time;
@@ -23,6 +23,7 @@ use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
 use carrystep_files::{Axis, Machine, Move, MoveFile};
 use carrystep_profile::{Limits, Profile, Real, SharedProfile};
+use std::borrow::Cow;
 
 mod motion;
 
@@ -36,7 +37,7 @@ mod motion;
 /// A [`PlanError`] names the move and the axis, the limit that refuses the move, and, where one is
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
-    let mut planner = Planner::<F>::new(&file.machine)?;
+    let mut planner = Planner::<F>::new(Cow::Borrowed(&file.machine))?;
     let mut moves = Vec::with_capacity(file.moves.len());
     for moved in &file.moves {
         moves.push(planner.plan(moved)?);
@@ -52,8 +53,8 @@ struct Place<'a> {
 }
 
 /// Plans the moves of a machine one after the other.
-pub(crate) struct Planner<F> {
-    machine: Machine,
+pub(crate) struct Planner<'a, F> {
+    machine: Cow<'a, Machine>,
     pub(crate) build: Build,
     limits: Vec<ExactLimits>,
     float_limits: Vec<Limits<F>>,
@@ -74,10 +75,10 @@ struct Draft<F: Real> {
     rest: u64,
 }
 
-impl<F: Real> Planner<F> {
+impl<'a, F: Real> Planner<'a, F> {
     /// # Errors
     /// A [`PlanError`] if no gateware can be built for the machine.
-    pub(crate) fn new(machine: &Machine) -> Result<Self, PlanError> {
+    pub(crate) fn new(machine: Cow<'a, Machine>) -> Result<Self, PlanError> {
         let timebase = machine.timebase;
         let exact = |axis: &Axis| {
             ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
@@ -87,7 +88,7 @@ impl<F: Real> Planner<F> {
             limits: machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
             float_limits: machine.axes.iter().map(float_limits).collect(),
             pins: vec![Pins::new(&timebase); machine.axes.len()],
-            machine: machine.clone(),
+            machine,
             next: 0,
             ticks: 0,
         })
@@ -136,7 +137,7 @@ impl<F: Real> Planner<F> {
         time: Option<&BigDecimal>,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
-        let mut room = Room::default();
+        let mut room = Room::new();
         let mut drafts = Vec::with_capacity(profiles.len());
         for (axis, profile) in profiles.into_iter().enumerate() {
             let draft = self.draft(Place { asked, axis }, profile, &clock, &mut room);
@@ -190,17 +191,14 @@ impl<F: Real> Planner<F> {
         let pulses = Pulses::new(&*profile, clock, steps, (timebase, phase), 0);
         let segments = self.motion(place, &pulses, room)?;
         let backward = steps < 0;
-        let edge = |k, guess| {
-            edges::edge(&segments, phase.start_value(), backward, (k, guess), timebase)
-                .ok_or(Broken::Landing)
-        };
+        let edges = Edges { segments: &segments, start: phase.start_value(), backward, timebase };
         let [first, last] = pulses.ticks();
         let strokes = Strokes {
             backward,
             motion: i128::from(edges::first_motion(&segments))
                 * i128::from(timebase.clocks_per_tick()),
-            first_edge: edge(1, first)?,
-            last_edge: edge(steps.unsigned_abs(), last)?,
+            first_edge: edges.first(first).ok_or(Broken::Landing)?,
+            last_edge: edges.last(pulses.count, last).ok_or(Broken::Landing)?,
         };
         let rest =
             self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
@@ -247,7 +245,7 @@ impl<F: Real> Planner<F> {
                 (early, borrowed) = (Some(0), 1);
                 let build = (&self.build.timebase, phase);
                 let pulses = Pulses::new(&*profile, clock, steps, build, borrowed);
-                motion = self.motion(place, &pulses, &mut Room::default())?;
+                motion = self.motion(place, &pulses, &mut Room::new())?;
             }
         }
         let duty = Duty {
@@ -272,7 +270,9 @@ impl<F: Real> Planner<F> {
             );
         }
         let mut segments = motion;
-        segments.splice(0..0, before);
+        if rest > 0 {
+            segments.splice(0..0, before);
+        }
         if let Some(last) = segments.last_mut() {
             last.last = true;
         }

@@ -6,21 +6,18 @@
 
 use crate::bend::{Bend, Wanted};
 use crate::check::speeds;
+use crate::cubic::wide;
 use crate::demand::Clock;
-use crate::edges::{product, speed};
 use crate::error::Broken;
+use crate::fine::Fine;
 use crate::fitted::Fitted;
 use crate::landing;
 use crate::limits::{ExactLimits, MOST_SEGMENTS};
+use crate::registers::{Registers, register, shared_out};
 use crate::share::{self, Piece};
 use crate::units;
 use carrystep_core::{Segment, StartPhase};
 use carrystep_profile::{Profile, Rates, Real};
-
-/// How far the rounding of A, J and V may move an edge, seconds. The rest of the promised 2 ns is
-/// for the 32-bit bisection and for the floats of the profile, which are accurate to 0.3 ns after
-/// 10^6 s.
-const EDGE_SHIFT: f64 = 0.5e-9;
 
 /// Writes the segments of one axis in one move.
 pub(crate) struct Writer<'a, F> {
@@ -42,15 +39,6 @@ struct Rate {
     units: i128,
     /// Magnitude of the difference from the exact value, units.
     lost: f64,
-}
-
-/// How a run may treat the units by which its rounded V is ahead at its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Fine {
-    /// The next run corrects them.
-    Carried,
-    /// The run has to land exactly, because they would move an edge of the next run.
-    Landed,
 }
 
 impl<F: Real> Writer<'_, F> {
@@ -125,12 +113,6 @@ impl<F: Real> Writer<'_, F> {
         Ok(false)
     }
 
-    /// The rates of the profile in the middle of a piece.
-    fn middle(&self, Piece { first, ticks, .. }: Piece) -> Rates<F> {
-        let ends = self.clock.at(first) + self.clock.at(first + ticks);
-        self.profile.rates(ends / (F::one() + F::one()))
-    }
-
     fn jerk(&self, middle: &Rates<F>) -> Result<Rate, Broken> {
         let tick = self.clock.tick;
         rate(middle.jerk * tick * tick * tick, self.limits.jerk.unwrap_or(i128::MAX))
@@ -148,7 +130,7 @@ impl<F: Real> Writer<'_, F> {
         Ok((doubled, if jerk.units == 0 { lost } else { lost.max(1.0) }))
     }
 
-    /// Halves a piece until the rounding of A, J and V moves no edge by more than [`EDGE_SHIFT`].
+    /// Halves a piece until the rounding of A, J and V moves no edge too far (`fine.rs`).
     /// The jerk is that in the middle of the piece that is halved first.
     ///
     /// The slower half gets its distance from the profile, and the faster half what remains. Float
@@ -158,13 +140,14 @@ impl<F: Real> Writer<'_, F> {
         if ticks == 1 {
             return self.lay(1, self.signed(units) - self.ahead, Bend::default(), ends);
         }
-        let middle = self.middle(piece);
+        let ends_at = [first, first + ticks].map(|tick| self.clock.at(tick));
+        let middle = self.profile.rates((ends_at[0] + ends_at[1]) / (F::one() + F::one()));
         let jerk = jerk.map_or_else(|| self.jerk(&middle), Ok)?;
         let (doubled, lost) = self.acceleration(&middle, jerk)?;
         let fine = if ticks < 4 {
             Some(Fine::Carried)
         } else {
-            self.fine(piece, &middle, [lost, jerk.lost])
+            self.fine(piece, ends_at, &middle, [lost, jerk.lost])
         };
         if let Some(fine) = fine {
             return self.run(piece, doubled, jerk.units, ends || fine == Fine::Landed);
@@ -207,69 +190,6 @@ impl<F: Real> Writer<'_, F> {
         )
     }
 
-    /// Decides whether a run may have the length of this piece, and how it then treats its
-    /// remainder. `acceleration` and `jerk` are the magnitudes that rounding leaves out of A and J.
-    /// `None` means that the piece has to be divided.
-    fn fine(
-        &self,
-        piece: Piece,
-        middle: &Rates<F>,
-        [acceleration, jerk]: [f64; 2],
-    ) -> Option<Fine> {
-        let Piece { first, ticks, .. } = piece;
-        let length = ticks as f64;
-        // V makes up for A and J, so a long first run would start too fast by half of this speed.
-        let late = (acceleration + jerk * length / 3.0) * length;
-        if first == 0 && late > self.limits.tolerance as f64 {
-            return None;
-        }
-        // The deviation is a parabola t(n-t)/2 for each unit left out of A, and at most a cubic t^2
-        // (n-t)/6 for each unit left out of J. In addition V is ahead by up to one unit per tick.
-        let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;
-        let shifts = |lost: f64, speed: f64| {
-            let shift = lost * length * 2_f64.powi(-64) / speed;
-            // Not a number is no small shift.
-            !(shift <= EDGE_SHIFT)
-        };
-        let [begin, end] = [first, first + ticks].map(|tick| self.clock.at(tick));
-        let at_edge = if middle.are_level() {
-            // A breakpoint rounded to a tick may leave the end of a ramp at the beginning of a
-            // cruise.
-            wide(middle.speed)
-        } else {
-            let from = self.profile.rates(begin);
-            let slowest = wide(from.speed.min(self.profile.speed(end))).max(f64::MIN_POSITIVE);
-            // After a start from rest the first edge comes half a step later, at a speed of sqrt(a)
-            // or more than cbrt(j). A root is only taken where it decides.
-            if shifts(lost, slowest) {
-                let by_acceleration = slowest.max(wide(from.acceleration.abs().sqrt()));
-                if shifts(lost, by_acceleration) {
-                    by_acceleration.max(wide(from.jerk.abs().cbrt()))
-                } else {
-                    by_acceleration
-                }
-            } else {
-                slowest
-            }
-        };
-        if !shifts(lost, at_edge) {
-            return Some(Fine::Carried);
-        }
-        let [from, to] = [begin, end].map(|t| wide(self.profile.position(t)));
-        // Tests whether the units by which V is ahead would move the next edge.
-        let still = if shifts(1.0, at_edge) { Fine::Landed } else { Fine::Carried };
-        (!self.has_edge(from, to)).then_some(still)
-    }
-
-    /// Whether a pulse is due between two positions in steps, or within 10^-3 step of them.
-    fn has_edge(&self, from: f64, to: f64) -> bool {
-        let offset = match self.phase {
-            StartPhase::Half => 0.5,
-            StartPhase::Zero => 0.0,
-        };
-        (to - offset + 1e-3).floor() > (from - offset - 1e-3).floor()
-    }
-
     /// Writes one run of constant jerk.
     fn run(
         &mut self,
@@ -295,14 +215,18 @@ impl<F: Real> Writer<'_, F> {
     /// evenly is added to the first ticks, one unit each, if the run `ends` a piece; otherwise it
     /// is carried into the next run.
     pub fn lay(&mut self, n: u64, distance: i128, bend: Bend, ends: bool) -> Result<(), Broken> {
-        let level = self.signed(distance) - bend.distance(n).ok_or(Broken::Range)?;
-        let [a, j] = [bend.a, bend.j].map(|rate| self.signed(rate));
+        let [a, j] = [register(self.signed(bend.a))?, register(self.signed(bend.j))?];
+        let bent = if n == 1 { Some(0) } else { bend.distance(n) };
+        let level = self.signed(distance) - bent.ok_or(Broken::Range)?;
         let (v, remainder) = shared_out(self.signed(level), n);
-        let j = register(j)?;
         if ends {
             self.ahead = 0;
-            let Registers { v, a } = self.push(remainder, Registers { v: v + 1, a }, j)?;
-            self.push(n - remainder, Registers { v: v - 1, a }, j)?;
+            let mut now = Registers { v: v + 1, a, j };
+            if remainder > 0 {
+                self.push(remainder, now)?;
+                now = now.after(remainder)?;
+            }
+            self.push(n - remainder, Registers { v: now.v - 1, ..now })
         } else {
             // A distance that the speed limit prevents stays in `ahead` and is not forced.
             let most = if a == 0 && j == 0 { self.limits.fastest() } else { i128::MAX };
@@ -312,70 +236,39 @@ impl<F: Real> Writer<'_, F> {
             if used != whole {
                 self.ahead += i128::from(n) * (used - whole);
             }
-            self.push(n, Registers { v: used, a }, j)?;
+            self.push(n, Registers { v: used, a, j })
         }
-        Ok(())
     }
 
     /// Writes the ticks of one cubic, in as many segments as their 32-bit tick counters need.
-    /// Returns the registers after them.
-    fn push(&mut self, mut ticks: u64, mut now: Registers, j: i64) -> Result<Registers, Broken> {
-        while ticks > 0 {
+    fn push(&mut self, mut ticks: u64, mut now: Registers) -> Result<(), Broken> {
+        loop {
             if self.segments.len() >= MOST_SEGMENTS {
                 return Err(Broken::Segments);
             }
             let length = u32::try_from(ticks).unwrap_or(u32::MAX);
-            let (v, a) = (register(now.v)?, register(now.a)?);
-            let segment = Segment { ticks: length, v, a, j, last: false };
-            self.segments.push(segment);
-            now = Registers {
-                v: speed(&segment, length.into()),
-                a: now.a + product(length.into(), j),
-            };
+            let Registers { v, a, j } = now;
+            self.segments.push(Segment { ticks: length, v: register(v)?, a, j, last: false });
             ticks -= u64::from(length);
+            if ticks == 0 {
+                return Ok(());
+            }
+            now = now.after(length.into())?;
         }
-        Ok(now)
     }
-}
-
-/// The values of V and A before a tick, which the gateware accumulates.
-#[derive(Debug, Clone, Copy)]
-struct Registers {
-    v: i128,
-    a: i128,
-}
-
-fn register(value: i128) -> Result<i64, Broken> {
-    i64::try_from(value).map_err(|_| Broken::Range)
-}
-
-/// A distance in `n` equal parts, rounded down, and the remainder.
-fn shared_out(distance: i128, n: u64) -> (i128, u64) {
-    let magnitude = distance.unsigned_abs();
-    let (part, rest) = match (u32::try_from(n), u64::try_from(magnitude >> 32)) {
-        // Long division in digits of 32 bits; no rest is over 32 bits, and so no digit is either.
-        (Ok(_), Ok(high)) => {
-            let low = (high % n) << 32 | magnitude as u64 & u64::from(u32::MAX);
-            (u128::from(high / n) << 32 | u128::from(low / n), low % n)
-        }
-        _ => (magnitude / u128::from(n), (magnitude % u128::from(n)) as u64),
-    };
-    let part = part.cast_signed();
-    match (distance < 0, rest) {
-        (false, _) => (part, rest),
-        (true, 0) => (-part, 0),
-        (true, _) => (-part - 1, n - rest),
-    }
-}
-
-fn wide<F: Real>(x: F) -> f64 {
-    x.to_f64().unwrap_or(f64::NAN)
 }
 
 /// Converts `per_tick` steps to units, rounded toward zero and clamped to `most`.
 fn rate<F: Real>(per_tick: F, most: i128) -> Result<Rate, Broken> {
-    let units = units::toward_zero(per_tick).ok_or(Broken::Range)?.clamp(-most, most);
+    if per_tick.is_zero() {
+        return Ok(Rate::default());
+    }
     let exact = wide(per_tick) * 2_f64.powi(64);
-    let rounded = i64::try_from(units).map_or_else(|_| units as f64, |units| units as f64);
-    Ok(Rate { units, lost: (exact - rounded).abs() })
+    let units = units::toward_zero(per_tick).ok_or(Broken::Range)?;
+    if -most <= units && units <= most && exact.abs() < 2_f64.powi(62) {
+        // The conversion of 64 bits is an instruction of the processor.
+        return Ok(Rate { units, lost: (exact - (exact as i64) as f64).abs() });
+    }
+    let units = units.clamp(-most, most);
+    Ok(Rate { units, lost: (exact - units as f64).abs() })
 }
