@@ -59,6 +59,7 @@ pub(crate) struct Planner<'a, F> {
     limits: Vec<ExactLimits>,
     float_limits: Vec<Limits<F>>,
     pins: Vec<Pins>,
+    room: Room,
     /// The next move, counted from 0.
     next: usize,
     /// Ticks planned so far, from the origin.
@@ -88,6 +89,7 @@ impl<'a, F: Real> Planner<'a, F> {
             limits: machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
             float_limits: machine.axes.iter().map(float_limits).collect(),
             pins: vec![Pins::new(&timebase); machine.axes.len()],
+            room: Room::default(),
             machine,
             next: 0,
             ticks: 0,
@@ -102,9 +104,11 @@ impl<'a, F: Real> Planner<'a, F> {
         let index = self.next;
         self.next += 1;
         let asked = Asked { index, moved };
+        let mut room = std::mem::take(&mut self.room);
         let (clock, drafts) = self
-            .drafts(asked, moved.time.as_ref())
+            .drafts(asked, moved.time.as_ref(), &mut room)
             .map_err(|error| self.explained(asked, error))?;
+        self.room = room;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let mut planned = Vec::with_capacity(drafts.len());
         for (axis, draft) in drafts.into_iter().enumerate() {
@@ -135,12 +139,12 @@ impl<'a, F: Real> Planner<'a, F> {
         &self,
         asked: Asked<'_>,
         time: Option<&BigDecimal>,
+        room: &mut Room,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
-        let mut room = Room::new();
         let mut drafts = Vec::with_capacity(profiles.len());
         for (axis, profile) in profiles.into_iter().enumerate() {
-            let draft = self.draft(Place { asked, axis }, profile, &clock, &mut room);
+            let draft = self.draft(Place { asked, axis }, profile, &clock, room);
             drafts.push(draft.map_err(|b| broken(asked.index, &self.machine.axes[axis], b))?);
         }
         Ok((clock, drafts))
@@ -156,9 +160,10 @@ impl<'a, F: Real> Planner<'a, F> {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest = self.drafts(asked, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let trial = |time: Option<&BigDecimal>| self.drafts(asked, time, &mut Room::default()).ok();
+        let shortest = trial(None).and_then(|(clock, _)| clock.seconds.to_f64());
         let given = asked.moved.time.as_ref().and_then(BigDecimal::to_f64);
-        let works = |time: &BigDecimal| self.drafts(asked, Some(time)).is_ok();
+        let works = |time: &BigDecimal| trial(Some(time)).is_some();
         let longest = shortest
             .zip(given)
             .and_then(|(least, given)| longest_time(least, given, timebase, works));
@@ -245,7 +250,7 @@ impl<'a, F: Real> Planner<'a, F> {
                 (early, borrowed) = (Some(0), 1);
                 let build = (&self.build.timebase, phase);
                 let pulses = Pulses::new(&*profile, clock, steps, build, borrowed);
-                motion = self.motion(place, &pulses, &mut Room::new())?;
+                motion = self.motion(place, &pulses, &mut Room::default())?;
             }
         }
         let duty = Duty {

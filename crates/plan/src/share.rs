@@ -26,20 +26,14 @@ pub(crate) struct Piece {
     pub by_pulse: bool,
 }
 
-/// The room in which the motions of a move are divided, one after the other.
-#[derive(Debug)]
+/// The room in which motions are divided, one after the other. It is kept, because most of them
+/// take the same.
+#[derive(Debug, Default)]
 pub(crate) struct Room {
     /// The ticks at which pieces begin, and the end of the move.
     cuts: Vec<u64>,
     /// The pieces of the motion that was divided last.
     pub pieces: Vec<Piece>,
-}
-
-impl Room {
-    /// Room for the seven formulas of an S-curve, each between two ticks of their own.
-    pub fn new() -> Self {
-        Self { cuts: Vec::with_capacity(16), pieces: Vec::with_capacity(16) }
-    }
 }
 
 /// How a breakpoint that falls inside a tick is treated.

@@ -4,7 +4,7 @@
 //! else.
 
 use crate::logistic::{logistic_after, logistic_fastest};
-use crate::scurve::{scurve_after, scurve_fastest};
+use crate::scurve_moves::{scurve_after, scurve_fastest};
 use crate::sine::{sine_after, sine_fastest};
 pub use crate::timed::Fastest;
 use crate::{Curve, LimitRefusal, Limits, Real, rule};
@@ -58,8 +58,8 @@ pub fn whole<F: Real>(
     after(kind, distance, time, limits, &fastest(kind, distance, limits)?)
 }
 
-/// [`whole`], where the [`fastest`] move of the same kind, distance and limits is known. Finding it
-/// takes a third of the time that an S-curve takes.
+/// [`whole`], where the [`fastest`] move of the same kind, distance and limits is known, so that it
+/// is not sought again.
 ///
 /// # Errors
 /// A [`LimitRefusal`] names the limit that fails, and the least time.
