@@ -313,7 +313,7 @@ pub(crate) fn logistic_after<F: Real>(
     limits: &Limits<F>,
     fastest: &Fastest<F>,
 ) -> Result<RampedMove<F, LogisticRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps, fastest)
+    timed::in_time(distance, time, limits, &ramps, fastest, F::nan())
 }
 
 /// The fastest move of [`logistic`].

@@ -48,12 +48,44 @@ pub(crate) fn scurve_after<F: Real>(
     limits: &Limits<F>,
     fastest: &Fastest<F>,
 ) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps(end_speed), fastest)
+    let near = cruise_speed(distance, time, end_speed, limits);
+    timed::in_time(distance, time, limits, &ramps(end_speed), fastest, near)
 }
 
 /// The fastest move of [`scurve_to`].
 pub(crate) fn scurve_fastest<F: Real>(distance: F, end_speed: F, limits: &Limits<F>) -> Fastest<F> {
     timed::fastest(distance, limits, &ramps(end_speed), meeting_speed(distance, end_speed, limits))
+}
+
+/// The top speed of a move of two ramps of the same start speed in `time` seconds, up to rounding;
+/// not a number where the start speeds differ.
+///
+/// A top speed of s + w has the time T if T (s + w) - N is w (w / a + r), where the ramps hold their
+/// acceleration and r = a / j is their rise, and otherwise 2 w sqrt(w / j). Newton's method solves
+/// the latter from below: the difference of both sides is concave.
+fn cruise_speed<F: Real>(distance: F, time: F, end_speed: F, limits: &Limits<F>) -> F {
+    let Limits { start_speed: start, acceleration, jerk, .. } = *limits;
+    if start != end_speed {
+        return F::nan();
+    }
+    let (two, three, four) = (real::<F>(2.0), real::<F>(3.0), real::<F>(4.0));
+    let left = distance - time * start;
+    let late = time - acceleration / jerk;
+    let held =
+        two * left / (late + (late * late - four * left / acceleration).max(F::zero()).sqrt());
+    if held * jerk >= acceleration * acceleration {
+        return start + held;
+    }
+    let mut gain = left / time;
+    for _ in 0..16 {
+        let rise = (gain / jerk).sqrt();
+        let next = (left - gain * rise) / (time - three * rise);
+        if next - gain <= F::epsilon() * (start + next) || next.is_nan() {
+            break;
+        }
+        gain = next;
+    }
+    start + gain
 }
 
 /// The top speed at which two ramps of the same start speed meet, up to rounding; not a number

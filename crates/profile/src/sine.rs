@@ -201,7 +201,7 @@ pub(crate) fn sine_after<F: Real>(
     limits: &Limits<F>,
     fastest: &Fastest<F>,
 ) -> Result<RampedMove<F, SineRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps, fastest)
+    timed::in_time(distance, time, limits, &ramps, fastest, F::nan())
 }
 
 /// The fastest move of [`sine`].

@@ -11,7 +11,7 @@ use crate::curve::Curve;
 use crate::profile::Real;
 use crate::ramped::{RampedMove, time_with_cruise};
 use crate::refusal::{Limit, LimitRefusal, Limits};
-use crate::solve::{largest, largest_near, smallest};
+use crate::solve::{largest_near, smallest};
 
 /// The ramps of one curve: returns the ramps up and down for the limits and the common top speed in
 /// steps/s.
@@ -74,6 +74,7 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
     fastest: &Fastest<F>,
+    near: F,
 ) -> Result<RampedMove<F, R>, LimitRefusal> {
     let distance = distance.max(F::zero());
     let &Fastest { time: least, top: fastest } = fastest;
@@ -83,8 +84,8 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     let mean = distance / time;
     // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
     // speed.
-    let top =
-        largest(mean.min(fastest), fastest, -time, |top| -time_at(distance, top, limits, ramps));
+    let bracket = (mean.min(fastest), fastest);
+    let top = largest_near(near, bracket, -time, |top| -time_at(distance, top, limits, ramps));
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }
