@@ -11,7 +11,7 @@ use crate::limits::ExactLimits;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wanted {
     /// Length, ticks, at least 1.
-    pub ticks: i128,
+    pub ticks: u64,
     /// Distance, 2^-64 step, 0 or more.
     pub distance: i128,
     /// Twice the acceleration in the middle of the run, 2^-64 step per tick^2.
@@ -22,7 +22,7 @@ pub(crate) struct Wanted {
     pub one_way: bool,
     /// Least V in the first tick, units per tick: 1 if the first motion has to step at once,
     /// otherwise 0.
-    pub least: i128,
+    pub least: i64,
     /// Whether the run is the first of a move, to which the start speed limit applies.
     pub first: bool,
 }
@@ -45,14 +45,14 @@ impl Bend {
             (Ok(n), Ok(a)) => product(pairs(n.into()), a),
             _ => i128::from(n) * (i128::from(n) - 1) / 2 * a,
         };
-        Some(by_acceleration + jerk_distance(n.into(), j)?)
+        Some(by_acceleration + jerk_distance(n, j)?)
     }
 
     /// The nearest registers with which a falling run of `ticks` ticks travels `distance` and comes
     /// to rest without reversing.
-    pub fn landing(self, ticks: i128, distance: i128, limits: &ExactLimits) -> Self {
+    pub fn landing(self, ticks: u64, distance: i128, limits: &ExactLimits) -> Self {
         let Self { a, j } = self;
-        let doubled_middle = 2 * a + (ticks - 2) * j;
+        let doubled_middle = 2 * a + (i128::from(ticks) - 2) * j;
         let wanted = Wanted {
             ticks,
             distance,
@@ -93,15 +93,19 @@ impl Wanted {
     /// limit at both ends of the run, and A and J within their limits. If there are none with J,
     /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
-        let j = limits.jerk.map_or(self.jerk, |most| self.jerk.clamp(-most, most));
-        self.unbounded(j, limits)
-            .or_else(|| self.bounded(j, limits))
-            .or_else(|| self.bounded(0, limits))
-            .unwrap_or_default()
+        let j = match limits.jerk {
+            Some(most) if self.jerk != 0 => self.jerk.clamp(-most, most),
+            _ => self.jerk,
+        };
+        if let Some(bend) = self.unbounded(j, limits) {
+            return bend;
+        }
+        self.bounded(j, limits).or_else(|| self.bounded(0, limits)).unwrap_or_default()
     }
 
     /// What [`Self::bounded`] returns, where the wanted A keeps all bounds and the numbers have an
     /// ordinary size. That is so for most runs, and it takes no division.
+    #[inline]
     fn unbounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
         let register = |value: i128| i64::try_from(value).ok();
         let n = i64::from(u32::try_from(self.ticks).ok()?);
@@ -110,15 +114,16 @@ impl Wanted {
         if n < 2 {
             return None;
         }
-        let a = register(self.doubled_middle)?.checked_sub((n - 2).checked_mul(j)?)? / 2;
+        let doubled_middle = register(self.doubled_middle)?;
+        let a = doubled_middle.checked_sub((n - 2).checked_mul(j)?)? / 2;
         // The acceleration at both ends of the run; A is between the two.
         let ends = [a.checked_sub(j)?, a.checked_add((n - 1).checked_mul(j)?)?];
         let most = register(limits.acceleration).unwrap_or(i64::MAX);
-        let falls = self.doubled_middle < 0;
-        let signs = [a, ends[1]].map(|a| if falls { a <= 0 } else { a >= 0 });
-        if ends.iter().any(|&end| end < -most || most < end)
-            || (self.one_way && signs.contains(&false))
-        {
+        if ends.iter().any(|&end| end < -most || most < end) {
+            return None;
+        }
+        let [least_a, most_a] = [a.min(ends[1]), a.max(ends[1])];
+        if self.one_way && if doubled_middle < 0 { most_a > 0 } else { least_a < 0 } {
             return None;
         }
         // The product is below 2^126. With a distance below 2^120, as what J adds is, no sum of them
@@ -130,8 +135,8 @@ impl Wanted {
         // n V in the first tick and in the last.
         let first = self.distance - by_jerk - by_acceleration;
         let last = self.distance + 2 * by_jerk + by_acceleration;
-        let range = 0..=product(n, register(limits.fastest())?);
-        if !range.contains(&first) || !range.contains(&last) || first < i128::from(n) * self.least {
+        let fastest = product(n, register(limits.fastest())?);
+        if first < product(n, self.least) || fastest < first || last < 0 || fastest < last {
             return None;
         }
         if self.first {
@@ -149,11 +154,12 @@ impl Wanted {
     /// The A nearest to the wanted one within all bounds.
     #[cold]
     fn bounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
-        let Self { ticks: n, distance, .. } = *self;
-        if n < 2 {
+        let Self { ticks, distance, .. } = *self;
+        if ticks < 2 {
             return None;
         }
-        let by_jerk = jerk_distance(n, j)?;
+        let by_jerk = jerk_distance(ticks, j)?;
+        let n = i128::from(ticks);
         let pairs = n * (n - 1) / 2;
         let last_tick = (n - 1) * j;
         let fastest = n * limits.fastest();
@@ -166,7 +172,7 @@ impl Wanted {
         }
         // n V is distance - pairs A - by_jerk in the first tick, and distance + pairs A + 2 by_jerk
         // in the last.
-        a.keep(-pairs, distance - by_jerk - n * self.least);
+        a.keep(-pairs, distance - by_jerk - n * i128::from(self.least));
         a.keep(pairs, distance + 2 * by_jerk);
         a.keep(pairs, fastest - distance + by_jerk);
         a.keep(-pairs, fastest - distance - 2 * by_jerk);
@@ -195,10 +201,13 @@ impl Wanted {
 }
 
 /// The distance n(n-1)(n-2)/6 J in units, or `None` if its magnitude is 2^120 or more.
-pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
-    if j == 0 {
-        return Some(0);
-    }
+#[inline]
+pub(crate) fn jerk_distance(n: u64, j: i128) -> Option<i128> {
+    if j == 0 { Some(0) } else { bent_distance(n, j) }
+}
+
+/// [`jerk_distance`] where J is not 0.
+fn bent_distance(n: u64, j: i128) -> Option<i128> {
     let triples = triples(u32::try_from(n).ok()?.into());
     let distance = match (i64::try_from(triples), i64::try_from(j)) {
         (Ok(few), Ok(j)) => Some(product(few, j)),
@@ -223,7 +232,7 @@ mod tests {
 
     /// The least V of the run that these registers make.
     fn slowest(wanted: Wanted, Bend { a, j }: Bend) -> i128 {
-        let n = wanted.ticks;
+        let n = i128::from(wanted.ticks);
         let v =
             (wanted.distance - n * (n - 1) / 2 * a - n * (n - 1) * (n - 2) / 6 * j).div_euclid(n);
         let fits = |x: i128| i64::try_from(x).unwrap();
@@ -241,11 +250,12 @@ mod tests {
     fn rounding_of_jerk_never_reverses_the_speed() {
         // The run starts or ends at rest with a jerk of 10.9 units. Leaving out only the 0.9 units
         // would let V dip below zero.
-        let n = 100_000;
+        let ticks = 100_000;
+        let n = i128::from(ticks);
         let distance = n * n * n / 6 * 109 / 10;
         for doubled_middle in [n * 109 / 10, -n * 109 / 10] {
             let wanted = Wanted {
-                ticks: n,
+                ticks,
                 distance,
                 doubled_middle,
                 jerk: 10,

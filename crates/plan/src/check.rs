@@ -26,31 +26,14 @@ pub(crate) fn check(
     duty: &Duty,
     limits: &ExactLimits,
 ) -> Result<Peaks, Broken> {
-    let (mut fastest, mut acceleration, mut jerk) = (0_i64, 0_i128, 0_i128);
+    let mut found = Found { backward: duty.backward, ..Found::default() };
     let (mut ticks, mut distance) = (0_u64, 0_i128);
-    let mut pass = |v: i128| {
-        let onward = if duty.backward { -v } else { v };
-        if onward < 0 {
-            return Err(Broken::Sign);
-        }
-        fastest = fastest.max(i64::try_from(onward).map_err(|_| Broken::Overspeed)?);
-        Ok(())
-    };
     for segment in segments {
-        end_speeds(segment).into_iter().try_for_each(&mut pass)?;
-        if let Some(inner) = turning_speeds(segment) {
-            inner.into_iter().try_for_each(&mut pass)?;
-        }
-        let a = i128::from(segment.a);
-        acceleration = acceleration.max(a.abs());
-        if segment.j != 0 {
-            let end = a + product(i64::from(segment.ticks) - 1, segment.j);
-            acceleration = acceleration.max(end.abs());
-            jerk = jerk.max(i128::from(segment.j).abs());
-        }
         ticks += u64::from(segment.ticks);
-        distance += travel(segment, segment.ticks.into());
+        distance += found.add(segment)?;
     }
+    let Found { speed: fastest, jerk, .. } = found;
+    let acceleration = found.end_acceleration.max(found.acceleration.into());
     if ticks != duty.ticks || distance != duty.distance {
         return Err(Broken::Landing);
     }
@@ -60,7 +43,7 @@ pub(crate) fn check(
     if acceleration > limits.acceleration + 1 {
         return Err(Broken::Acceleration);
     }
-    if limits.jerk.is_some_and(|most| jerk > most + 1) {
+    if limits.jerk.is_some_and(|most| i128::from(jerk) > most + 1) {
         return Err(Broken::Jerk);
     }
     let start = segments.first().map_or(0, |first| start_speed(first, duty.backward, limits));
@@ -69,11 +52,63 @@ pub(crate) fn check(
     }
     let register = |value: i128| u64::try_from(value).map_err(|_| Broken::Range);
     Ok(Peaks {
-        speed: fastest.unsigned_abs(),
+        speed: fastest,
         acceleration: register(acceleration)?,
-        jerk: register(jerk)?,
+        jerk,
         start_speed: register(start)?,
     })
+}
+
+/// The greatest values of the segments so far.
+#[derive(Default)]
+struct Found {
+    backward: bool,
+    speed: u64,
+    /// The greatest A at the beginning of a segment.
+    acceleration: u64,
+    /// The greatest A at the end of a segment with J.
+    end_acceleration: i128,
+    jerk: u64,
+}
+
+impl Found {
+    /// Takes in the values of a segment, and returns the units that it travels.
+    fn add(&mut self, segment: &Segment) -> Result<i128, Broken> {
+        self.pass(segment.v.into())?;
+        self.acceleration = self.acceleration.max(segment.a.unsigned_abs());
+        if segment.j != 0 {
+            return self.add_bent(segment);
+        }
+        self.pass(speed(segment, u64::from(segment.ticks) - 1))?;
+        Ok(travel(segment, segment.ticks.into()))
+    }
+
+    /// The rest of [`Self::add`] for a segment with J. It is apart because the values of a straight
+    /// one then stay in the registers of the processor.
+    #[inline(never)]
+    fn add_bent(&mut self, segment: &Segment) -> Result<i128, Broken> {
+        let last = u64::from(segment.ticks) - 1;
+        self.pass(speed(segment, last))?;
+        if let Some(inner) = turning_speeds(segment) {
+            inner.into_iter().try_for_each(|v| self.pass(v))?;
+        }
+        let end = i128::from(segment.a) + product(last.cast_signed(), segment.j);
+        self.end_acceleration = self.end_acceleration.max(end.abs());
+        self.jerk = self.jerk.max(segment.j.unsigned_abs());
+        Ok(travel(segment, segment.ticks.into()))
+    }
+
+    /// Takes in a V.
+    #[inline]
+    fn pass(&mut self, v: i128) -> Result<(), Broken> {
+        let v = if self.backward { -v } else { v };
+        if v < 0 {
+            return Err(Broken::Sign);
+        }
+        let onward = i64::try_from(v).map_err(|_| Broken::Overspeed)?;
+        self.speed = self.speed.max(onward.unsigned_abs());
+        Ok(())
+    }
 }
 
 /// The speed at the start of the first tick, V - A/2 + J/3 in the direction of travel, rounded up,

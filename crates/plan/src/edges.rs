@@ -117,8 +117,8 @@ impl Edges<'_> {
     }
 
     /// The clocks of pulse `k`, whose edge is in this segment. Before the segment, P is `p` and
-    /// `before` ticks have passed. The search goes away from `guess` in steps that become twice as long each time, and
-    /// bisects what they enclose.
+    /// `before` ticks have passed. The search goes away from `guess` in steps that become twice as
+    /// long each time, and bisects what they enclose.
     fn edge(&self, k: u64, segment: &Segment, (p, before): (i128, u64), guess: u64) -> i128 {
         // The edge is after `low` ticks, where P is `old`, and not after the end of tick `high`.
         let (mut low, mut old, mut high) = (0, p, u64::from(segment.ticks));
@@ -146,13 +146,12 @@ impl Edges<'_> {
 fn phase(p: i128, v: i128, bits: u32) -> u32 {
     // A plan whose V does not fit is refused later.
     let v = i64::try_from(v >> 32).unwrap_or(i64::MAX);
-    let mut p = i64::from((p >> 32) as u32);
-    let mut q = 0;
-    for k in 1..=bits {
-        let t = p + (v >> k);
+    let (mut p, mut part, mut q) = (i64::from((p >> 32) as u32), v, 0);
+    for _ in 0..bits {
+        (part, q) = (part >> 1, q << 1);
+        let t = p + part;
         if (0..1 << 32).contains(&t) {
-            p = t;
-            q |= 1 << (bits - k);
+            (p, q) = (t, q | 1);
         }
     }
     q

@@ -29,12 +29,12 @@ impl<F: Real> Writer<'_, F> {
     /// divided.
     pub fn fine(
         &self,
-        piece: Piece,
+        piece: &Piece,
         [begin, end]: [F; 2],
         middle: &Rates<F>,
         [acceleration, jerk]: [f64; 2],
     ) -> Option<Fine> {
-        let Piece { first, ticks, .. } = piece;
+        let &Piece { first, ticks, .. } = piece;
         let length = ticks as f64;
         // V makes up for A and J, so a long first run would start too fast by half of this speed.
         let late = (acceleration + jerk * length / 3.0) * length;

@@ -90,7 +90,7 @@ impl<F: Real> Fitter<'_, F> {
             // The last segment also corrects what the segments before it are off. Its V must not
             // fall below zero.
             let (bend, distance) = if ends {
-                (reversed.landing(ticks.into(), end - done, self.limits), end - done)
+                (reversed.landing(ticks, end - done, self.limits), end - done)
             } else {
                 (reversed, distance)
             };
@@ -231,12 +231,12 @@ impl<F: Real> Fitter<'_, F> {
         // its sign, which rules this out.
         [false, true].into_iter().find_map(|one_way| {
             let wanted = Wanted {
-                ticks: ticks.into(),
+                ticks,
                 distance,
                 doubled_middle: units((a + a + j * (1.0 - 2.0 / n)) / (n * n)),
                 jerk: units(j / (n * n * n)),
                 one_way,
-                least: i128::from(opens && self.corridor.steps_at_once()),
+                least: i64::from(opens && self.corridor.steps_at_once()),
                 first: opens,
             };
             let fitted = Fitted { ticks, bend: wanted.within(self.limits), distance };

@@ -22,7 +22,7 @@ impl<F: Real> Writer<'_, F> {
     /// [`Broken::Slow`] if the speed limit is below the speed of the tick that takes a step, or if
     /// two pulses are too close together for an approach; [`Broken::Range`] if a float is out of
     /// range.
-    pub fn placed(&mut self, piece: Piece, pulses: &Pulses<'_, F>) -> Result<(), Broken> {
+    pub fn placed(&mut self, piece: &Piece, pulses: &Pulses<'_, F>) -> Result<(), Broken> {
         let phases = i128::from(pulses.phases);
         let end = piece.start + piece.units;
         let mut at = self.position(piece);

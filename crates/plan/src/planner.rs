@@ -211,16 +211,21 @@ impl<'a, F: Real> Planner<'a, F> {
     }
 
     /// The limits that the integers of one axis must keep in one move.
-    fn limits(&self, Place { asked, axis }: Place<'_>, profile: &dyn Profile<F>) -> ExactLimits {
-        let limits = self.limits[axis];
+    fn limits(
+        &self,
+        Place { asked, axis }: Place<'_>,
+        profile: &dyn Profile<F>,
+    ) -> Cow<'_, ExactLimits> {
+        let limits = &self.limits[axis];
         if asked.moved.profile != ProfileKind::Logistic || limits.start_speed > 0 {
-            return limits;
+            return Cow::Borrowed(limits);
         }
         // A logistic profile is never at rest. Without a start speed in the file, the speed of the
         // curve itself at time 0 is therefore the limit of the start speed.
         let per_tick = profile.speed(F::zero())
             * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
-        ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
+        let start_speed = units::toward_zero(per_tick).unwrap_or(0);
+        Cow::Owned(ExactLimits { start_speed, ..*limits })
     }
 
     /// Finishes an axis of a move, in this order: plans the motion again where the rest has already

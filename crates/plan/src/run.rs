@@ -44,7 +44,7 @@ struct Rate {
 impl<F: Real> Writer<'_, F> {
     /// Writes the segments of a piece of constant jerk. If the piece `ends` a part of the move, its
     /// segments travel exactly the distance that is left.
-    pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
+    pub fn piece(&mut self, piece: &Piece, ends: bool) -> Result<(), Broken> {
         self.divide(piece, None, ends)
     }
 
@@ -55,7 +55,7 @@ impl<F: Real> Writer<'_, F> {
 
     /// The position of the axis when a piece begins, units in the direction of travel, with what is
     /// carried over from the piece before.
-    pub fn position(&self, piece: Piece) -> i128 {
+    pub fn position(&self, piece: &Piece) -> i128 {
         piece.start + self.signed(self.ahead)
     }
 
@@ -66,7 +66,7 @@ impl<F: Real> Writer<'_, F> {
 
     /// Writes the segments of a fitted piece, and carries the units that they are off into the next
     /// piece.
-    pub fn fitted(&mut self, piece: Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
+    pub fn fitted(&mut self, piece: &Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
         let sign = self.sign();
         let mut done = self.position(piece);
         self.ahead = 0;
@@ -135,10 +135,15 @@ impl<F: Real> Writer<'_, F> {
     ///
     /// The slower half gets its distance from the profile, and the faster half what remains. Float
     /// rounding is relative to a distance, so this keeps the error small where edges are far apart.
-    fn divide(&mut self, piece: Piece, jerk: Option<Rate>, ends: bool) -> Result<(), Broken> {
-        let Piece { first, ticks, units, .. } = piece;
+    fn divide(&mut self, piece: &Piece, jerk: Option<Rate>, ends: bool) -> Result<(), Broken> {
+        let &Piece { first, ticks, units, .. } = piece;
         if ticks == 1 {
-            return self.lay(1, self.signed(units) - self.ahead, Bend::default(), ends);
+            let distance = self.signed(units) - self.ahead;
+            if !ends {
+                return self.lay(1, distance, Bend::default(), false);
+            }
+            self.ahead = 0;
+            return self.push(1, Registers { v: distance, a: 0, j: 0 });
         }
         let ends_at = [first, first + ticks].map(|tick| self.clock.at(tick));
         let middle = self.profile.rates((ends_at[0] + ends_at[1]) / (F::one() + F::one()));
@@ -173,34 +178,31 @@ impl<F: Real> Writer<'_, F> {
     /// ticks.
     fn halves(
         &mut self,
-        piece: Piece,
+        piece: &Piece,
         half: u64,
         head: i128,
         jerk: Rate,
         ends: bool,
     ) -> Result<(), Broken> {
-        let Piece { first, ticks, start, units, .. } = piece;
+        let &Piece { first, ticks, start, units, by_pulse } = piece;
         let jerk = Some(jerk);
-        self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
+        self.divide(&Piece { ticks: half, units: head, ..*piece }, jerk, false)?;
         let (first, start) = (first + half, start + head);
-        self.divide(
-            Piece { first, ticks: ticks - half, start, units: units - head, ..piece },
-            jerk,
-            ends,
-        )
+        let (ticks, units) = (ticks - half, units - head);
+        self.divide(&Piece { first, ticks, start, units, by_pulse }, jerk, ends)
     }
 
     /// Writes one run of constant jerk.
     fn run(
         &mut self,
-        piece: Piece,
+        piece: &Piece,
         doubled_middle: i128,
         jerk: i128,
         ends: bool,
     ) -> Result<(), Broken> {
         let distance = self.signed(piece.units) - self.ahead;
         let wanted = Wanted {
-            ticks: piece.ticks.into(),
+            ticks: piece.ticks,
             distance: self.signed(distance),
             doubled_middle,
             jerk,
@@ -217,8 +219,8 @@ impl<F: Real> Writer<'_, F> {
     pub fn lay(&mut self, n: u64, distance: i128, bend: Bend, ends: bool) -> Result<(), Broken> {
         let [a, j] = [register(self.signed(bend.a))?, register(self.signed(bend.j))?];
         let bent = if n == 1 { Some(0) } else { bend.distance(n) };
-        let level = self.signed(distance) - bent.ok_or(Broken::Range)?;
-        let (v, remainder) = shared_out(self.signed(level), n);
+        let level = distance - self.signed(bent.ok_or(Broken::Range)?);
+        let (v, remainder) = shared_out(level, n);
         if ends {
             self.ahead = 0;
             let mut now = Registers { v: v + 1, a, j };
@@ -241,20 +243,35 @@ impl<F: Real> Writer<'_, F> {
     }
 
     /// Writes the ticks of one cubic, in as many segments as their 32-bit tick counters need.
-    fn push(&mut self, mut ticks: u64, mut now: Registers) -> Result<(), Broken> {
-        loop {
-            if self.segments.len() >= MOST_SEGMENTS {
-                return Err(Broken::Segments);
-            }
-            let length = u32::try_from(ticks).unwrap_or(u32::MAX);
-            let Registers { v, a, j } = now;
-            self.segments.push(Segment { ticks: length, v: register(v)?, a, j, last: false });
-            ticks -= u64::from(length);
-            if ticks == 0 {
-                return Ok(());
-            }
-            now = now.after(length.into())?;
+    #[inline]
+    fn push(&mut self, ticks: u64, now: Registers) -> Result<(), Broken> {
+        match u32::try_from(ticks) {
+            Ok(ticks) => self.segment(ticks, now),
+            Err(_) => self.push_long(ticks, now),
         }
+    }
+
+    /// [`Self::push`] for more ticks than a segment can have.
+    #[cold]
+    fn push_long(&mut self, ticks: u64, mut now: Registers) -> Result<(), Broken> {
+        let mut left = ticks;
+        while left > 0 {
+            let length = u32::try_from(left).unwrap_or(u32::MAX);
+            self.segment(length, now)?;
+            left -= u64::from(length);
+            now = if left > 0 { now.after(length.into())? } else { now };
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn segment(&mut self, ticks: u32, now: Registers) -> Result<(), Broken> {
+        if self.segments.len() >= MOST_SEGMENTS {
+            return Err(Broken::Segments);
+        }
+        let Registers { v, a, j } = now;
+        self.segments.push(Segment { ticks, v: register(v)?, a, j, last: false });
+        Ok(())
     }
 }
 

@@ -125,12 +125,12 @@ impl<F: Real> Fitter<'_, F> {
         // As in `cubic`, the second try forbids A to change its sign.
         [false, true].into_iter().find_map(|one_way| {
             let wanted = Wanted {
-                ticks: ticks.into(),
+                ticks,
                 distance: distance.clamp(0, rest.max(0)),
                 doubled_middle: units(if size.rises { doubled } else { -doubled }),
                 jerk: units(scale / size.ticks * 6.0 * c3),
                 one_way,
-                least: i128::from(opens && at_once),
+                least: i64::from(opens && at_once),
                 first: opens,
             };
             let bend = wanted.within(self.limits);

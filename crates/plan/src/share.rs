@@ -69,9 +69,10 @@ pub(crate) fn share<F: Real>(
     cut(profile, clock, breakpoints, cuts);
     let tick_at =
         |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
-    let zones: Vec<[u64; 2]> = care.by_pulse.iter().map(|zone| zone.map(tick_at)).collect();
     let behind = care.behind.map(|(ends, units)| (ends.map(tick_at), units));
-    cuts.extend(zones.iter().flatten());
+    for zone in &care.by_pulse {
+        cuts.extend(zone.map(tick_at));
+    }
     if let Some((ends, _)) = behind {
         cuts.extend(ends);
     }
@@ -84,8 +85,8 @@ pub(crate) fn share<F: Real>(
     if let Some((ends, units)) = behind {
         fall_behind(pieces, ends, units, fastest).ok_or(Broken::Slow)?;
     }
-    for zone in zones {
-        join(pieces, zone);
+    for zone in &care.by_pulse {
+        join(pieces, zone.map(tick_at));
     }
     let mut start = 0;
     for piece in pieces {
@@ -165,6 +166,7 @@ pub(crate) fn distance<F: Real>(
 }
 
 /// [`distance`], where the times of both ends are known, seconds.
+#[inline]
 fn distance_between<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,

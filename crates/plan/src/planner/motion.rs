@@ -57,7 +57,7 @@ impl<F: Real> Planner<'_, F> {
             segments: Vec::with_capacity(2 * pieces.len() + 2),
             ahead: 0,
         };
-        for (index, &piece) in pieces.iter().enumerate() {
+        for (index, piece) in pieces.iter().enumerate() {
             // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
             // that are curved and belong to a fitted kind of profile are fitted. The rest are
             // exact.
@@ -103,7 +103,7 @@ impl Fitting {
     fn write<F: Real>(
         &mut self,
         writer: &mut Writer<'_, F>,
-        piece: Piece,
+        piece: &Piece,
         pulses: u64,
         last: bool,
     ) -> Result<(), Broken> {
@@ -117,7 +117,7 @@ impl Fitting {
             phase,
             backward,
             pulses,
-            piece,
+            piece: *piece,
             rises,
             tolerance: self.tolerance.min(piece.ticks as f64 / LEAST_RATIO),
             bend: cubic::steps(limits.acceleration),
@@ -156,7 +156,7 @@ fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
 }
 
 /// Whether a piece needs no fit, because it is one tick long or has constant speed.
-fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
+fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: &Piece) -> bool {
     let middle =
         (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
     piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
