@@ -1,10 +1,11 @@
 //! The cubic of a segment over time: how far the gateware comes, as a function of V, A and J.
 
+use crate::units;
 use carrystep_profile::Real;
 
 /// Converts units of 2^-64 step to steps.
 pub(crate) fn steps(units: i128) -> f64 {
-    units as f64 * 2_f64.powi(-64)
+    units::float(units) * 2_f64.powi(-64)
 }
 
 /// The distances that V n, A n^2 and J n^3 contribute after `t` of `n` ticks, each per unit of its

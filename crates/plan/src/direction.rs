@@ -125,3 +125,16 @@ pub(crate) fn turning_rest(ticks: u32, backward: bool, phase: StartPhase) -> Vec
     };
     pair.into_iter().filter(|segment| segment.ticks > 0).collect()
 }
+
+/// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
+/// limit of the gateware's counter.
+pub(crate) fn still(mut ticks: u64) -> Vec<Segment> {
+    let count = ticks.div_ceil(u32::MAX.into());
+    let mut segments = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
+    while ticks > 0 {
+        let length = u32::try_from(ticks).unwrap_or(u32::MAX);
+        segments.push(Segment { ticks: length, v: 0, a: 0, j: 0, last: false });
+        ticks -= u64::from(length);
+    }
+    segments
+}

@@ -5,6 +5,7 @@
 use crate::cubic::wide;
 use crate::run::Writer;
 use crate::share::Piece;
+use crate::units;
 use carrystep_core::StartPhase;
 use carrystep_profile::{Rates, Real};
 
@@ -38,7 +39,7 @@ impl<F: Real> Writer<'_, F> {
         let length = ticks as f64;
         // V makes up for A and J, so a long first run would start too fast by half of this speed.
         let late = (acceleration + jerk * length / 3.0) * length;
-        if first == 0 && late > self.limits.tolerance as f64 {
+        if first == 0 && late > units::float(self.limits.tolerance) {
             return None;
         }
         // The deviation is a parabola t(n-t)/2 for each unit left out of A, and at most a cubic t^2

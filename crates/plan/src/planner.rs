@@ -7,7 +7,7 @@
 use crate::asked::Asked;
 use crate::check::{Duty, check};
 use crate::demand::{Clock, demand};
-use crate::direction::{Pins, Strokes, borrows, turning_rest};
+use crate::direction::{Pins, Strokes, borrows, still, turning_rest};
 use crate::edges::{self, Edges};
 use crate::error::{Broken, PlanError};
 use crate::limits::{ExactLimits, float_limits};
@@ -184,13 +184,8 @@ impl<'a, F: Real> Planner<'a, F> {
         let Place { asked, axis } = place;
         let steps = asked.moved.steps[axis];
         if steps == 0 {
-            return Ok(Draft {
-                steps,
-                profile,
-                segments: still(clock.ticks),
-                strokes: None,
-                rest: 0,
-            });
+            let segments = still(clock.ticks);
+            return Ok(Draft { steps, profile, segments, strokes: None, rest: 0 });
         }
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
         let pulses = Pulses::new(&*profile, clock, steps, (timebase, phase), 0);
@@ -269,15 +264,8 @@ impl<'a, F: Real> Planner<'a, F> {
             return Err(Broken::Landing);
         }
         if let Some(strokes) = strokes {
-            let now = self.now();
-            self.pins[axis].after(
-                now,
-                rest,
-                early,
-                &strokes,
-                &self.build.pins[axis],
-                &self.build.timebase,
-            );
+            let (now, Build { timebase, pins, .. }) = (self.now(), &self.build);
+            self.pins[axis].after(now, rest, early, &strokes, &pins[axis], timebase);
         }
         let mut segments = motion;
         if rest > 0 {
@@ -295,19 +283,6 @@ impl<'a, F: Real> Planner<'a, F> {
     fn now(&self) -> i128 {
         i128::from(self.ticks) * i128::from(self.build.timebase.clocks_per_tick())
     }
-}
-
-/// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
-/// limit of the gateware's counter.
-fn still(mut ticks: u64) -> Vec<Segment> {
-    let count = ticks.div_ceil(u32::MAX.into());
-    let mut segments = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
-    while ticks > 0 {
-        let length = u32::try_from(ticks).unwrap_or(u32::MAX);
-        segments.push(Segment { ticks: length, v: 0, a: 0, j: 0, last: false });
-        ticks -= u64::from(length);
-    }
-    segments
 }
 
 fn broken(index: usize, axis: &Axis, broken: Broken) -> PlanError {

@@ -1,5 +1,5 @@
-//! Converts float steps to units of 2^-64 step. Only the rounding that the function names is
-//! applied.
+//! Converts float steps to units of 2^-64 step, and units to floats. Only the rounding that the
+//! function names is applied.
 
 use carrystep_core::fixed::FRACTION_BITS;
 use carrystep_profile::Real;
@@ -48,6 +48,22 @@ fn large<F: Real>(steps: F) -> Option<i128> {
     (shift <= 73).then(|| i128::from(sign) * (i128::from(mantissa) << shift))
 }
 
+/// Converts units to the nearest float. For a number of 64 bits this is an instruction of the
+/// processor.
+#[inline]
+pub(crate) fn float(units: i128) -> f64 {
+    match i64::try_from(units) {
+        Ok(few) => few as f64,
+        Err(_) => many(units),
+    }
+}
+
+/// Converts more units than 64 bits hold.
+#[cold]
+fn many(units: i128) -> f64 {
+    units as f64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,6 +75,16 @@ mod tests {
             let expected = if exponent < -64 { 0 } else { 1_i128 << (exponent + 64) };
             assert_eq!(units, Some(expected), "2^{exponent}");
             assert_eq!(toward_zero(-(2_f64.powi(exponent))), Some(-expected));
+        }
+    }
+
+    #[test]
+    fn every_size_of_units_becomes_the_nearest_float() {
+        for power in 0..126 {
+            for units in [-1, 0, 1].map(|off| (1_i128 << power) + (1 << (power / 2)) + off) {
+                assert_eq!(float(units), units as f64, "{units}");
+                assert_eq!(float(-units), -(units as f64), "{units}");
+            }
         }
     }
 
