@@ -4,7 +4,7 @@
 //! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. The exact check
 //! (`check.rs`) repeats every bound that is kept here.
 
-use crate::edges::triples;
+use crate::edges::{pairs, product, triples};
 use crate::limits::ExactLimits;
 
 /// What a run of one cubic should do, in the direction of travel.
@@ -36,6 +36,18 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
+    /// The distance in units that A and J add in `n` ticks, or `None` if the magnitude of what J
+    /// adds is 2^120 or more.
+    #[inline]
+    pub fn distance(self, n: u64) -> Option<i128> {
+        let Self { a, j } = self;
+        let by_acceleration = match (u32::try_from(n), i64::try_from(a)) {
+            (Ok(n), Ok(a)) => product(pairs(n.into()), a),
+            _ => i128::from(n) * (i128::from(n) - 1) / 2 * a,
+        };
+        Some(by_acceleration + jerk_distance(n.into(), j)?)
+    }
+
     /// The nearest registers with which a falling run of `ticks` ticks travels `distance` and comes
     /// to rest without reversing.
     pub fn landing(self, ticks: i128, distance: i128, limits: &ExactLimits) -> Self {
@@ -81,18 +93,68 @@ impl Wanted {
     /// limit at both ends of the run, and A and J within their limits. If there are none with J,
     /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
-        let most = limits.jerk.unwrap_or(i128::MAX);
-        let with_jerk = self.accelerated(self.jerk.clamp(-most, most), limits);
-        with_jerk.or_else(|| self.accelerated(0, limits)).unwrap_or_default()
+        let j = limits.jerk.map_or(self.jerk, |most| self.jerk.clamp(-most, most));
+        self.unbounded(j, limits)
+            .or_else(|| self.bounded(j, limits))
+            .or_else(|| self.bounded(0, limits))
+            .unwrap_or_default()
     }
 
-    fn accelerated(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
+    /// What [`Self::bounded`] returns, where the wanted A keeps all bounds and the numbers have an
+    /// ordinary size. That is so for most runs, and it takes no division.
+    fn unbounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
+        let register = |value: i128| i64::try_from(value).ok();
+        let n = i64::from(u32::try_from(self.ticks).ok()?);
+        let by_jerk = jerk_distance(self.ticks, j)?;
+        let j = register(j)?;
+        if n < 2 {
+            return None;
+        }
+        let a = register(self.doubled_middle)?.checked_sub((n - 2).checked_mul(j)?)? / 2;
+        // The acceleration at both ends of the run; A is between the two.
+        let ends = [a.checked_sub(j)?, a.checked_add((n - 1).checked_mul(j)?)?];
+        let most = register(limits.acceleration).unwrap_or(i64::MAX);
+        let falls = self.doubled_middle < 0;
+        let signs = [a, ends[1]].map(|a| if falls { a <= 0 } else { a >= 0 });
+        if ends.iter().any(|&end| end < -most || most < end)
+            || (self.one_way && signs.contains(&false))
+        {
+            return None;
+        }
+        // The product is below 2^126. With a distance below 2^120, as what J adds is, no sum of them
+        // overflows.
+        let by_acceleration = product(pairs(n.cast_unsigned()), a);
+        if !(0..1 << 120).contains(&self.distance) {
+            return None;
+        }
+        // n V in the first tick and in the last.
+        let first = self.distance - by_jerk - by_acceleration;
+        let last = self.distance + 2 * by_jerk + by_acceleration;
+        let range = 0..=product(n, register(limits.fastest())?);
+        if !range.contains(&first) || !range.contains(&last) || first < i128::from(n) * self.least {
+            return None;
+        }
+        if self.first {
+            // 6 n times the room below the start speed, of V - A/2 + J/3. Both products by n are
+            // below 2^96.
+            let room = product(n, register(limits.start_speed + limits.tolerance)?) - first;
+            let bend = a.checked_mul(3)?.checked_sub(j.checked_mul(2)?)?;
+            if 6 * room + product(n, bend) < 0 {
+                return None;
+            }
+        }
+        Some(Bend { a: a.into(), j: j.into() })
+    }
+
+    /// The A nearest to the wanted one within all bounds.
+    #[cold]
+    fn bounded(&self, j: i128, limits: &ExactLimits) -> Option<Bend> {
         let Self { ticks: n, distance, .. } = *self;
         if n < 2 {
             return None;
         }
-        let pairs = n * (n - 1) / 2;
         let by_jerk = jerk_distance(n, j)?;
+        let pairs = n * (n - 1) / 2;
         let last_tick = (n - 1) * j;
         let fastest = n * limits.fastest();
         let mut a = Range { low: -limits.acceleration, high: limits.acceleration };
@@ -138,7 +200,11 @@ pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
         return Some(0);
     }
     let triples = triples(u32::try_from(n).ok()?.into());
-    triples.checked_mul(j).filter(|distance| distance.abs() < 1 << 120)
+    let distance = match (i64::try_from(triples), i64::try_from(j)) {
+        (Ok(few), Ok(j)) => Some(product(few, j)),
+        _ => triples.checked_mul(j),
+    };
+    distance.filter(|distance| distance.abs() < 1 << 120)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! All computations here are in integers and independent of how the segments were found. The rules
 //! may change only together with [`Broken`].
 
-use crate::edges::{speed, travel};
+use crate::edges::{product, speed, travel};
 use crate::error::Broken;
 use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
@@ -26,35 +26,41 @@ pub(crate) fn check(
     duty: &Duty,
     limits: &ExactLimits,
 ) -> Result<Peaks, Broken> {
-    let mut peaks = [0_i128; 3];
+    let (mut fastest, mut acceleration, mut jerk) = (0_i64, 0_i128, 0_i128);
     let (mut ticks, mut distance) = (0_u64, 0_i128);
-    for segment in segments {
-        for v in speeds(segment) {
-            if (duty.backward && v > 0) || (!duty.backward && v < 0) {
-                return Err(Broken::Sign);
-            }
-            if v.abs() >= 1 << 63 {
-                return Err(Broken::Overspeed);
-            }
-            peaks[0] = peaks[0].max(v.abs());
+    let mut pass = |v: i128| {
+        let onward = if duty.backward { -v } else { v };
+        if onward < 0 {
+            return Err(Broken::Sign);
         }
-        let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-        let end = a + (i128::from(segment.ticks) - 1) * j;
-        peaks[1] = peaks[1].max(a.abs()).max(end.abs());
-        peaks[2] = peaks[2].max(j.abs());
+        fastest = fastest.max(i64::try_from(onward).map_err(|_| Broken::Overspeed)?);
+        Ok(())
+    };
+    for segment in segments {
+        end_speeds(segment).into_iter().try_for_each(&mut pass)?;
+        if let Some(inner) = turning_speeds(segment) {
+            inner.into_iter().try_for_each(&mut pass)?;
+        }
+        let a = i128::from(segment.a);
+        acceleration = acceleration.max(a.abs());
+        if segment.j != 0 {
+            let end = a + product(i64::from(segment.ticks) - 1, segment.j);
+            acceleration = acceleration.max(end.abs());
+            jerk = jerk.max(i128::from(segment.j).abs());
+        }
         ticks += u64::from(segment.ticks);
         distance += travel(segment, segment.ticks.into());
     }
     if ticks != duty.ticks || distance != duty.distance {
         return Err(Broken::Landing);
     }
-    if peaks[0] > limits.speed + limits.tolerance {
+    if i128::from(fastest) > limits.speed + limits.tolerance {
         return Err(Broken::Speed);
     }
-    if peaks[1] > limits.acceleration + 1 {
+    if acceleration > limits.acceleration + 1 {
         return Err(Broken::Acceleration);
     }
-    if limits.jerk.is_some_and(|most| peaks[2] > most + 1) {
+    if limits.jerk.is_some_and(|most| jerk > most + 1) {
         return Err(Broken::Jerk);
     }
     let start = segments.first().map_or(0, |first| start_speed(first, duty.backward, limits));
@@ -63,9 +69,9 @@ pub(crate) fn check(
     }
     let register = |value: i128| u64::try_from(value).map_err(|_| Broken::Range);
     Ok(Peaks {
-        speed: register(peaks[0])?,
-        acceleration: register(peaks[1])?,
-        jerk: register(peaks[2])?,
+        speed: fastest.unsigned_abs(),
+        acceleration: register(acceleration)?,
+        jerk: register(jerk)?,
         start_speed: register(start)?,
     })
 }
@@ -85,13 +91,27 @@ pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits)
 /// V in the first and last tick, and on both sides of the zero of A if that lies between them. The
 /// extremes of V are among these values.
 pub fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+    end_speeds(segment).into_iter().chain(turning_speeds(segment).into_iter().flatten())
+}
+
+/// V in the first and in the last tick.
+fn end_speeds(segment: &Segment) -> [i128; 2] {
+    [segment.v.into(), speed(segment, u64::from(segment.ticks) - 1)]
+}
+
+/// V on both sides of the zero of A, if that lies inside the segment.
+#[inline]
+fn turning_speeds(segment: &Segment) -> Option<[i128; 2]> {
+    if segment.j == 0 {
+        return None;
+    }
     let last = u64::from(segment.ticks) - 1;
-    let (a, j) = (i128::from(segment.a), i128::from(segment.j));
-    let turns = (a < 0) != (a + i128::from(last) * j < 0);
-    let vertex = if turns { u64::try_from((-a).div_euclid(j)).unwrap_or(0) } else { 0 };
-    let inner = turns.then(|| [vertex, vertex + 1].map(|k| k.min(last)));
-    let segment = *segment;
-    [0, last].into_iter().chain(inner.into_iter().flatten()).map(move |k| speed(&segment, k))
+    let (a, j) = (i128::from(segment.a), segment.j);
+    let turns = (a < 0) != (a + product(last.cast_signed(), j) < 0);
+    turns.then(|| {
+        let vertex = u64::try_from((-a).div_euclid(j.into())).unwrap_or(0);
+        [vertex, vertex + 1].map(|k| speed(segment, k.min(last)))
+    })
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::{Machine, PathKind};
 use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
@@ -57,10 +58,10 @@ pub(crate) fn demand<F: Real>(
     let own: Vec<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
         .map(|(&limits, steps)| (float(steps.unsigned_abs()), limits))
         .collect();
-    let mut axes = own.clone();
     let straight = moved.path == PathKind::Straight;
+    let mut axes = Cow::Borrowed(&own[..]);
     if straight {
-        line::share_limits(moved.profile, &mut axes);
+        line::share_limits(moved.profile, axes.to_mut());
     }
     let refused = |axis: usize, refusal: LimitRefusal, least_time| {
         let (axis, refusal) = if straight {
@@ -73,12 +74,16 @@ pub(crate) fn demand<F: Real>(
     };
 
     let mut least = F::zero();
-    for (axis, (steps, limits)) in
-        axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero())
-    {
-        let time = kinds::least_time(moved.profile, *steps, limits)
+    let mut fastest = Vec::with_capacity(axes.len());
+    for (axis, (steps, limits)) in axes.iter().enumerate() {
+        if steps.is_zero() {
+            fastest.push(None);
+            continue;
+        }
+        let found = kinds::fastest(moved.profile, *steps, limits)
             .map_err(|refusal| refused(axis, refusal, None))?;
-        least = least.max(time);
+        least = least.max(found.time);
+        fastest.push(Some(found));
     }
     let clock = match time {
         Some(time) => given(time, &timebase, machine.phase, index)?,
@@ -96,12 +101,12 @@ pub(crate) fn demand<F: Real>(
     // all axes.
     let mut worst: Option<(usize, LimitRefusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
-    for (axis, (steps, limits)) in axes.iter().enumerate() {
-        if steps.is_zero() {
+    for (axis, ((steps, limits), fastest)) in axes.iter().zip(&fastest).enumerate() {
+        let Some(fastest) = fastest else {
             profiles.push(Arc::new(Constant::rest(clock.seconds)));
             continue;
-        }
-        match kinds::whole(moved.profile, *steps, clock.seconds, limits) {
+        };
+        match kinds::after(moved.profile, *steps, clock.seconds, limits, fastest) {
             Ok(profile) => profiles.push(profile),
             Err(refusal) => {
                 if worst.is_none_or(|(_, other)| other.least_time < refusal.least_time) {

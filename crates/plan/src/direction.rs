@@ -47,11 +47,15 @@ impl Pins {
         pins: &PinTiming,
         build: (&Timebase, StartPhase),
     ) -> u64 {
-        let clocks = i128::from(build.0.clocks_per_tick());
+        let clocks = u64::from(build.0.clocks_per_tick());
         let edge = begin + strokes.first_edge;
         let missing = |since: i128| {
             let earliest = (since + i128::from(pins.dir_setup)).max(self.ready(pins));
-            u64::try_from((earliest - edge + clocks - 1).div_euclid(clocks)).unwrap_or(0)
+            // Most moves need no rest, and no division.
+            match u64::try_from(earliest - edge) {
+                Ok(late) if late > 0 => late.div_ceil(clocks),
+                _ => 0,
+            }
         };
         if !self.changes_dir(strokes) {
             return missing(self.turned);
@@ -59,7 +63,8 @@ impl Pins {
         if missing(self.dir_change(begin + strokes.motion, pins)) == 0 {
             return 0;
         }
-        let (least, early) = if borrows(build.1, strokes.backward) { (1, 0) } else { (2, clocks) };
+        let (least, early) =
+            if borrows(build.1, strokes.backward) { (1, 0) } else { (2, clocks.into()) };
         missing(self.dir_change(begin + early, pins)).max(least)
     }
 

@@ -1,7 +1,7 @@
 //! A segment of a fit in integers, before it is written: its distance, which a whole V reaches, and
 //! the limits that its registers keep.
 
-use crate::bend::{Bend, jerk_distance};
+use crate::bend::Bend;
 use crate::check::{speeds, start_speed};
 use crate::cubic::steps;
 use crate::limits::ExactLimits;
@@ -21,9 +21,9 @@ impl Fitted {
     /// Rounds the distance to one that a whole V reaches, and that is at most `rest`. The last
     /// segment of a move (`ends`) keeps its distance; `Writer::lay` divides it later.
     pub fn whole(self, backward: bool, rest: i128, ends: bool) -> Option<Self> {
-        let Self { ticks, bend: Bend { a, j }, distance } = self;
+        let Self { ticks, bend, distance } = self;
         let n = i128::from(ticks);
-        let bent = n * (n - 1) / 2 * a + jerk_distance(n, j)?;
+        let bent = bend.distance(ticks)?;
         let level = distance - bent;
         // P must never be behind its ideal, in either direction of travel.
         let (down, up) = (level.div_euclid(n), -(-level).div_euclid(n));
@@ -35,9 +35,10 @@ impl Fitted {
     /// tick^3, or `None` if they break a limit. The start speed counts only for a segment that
     /// `opens` a move; if it also steps `at once`, its V must not start at 0.
     pub fn found(&self, limits: &ExactLimits, opens: bool, at_once: bool) -> Option<[f64; 3]> {
-        let &Self { ticks, bend: Bend { a, j }, distance } = self;
+        let &Self { ticks, bend, distance } = self;
+        let Bend { a, j } = bend;
         let n = i128::from(ticks);
-        let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
+        let level = distance - bend.distance(ticks)?;
         let register = |x: i128| i64::try_from(x).ok();
         let (v, a64, j64) = (register(level.div_euclid(n))?, register(a)?, register(j)?);
         let segment = Segment { ticks: u32::try_from(ticks).ok()?, v, a: a64, j: j64, last: false };

@@ -58,10 +58,24 @@ impl ExactLimits {
 /// 10^9 s.
 fn units(value: &BigDecimal, tick_ns: u64, ticks: u32) -> Option<i128> {
     let (digits, scale) = value.as_bigint_and_scale();
-    let units = (&*digits << FRACTION_BITS) * BigInt::from(tick_ns).pow(ticks);
     let tens = scale + 9 * i64::from(ticks);
+    if let Some(units) = small_units(digits.to_u64(), tick_ns.checked_pow(ticks), tens) {
+        return Some(units);
+    }
+    let units = (&*digits << FRACTION_BITS) * BigInt::from(tick_ns).pow(ticks);
     let power = BigInt::from(10).pow(u32::try_from(tens.unsigned_abs()).ok()?);
     if tens < 0 { units * power } else { units / power }.to_i128()
+}
+
+/// The same from numbers that fit into 64 bits and 128 bits, as those of most machines do.
+fn small_units(digits: Option<u64>, scale: Option<u64>, tens: i64) -> Option<i128> {
+    let mut value = digits?.checked_mul(scale?)?;
+    let mut tens = u32::try_from(tens).ok()?;
+    while tens > 0 && value.is_multiple_of(10) && value > 0 {
+        (value, tens) = (value / 10, tens - 1);
+    }
+    let power = 10_u128.checked_pow(tens)?;
+    i128::try_from((u128::from(value) << FRACTION_BITS) / power).ok()
 }
 
 /// The same limits in steps and seconds, as floats. A missing jerk limit is infinite.

@@ -39,14 +39,16 @@ impl<F: Real> Writer<'_, F> {
             let before = pulses.due(k) - (place % phases + 1) * per_phase + slack;
             let stroke = phases * per_phase;
             let approach = place / phases - tick;
+            let approach = u64::try_from(approach).map_err(|_| Broken::Slow)?;
             if approach < 1 || before < at || stroke > self.limits.fastest() {
                 return Err(Broken::Slow);
             }
             at = before + self.travel(approach, before - at)?;
             at += stroke + self.travel(1, stroke)?;
-            tick += approach + 1;
+            tick += i128::from(approach) + 1;
         }
         let left = i128::from(piece.first + piece.ticks) - tick;
+        let left = u64::try_from(left).map_err(|_| Broken::Slow)?;
         if left < 1 || end < at {
             return Err(Broken::Slow);
         }
@@ -55,11 +57,11 @@ impl<F: Real> Writer<'_, F> {
 
     /// Travels `units` in `ticks` ticks. Returns by how much the axis comes further, in the
     /// direction of travel: less than one unit per tick, and 0 if the ticks need several segments.
-    fn travel(&mut self, ticks: i128, units: i128) -> Result<i128, Broken> {
+    fn travel(&mut self, ticks: u64, units: i128) -> Result<i128, Broken> {
         self.lay(ticks, self.sign() * units, Bend::default(), ticks > u32::MAX.into())?;
         let ahead = std::mem::take(&mut self.ahead);
         // A deviation of a unit per tick or more is not rounding: the speed limit has held the axis
         // back.
-        if ahead.abs() < ticks { Ok(self.sign() * ahead) } else { Err(Broken::Slow) }
+        if ahead.abs() < ticks.into() { Ok(self.sign() * ahead) } else { Err(Broken::Slow) }
     }
 }

@@ -8,13 +8,14 @@ use crate::asked::Asked;
 use crate::check::{Duty, check};
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
-use crate::edges;
+use crate::edges::{self, Edges};
 use crate::error::{Broken, PlanError};
 use crate::limits::{ExactLimits, float_limits};
 use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
-use crate::slow;
+use crate::share::Room;
+use crate::slow::{self, Pulses};
 use crate::units;
 use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_core::ProfileKind;
@@ -22,6 +23,7 @@ use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
 use carrystep_files::{Axis, Machine, Move, MoveFile};
 use carrystep_profile::{Limits, Profile, Real, SharedProfile};
+use std::borrow::Cow;
 
 mod motion;
 
@@ -35,8 +37,11 @@ mod motion;
 /// A [`PlanError`] names the move and the axis, the limit that refuses the move, and, where one is
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
-    let mut planner = Planner::<F>::new(&file.machine)?;
-    let moves = file.moves.iter().map(|moved| planner.plan(moved)).collect::<Result<_, _>>()?;
+    let mut planner = Planner::<F>::new(Cow::Borrowed(&file.machine))?;
+    let mut moves = Vec::with_capacity(file.moves.len());
+    for moved in &file.moves {
+        moves.push(planner.plan(moved)?);
+    }
     Ok(Plan { build: planner.build, moves })
 }
 
@@ -48,12 +53,13 @@ struct Place<'a> {
 }
 
 /// Plans the moves of a machine one after the other.
-pub(crate) struct Planner<F> {
-    machine: Machine,
+pub(crate) struct Planner<'a, F> {
+    machine: Cow<'a, Machine>,
     pub(crate) build: Build,
     limits: Vec<ExactLimits>,
     float_limits: Vec<Limits<F>>,
     pins: Vec<Pins>,
+    room: Room,
     /// The next move, counted from 0.
     next: usize,
     /// Ticks planned so far, from the origin.
@@ -70,10 +76,10 @@ struct Draft<F: Real> {
     rest: u64,
 }
 
-impl<F: Real> Planner<F> {
+impl<'a, F: Real> Planner<'a, F> {
     /// # Errors
     /// A [`PlanError`] if no gateware can be built for the machine.
-    pub(crate) fn new(machine: &Machine) -> Result<Self, PlanError> {
+    pub(crate) fn new(machine: Cow<'a, Machine>) -> Result<Self, PlanError> {
         let timebase = machine.timebase;
         let exact = |axis: &Axis| {
             ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
@@ -83,7 +89,8 @@ impl<F: Real> Planner<F> {
             limits: machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
             float_limits: machine.axes.iter().map(float_limits).collect(),
             pins: vec![Pins::new(&timebase); machine.axes.len()],
-            machine: machine.clone(),
+            room: Room::default(),
+            machine,
             next: 0,
             ticks: 0,
         })
@@ -97,15 +104,17 @@ impl<F: Real> Planner<F> {
         let index = self.next;
         self.next += 1;
         let asked = Asked { index, moved };
+        let mut room = std::mem::take(&mut self.room);
         let (clock, drafts) = self
-            .drafts(asked, moved.time.as_ref())
+            .drafts(asked, moved.time.as_ref(), &mut room)
             .map_err(|error| self.explained(asked, error))?;
+        self.room = room;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
-        let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
-            self.finish(Place { asked, axis }, draft, rest, &clock)
-                .map_err(|b| broken(index, &self.machine.axes[axis], b))
-        });
-        let planned = planned.collect::<Result<Vec<_>, _>>()?;
+        let mut planned = Vec::with_capacity(drafts.len());
+        for (axis, draft) in drafts.into_iter().enumerate() {
+            let finished = self.finish(Place { asked, axis }, draft, rest, &clock);
+            planned.push(finished.map_err(|b| broken(index, &self.machine.axes[axis], b))?);
+        }
         let start_tick = self.ticks + rest;
         self.ticks = start_tick + clock.ticks;
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
@@ -130,13 +139,15 @@ impl<F: Real> Planner<F> {
         &self,
         asked: Asked<'_>,
         time: Option<&BigDecimal>,
+        room: &mut Room,
     ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
-        let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { asked, axis }, profile, &clock)
-                .map_err(|b| broken(asked.index, &self.machine.axes[axis], b))
-        });
-        Ok((clock, drafts.collect::<Result<_, _>>()?))
+        let mut drafts = Vec::with_capacity(profiles.len());
+        for (axis, profile) in profiles.into_iter().enumerate() {
+            let draft = self.draft(Place { asked, axis }, profile, &clock, room);
+            drafts.push(draft.map_err(|b| broken(asked.index, &self.machine.axes[axis], b))?);
+        }
+        Ok((clock, drafts))
     }
 
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
@@ -149,9 +160,10 @@ impl<F: Real> Planner<F> {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest = self.drafts(asked, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let trial = |time: Option<&BigDecimal>| self.drafts(asked, time, &mut Room::default()).ok();
+        let shortest = trial(None).and_then(|(clock, _)| clock.seconds.to_f64());
         let given = asked.moved.time.as_ref().and_then(BigDecimal::to_f64);
-        let works = |time: &BigDecimal| self.drafts(asked, Some(time)).is_ok();
+        let works = |time: &BigDecimal| trial(Some(time)).is_some();
         let longest = shortest
             .zip(given)
             .and_then(|(least, given)| longest_time(least, given, timebase, works));
@@ -167,6 +179,7 @@ impl<F: Real> Planner<F> {
         place: Place<'_>,
         profile: SharedProfile<F>,
         clock: &Clock<F>,
+        room: &mut Room,
     ) -> Result<Draft<F>, Broken> {
         let Place { asked, axis } = place;
         let steps = asked.moved.steps[axis];
@@ -179,19 +192,18 @@ impl<F: Real> Planner<F> {
                 rest: 0,
             });
         }
-        let segments = self.motion(place, steps, &*profile, clock, 0)?;
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
+        let pulses = Pulses::new(&*profile, clock, steps, (timebase, phase), 0);
+        let segments = self.motion(place, &pulses, room)?;
         let backward = steps < 0;
-        let edge = |k| {
-            edges::edge(&segments, phase.start_value(), backward, k, timebase)
-                .ok_or(Broken::Landing)
-        };
+        let edges = Edges { segments: &segments, start: phase.start_value(), backward, timebase };
+        let [first, last] = pulses.ticks();
         let strokes = Strokes {
             backward,
             motion: i128::from(edges::first_motion(&segments))
                 * i128::from(timebase.clocks_per_tick()),
-            first_edge: edge(1)?,
-            last_edge: edge(steps.unsigned_abs())?,
+            first_edge: edges.first(first).ok_or(Broken::Landing)?,
+            last_edge: edges.last(pulses.count, last).ok_or(Broken::Landing)?,
         };
         let rest =
             self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
@@ -236,7 +248,9 @@ impl<F: Real> Planner<F> {
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
             if borrows(phase, backward) {
                 (early, borrowed) = (Some(0), 1);
-                motion = self.motion(place, steps, &*profile, clock, borrowed)?;
+                let build = (&self.build.timebase, phase);
+                let pulses = Pulses::new(&*profile, clock, steps, build, borrowed);
+                motion = self.motion(place, &pulses, &mut Room::default())?;
             }
         }
         let duty = Duty {
@@ -260,8 +274,10 @@ impl<F: Real> Planner<F> {
                 &self.build.timebase,
             );
         }
-        let mut segments = before;
-        segments.append(&mut motion);
+        let mut segments = motion;
+        if rest > 0 {
+            segments.splice(0..0, before);
+        }
         if let Some(last) = segments.last_mut() {
             last.last = true;
         }
@@ -279,7 +295,8 @@ impl<F: Real> Planner<F> {
 /// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
 /// limit of the gateware's counter.
 fn still(mut ticks: u64) -> Vec<Segment> {
-    let mut segments = Vec::new();
+    let count = ticks.div_ceil(u32::MAX.into());
+    let mut segments = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
     while ticks > 0 {
         let length = u32::try_from(ticks).unwrap_or(u32::MAX);
         segments.push(Segment { ticks: length, v: 0, a: 0, j: 0, last: false });

@@ -4,22 +4,20 @@
 //! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. `ahead` carries the
 //! rounding of V from one run to the next, so that it never accumulates.
 
-use crate::bend::{Bend, Wanted, jerk_distance};
+use crate::bend::{Bend, Wanted};
 use crate::check::speeds;
+use crate::cubic::wide;
 use crate::demand::Clock;
 use crate::error::Broken;
+use crate::fine::Fine;
 use crate::fitted::Fitted;
 use crate::landing;
 use crate::limits::{ExactLimits, MOST_SEGMENTS};
+use crate::registers::{Registers, register, shared_out};
 use crate::share::{self, Piece};
 use crate::units;
 use carrystep_core::{Segment, StartPhase};
-use carrystep_profile::{Profile, Real};
-
-/// How far the rounding of A, J and V may move an edge, seconds. The rest of the promised 2 ns is
-/// for the 32-bit bisection and for the floats of the profile, which are accurate to 0.3 ns after
-/// 10^6 s.
-const EDGE_SHIFT: f64 = 0.5e-9;
+use carrystep_profile::{Profile, Rates, Real};
 
 /// Writes the segments of one axis in one move.
 pub(crate) struct Writer<'a, F> {
@@ -43,21 +41,11 @@ struct Rate {
     lost: f64,
 }
 
-/// How a run may treat the units by which its rounded V is ahead at its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Fine {
-    /// The next run corrects them.
-    Carried,
-    /// The run has to land exactly, because they would move an edge of the next run.
-    Landed,
-}
-
 impl<F: Real> Writer<'_, F> {
     /// Writes the segments of a piece of constant jerk. If the piece `ends` a part of the move, its
     /// segments travel exactly the distance that is left.
     pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
-        let jerk = if piece.ticks == 1 { Rate::default() } else { self.jerk(piece)? };
-        self.divide(piece, jerk, ends)
+        self.divide(piece, None, ends)
     }
 
     /// The sign of the motion: 1 forward, -1 backward.
@@ -68,7 +56,12 @@ impl<F: Real> Writer<'_, F> {
     /// The position of the axis when a piece begins, units in the direction of travel, with what is
     /// carried over from the piece before.
     pub fn position(&self, piece: Piece) -> i128 {
-        piece.start + self.sign() * self.ahead
+        piece.start + self.signed(self.ahead)
+    }
+
+    /// A distance in the direction of travel as a signed distance, and the reverse.
+    const fn signed(&self, units: i128) -> i128 {
+        if self.backward { -units } else { units }
     }
 
     /// Writes the segments of a fitted piece, and carries the units that they are off into the next
@@ -82,7 +75,7 @@ impl<F: Real> Writer<'_, F> {
             if lands && self.land(segments, sign * distance)? {
                 return Ok(());
             }
-            self.lay(ticks.into(), sign * distance, bend, lands)?;
+            self.lay(ticks, sign * distance, bend, lands)?;
             done += distance;
         }
         self.ahead = sign * (done - piece.start - piece.units);
@@ -96,7 +89,7 @@ impl<F: Real> Writer<'_, F> {
         let laid = self.segments.len();
         let sign = self.sign();
         let n = i128::from(last.ticks);
-        self.lay(n, distance, last.bend, false)?;
+        self.lay(last.ticks, distance, last.bend, false)?;
         let rest = -sign * self.ahead;
         for (other, fitted) in (1..laid).rev().zip(others.iter().rev()) {
             let Some((slower, faster)) = landing::shared(fitted.ticks.into(), n, rest) else {
@@ -120,21 +113,16 @@ impl<F: Real> Writer<'_, F> {
         Ok(false)
     }
 
-    fn middle(&self, Piece { first, ticks, .. }: Piece) -> F {
-        (self.clock.at(first) + self.clock.at(first + ticks)) / (F::one() + F::one())
-    }
-
-    fn jerk(&self, piece: Piece) -> Result<Rate, Broken> {
+    fn jerk(&self, middle: &Rates<F>) -> Result<Rate, Broken> {
         let tick = self.clock.tick;
-        let per_tick = self.profile.jerk(self.middle(piece)) * tick * tick * tick;
-        rate(per_tick, self.limits.jerk.unwrap_or(i128::MAX))
+        rate(middle.jerk * tick * tick * tick, self.limits.jerk.unwrap_or(i128::MAX))
     }
 
     /// The acceleration in the middle of a run: twice its value in units, and the magnitude of what
     /// rounding leaves out.
-    fn acceleration(&self, piece: Piece, jerk: Rate) -> Result<(i128, f64), Broken> {
+    fn acceleration(&self, middle: &Rates<F>, jerk: Rate) -> Result<(i128, f64), Broken> {
         let tick = self.clock.tick;
-        let per_tick = self.profile.acceleration(self.middle(piece)) * tick * tick;
+        let per_tick = middle.acceleration * tick * tick;
         let doubled = units::toward_zero(per_tick + per_tick).ok_or(Broken::Range)?;
         let lost = rate(per_tick, self.limits.acceleration)?.lost;
         // A is loaded for the start of the run, half a run of J away from the middle. That rounds
@@ -142,19 +130,30 @@ impl<F: Real> Writer<'_, F> {
         Ok((doubled, if jerk.units == 0 { lost } else { lost.max(1.0) }))
     }
 
-    /// Halves a piece until the rounding of A, J and V moves no edge by more than [`EDGE_SHIFT`].
+    /// Halves a piece until the rounding of A, J and V moves no edge too far (`fine.rs`).
+    /// The jerk is that in the middle of the piece that is halved first.
     ///
     /// The slower half gets its distance from the profile, and the faster half what remains. Float
     /// rounding is relative to a distance, so this keeps the error small where edges are far apart.
-    fn divide(&mut self, piece: Piece, jerk: Rate, ends: bool) -> Result<(), Broken> {
+    fn divide(&mut self, piece: Piece, jerk: Option<Rate>, ends: bool) -> Result<(), Broken> {
         let Piece { first, ticks, units, .. } = piece;
-        let (doubled, lost) = if ticks == 1 { (0, 0.0) } else { self.acceleration(piece, jerk)? };
-        let fine = if ticks < 4 { Some(Fine::Carried) } else { self.fine(piece, lost, jerk.lost) };
+        if ticks == 1 {
+            return self.lay(1, self.signed(units) - self.ahead, Bend::default(), ends);
+        }
+        let ends_at = [first, first + ticks].map(|tick| self.clock.at(tick));
+        let middle = self.profile.rates((ends_at[0] + ends_at[1]) / (F::one() + F::one()));
+        let jerk = jerk.map_or_else(|| self.jerk(&middle), Ok)?;
+        let (doubled, lost) = self.acceleration(&middle, jerk)?;
+        let fine = if ticks < 4 {
+            Some(Fine::Carried)
+        } else {
+            self.fine(piece, ends_at, &middle, [lost, jerk.lost])
+        };
         if let Some(fine) = fine {
             return self.run(piece, doubled, jerk.units, ends || fine == Fine::Landed);
         }
         let half = ticks / 2;
-        if doubled == 0 && jerk.units == 0 && self.is_level(piece) {
+        if doubled == 0 && jerk.units == 0 && middle.are_level() {
             let (whole, rest) = (units / i128::from(ticks), units % i128::from(ticks));
             let head = whole * i128::from(half) + rest * i128::from(half) / i128::from(ticks);
             return self.halves(piece, half, head, jerk, ends);
@@ -181,6 +180,7 @@ impl<F: Real> Writer<'_, F> {
         ends: bool,
     ) -> Result<(), Broken> {
         let Piece { first, ticks, start, units, .. } = piece;
+        let jerk = Some(jerk);
         self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
         let (first, start) = (first + half, start + head);
         self.divide(
@@ -188,60 +188,6 @@ impl<F: Real> Writer<'_, F> {
             jerk,
             ends,
         )
-    }
-
-    /// Whether a piece has constant speed, so that integers can share its distance out.
-    pub fn is_level(&self, piece: Piece) -> bool {
-        let middle = self.middle(piece);
-        self.profile.acceleration(middle).is_zero() && self.profile.jerk(middle).is_zero()
-    }
-
-    /// Decides whether a run may have the length of this piece, and how it then treats its
-    /// remainder. `acceleration` and `jerk` are the magnitudes that rounding leaves out of A and J.
-    /// `None` means that the piece has to be divided.
-    fn fine(&self, piece: Piece, acceleration: f64, jerk: f64) -> Option<Fine> {
-        let Piece { first, ticks, .. } = piece;
-        let length = ticks as f64;
-        // V makes up for A and J, so a long first run would start too fast by half of this speed.
-        let late = (acceleration + jerk * length / 3.0) * length;
-        if first == 0 && late > self.limits.tolerance as f64 {
-            return None;
-        }
-        let [begin, end] = [first, first + ticks].map(|tick| self.clock.at(tick));
-        let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
-        let slowest = wide(self.profile.speed(begin).min(self.profile.speed(end)));
-        // After a start from rest the first edge comes half a step later, at a speed of sqrt(a) or
-        // more than cbrt(j).
-        let by_acceleration = wide(self.profile.acceleration(begin).abs().sqrt());
-        let by_jerk = wide(self.profile.jerk(begin).abs().cbrt());
-        let at_edge = if self.is_level(piece) {
-            // A breakpoint rounded to a tick may leave the end of a ramp at the beginning of a
-            // cruise.
-            wide(self.profile.speed(self.middle(piece)))
-        } else {
-            slowest.max(by_acceleration).max(by_jerk).max(f64::MIN_POSITIVE)
-        };
-        // The deviation is a parabola t(n-t)/2 for each unit left out of A, and at most a cubic t^2
-        // (n-t)/6 for each unit left out of J. In addition V is ahead by up to one unit per tick.
-        let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;
-        let shift = lost * length * 2_f64.powi(-64) / at_edge;
-        if shift <= EDGE_SHIFT {
-            return Some(Fine::Carried);
-        }
-        let [from, to] = [begin, end].map(|t| wide(self.profile.position(t)));
-        // Tests whether the units by which V is ahead would move the next edge.
-        let by_v = length * 2_f64.powi(-64) / at_edge;
-        let still = if by_v <= EDGE_SHIFT { Fine::Carried } else { Fine::Landed };
-        (!self.has_edge(from, to)).then_some(still)
-    }
-
-    /// Whether a pulse is due between two positions in steps, or within 10^-3 step of them.
-    fn has_edge(&self, from: f64, to: f64) -> bool {
-        let offset = match self.phase {
-            StartPhase::Half => 0.5,
-            StartPhase::Zero => 0.0,
-        };
-        (to - offset + 1e-3).floor() > (from - offset - 1e-3).floor()
     }
 
     /// Writes one run of constant jerk.
@@ -252,89 +198,77 @@ impl<F: Real> Writer<'_, F> {
         jerk: i128,
         ends: bool,
     ) -> Result<(), Broken> {
-        let n = i128::from(piece.ticks);
-        let sign = self.sign();
-        let distance = sign * piece.units - self.ahead;
-        let (ticks, first) = (n, piece.first == 0);
+        let distance = self.signed(piece.units) - self.ahead;
         let wanted = Wanted {
-            ticks,
-            distance: sign * distance,
+            ticks: piece.ticks.into(),
+            distance: self.signed(distance),
             doubled_middle,
             jerk,
             one_way: true,
             least: 0,
-            first,
+            first: piece.first == 0,
         };
-        self.lay(n, distance, wanted.within(self.limits), ends)
+        self.lay(piece.ticks, distance, wanted.within(self.limits), ends)
     }
 
     /// Writes a run of `n` ticks over a signed distance in units. The part that V cannot spread
     /// evenly is added to the first ticks, one unit each, if the run `ends` a piece; otherwise it
     /// is carried into the next run.
-    pub fn lay(
-        &mut self,
-        n: i128,
-        distance: i128,
-        Bend { a, j }: Bend,
-        ends: bool,
-    ) -> Result<(), Broken> {
-        let sign = self.sign();
-        let level =
-            sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
-        let (level, a, j) = (sign * level, sign * a, sign * j);
-        let v = level.div_euclid(n);
-        let remainder = level.rem_euclid(n);
+    pub fn lay(&mut self, n: u64, distance: i128, bend: Bend, ends: bool) -> Result<(), Broken> {
+        let [a, j] = [register(self.signed(bend.a))?, register(self.signed(bend.j))?];
+        let bent = if n == 1 { Some(0) } else { bend.distance(n) };
+        let level = self.signed(distance) - bent.ok_or(Broken::Range)?;
+        let (v, remainder) = shared_out(self.signed(level), n);
         if ends {
             self.ahead = 0;
-            let head = Registers { v: v + 1, a, j };
-            self.push(remainder, head)?;
-            let Registers { v, a, j } = head.after(remainder);
-            self.push(n - remainder, Registers { v: v - 1, a, j })
+            let mut now = Registers { v: v + 1, a, j };
+            if remainder > 0 {
+                self.push(remainder, now)?;
+                now = now.after(remainder)?;
+            }
+            self.push(n - remainder, Registers { v: now.v - 1, ..now })
         } else {
             // A distance that the speed limit prevents stays in `ahead` and is not forced.
             let most = if a == 0 && j == 0 { self.limits.fastest() } else { i128::MAX };
-            let used = (v + i128::from(remainder > 0)).clamp(-most, most);
-            self.ahead = n * (used - v) - remainder;
+            let (whole, ahead) = if remainder > 0 { (v + 1, n - remainder) } else { (v, 0) };
+            let used = whole.clamp(-most, most);
+            self.ahead = i128::from(ahead);
+            if used != whole {
+                self.ahead += i128::from(n) * (used - whole);
+            }
             self.push(n, Registers { v: used, a, j })
         }
     }
 
     /// Writes the ticks of one cubic, in as many segments as their 32-bit tick counters need.
-    fn push(&mut self, mut ticks: i128, mut now: Registers) -> Result<(), Broken> {
-        while ticks > 0 {
+    fn push(&mut self, mut ticks: u64, mut now: Registers) -> Result<(), Broken> {
+        loop {
             if self.segments.len() >= MOST_SEGMENTS {
                 return Err(Broken::Segments);
             }
-            let length = ticks.min(u32::MAX.into());
-            let register = |value: i128| i64::try_from(value).map_err(|_| Broken::Range);
-            let (v, a, j) = (register(now.v)?, register(now.a)?, register(now.j)?);
-            self.segments.push(Segment { ticks: length as u32, v, a, j, last: false });
-            now = now.after(length);
-            ticks -= length;
+            let length = u32::try_from(ticks).unwrap_or(u32::MAX);
+            let Registers { v, a, j } = now;
+            self.segments.push(Segment { ticks: length, v: register(v)?, a, j, last: false });
+            ticks -= u64::from(length);
+            if ticks == 0 {
+                return Ok(());
+            }
+            now = now.after(length.into())?;
         }
-        Ok(())
-    }
-}
-
-/// The values of V, A and J before a tick.
-#[derive(Debug, Clone, Copy)]
-struct Registers {
-    v: i128,
-    a: i128,
-    j: i128,
-}
-
-impl Registers {
-    /// The values that the gateware has accumulated `n` ticks later.
-    fn after(self, n: i128) -> Self {
-        let Self { v, a, j } = self;
-        Self { v: v + n * a + n * (n - 1) / 2 * j, a: a + n * j, j }
     }
 }
 
 /// Converts `per_tick` steps to units, rounded toward zero and clamped to `most`.
 fn rate<F: Real>(per_tick: F, most: i128) -> Result<Rate, Broken> {
-    let units = units::toward_zero(per_tick).ok_or(Broken::Range)?.clamp(-most, most);
-    let exact = per_tick.to_f64().unwrap_or(f64::NAN) * 2_f64.powi(64);
+    if per_tick.is_zero() {
+        return Ok(Rate::default());
+    }
+    let exact = wide(per_tick) * 2_f64.powi(64);
+    let units = units::toward_zero(per_tick).ok_or(Broken::Range)?;
+    if -most <= units && units <= most && exact.abs() < 2_f64.powi(62) {
+        // The conversion of 64 bits is an instruction of the processor.
+        return Ok(Rate { units, lost: (exact - (exact as i64) as f64).abs() });
+    }
+    let units = units.clamp(-most, most);
     Ok(Rate { units, lost: (exact - units as f64).abs() })
 }

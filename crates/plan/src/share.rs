@@ -26,6 +26,16 @@ pub(crate) struct Piece {
     pub by_pulse: bool,
 }
 
+/// The room in which motions are divided, one after the other. It is kept, because most of them
+/// take the same.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    /// The ticks at which pieces begin, and the end of the move.
+    cuts: Vec<u64>,
+    /// The pieces of the motion that was divided last.
+    pub pieces: Vec<Piece>,
+}
+
 /// How a breakpoint that falls inside a tick is treated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Breakpoints<F> {
@@ -37,7 +47,8 @@ pub(crate) enum Breakpoints<F> {
 }
 
 /// Divides the move at its breakpoints and at the ends of the parts that `care` names. `fastest` is
-/// the greatest distance that the axis may travel in a tick, in units.
+/// the greatest distance that the axis may travel in a tick, in units. The pieces are then in
+/// `room`.
 ///
 /// Floats share the distance out. The greatest piece takes what their rounding leaves, so that the
 /// sum is exactly `total`.
@@ -52,36 +63,46 @@ pub(crate) fn share<F: Real>(
     breakpoints: Breakpoints<F>,
     care: &Care<F>,
     fastest: i128,
-) -> Result<Vec<Piece>, Broken> {
+    Room { cuts, pieces }: &mut Room,
+) -> Result<(), Broken> {
+    cuts.clear();
+    cut(profile, clock, breakpoints, cuts);
     let tick_at =
         |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
     let zones: Vec<[u64; 2]> = care.by_pulse.iter().map(|zone| zone.map(tick_at)).collect();
     let behind = care.behind.map(|(ends, units)| (ends.map(tick_at), units));
-    let mut cuts = cuts(profile, clock, breakpoints);
-    cuts.extend(zones.iter().chain(behind.as_ref().map(|(ends, _)| ends)).flatten());
-    cuts.sort_unstable();
-    cuts.dedup();
-    let mut pieces = pieces(profile, clock, total, &cuts).ok_or(Broken::Range)?;
-    if let Some((ends, units)) = behind {
-        fall_behind(&mut pieces, ends, units, fastest).ok_or(Broken::Slow)?;
+    cuts.extend(zones.iter().flatten());
+    if let Some((ends, _)) = behind {
+        cuts.extend(ends);
     }
-    for [begin, end] in zones {
-        let inside = |piece: &Piece| (begin..end).contains(&piece.first);
-        let (ticks, units) = (
-            end - begin,
-            pieces.iter().filter(|piece| inside(piece)).map(|piece| piece.units).sum(),
-        );
-        pieces.retain(|piece| piece.first == begin || !inside(piece));
-        if let Some(zone) = pieces.iter_mut().find(|piece| piece.first == begin) {
-            *zone = Piece { ticks, units, by_pulse: true, ..*zone };
-        }
+    // They nearly always are in order, and different.
+    if !cuts.is_sorted_by(|a, b| a < b) {
+        cuts.sort_unstable();
+        cuts.dedup();
+    }
+    divide(profile, clock, total, cuts, pieces).ok_or(Broken::Range)?;
+    if let Some((ends, units)) = behind {
+        fall_behind(pieces, ends, units, fastest).ok_or(Broken::Slow)?;
+    }
+    for zone in zones {
+        join(pieces, zone);
     }
     let mut start = 0;
-    for piece in &mut pieces {
+    for piece in pieces {
         piece.start = start;
         start += piece.units;
     }
-    Ok(pieces)
+    Ok(())
+}
+
+/// Makes one piece, which is written pulse by pulse, of all between two ticks.
+fn join(pieces: &mut Vec<Piece>, [begin, end]: [u64; 2]) {
+    let inside = |piece: &Piece| (begin..end).contains(&piece.first);
+    let units = pieces.iter().filter(|piece| inside(piece)).map(|piece| piece.units).sum();
+    pieces.retain(|piece| piece.first == begin || !inside(piece));
+    if let Some(zone) = pieces.iter_mut().find(|piece| piece.first == begin) {
+        *zone = Piece { ticks: end - begin, units, by_pulse: true, ..*zone };
+    }
 }
 
 /// Keeps the axis behind between the two ticks: takes units from a piece before the first tick, and
@@ -103,23 +124,32 @@ fn fall_behind(
     (room(late) >= 0).then_some(())
 }
 
-/// The pieces between the cuts, which travel `total` units together. Their `start` is not yet set.
-fn pieces<F: Real>(
+/// Sets the pieces between the cuts, which travel `total` units together. Their `start` is not yet
+/// set. Returns `None` if a float is out of range.
+fn divide<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     total: i128,
     cuts: &[u64],
-) -> Option<Vec<Piece>> {
-    let mut pieces = Vec::with_capacity(cuts.len());
+    pieces: &mut Vec<Piece>,
+) -> Option<()> {
+    pieces.clear();
+    let (mut left, mut greatest) = (total, 0);
+    let mut begin = clock.at(*cuts.first()?);
     for ends in cuts.windows(2) {
         let (first, ticks) = (ends[0], ends[1] - ends[0]);
-        let units = distance(profile, clock, first, ticks)?;
+        let end = clock.at(ends[1]);
+        let units = distance_between(profile, clock, (first, ticks), [begin, end])?;
+        if pieces.get(greatest).is_none_or(|piece: &Piece| piece.units <= units) {
+            greatest = pieces.len();
+        }
         pieces.push(Piece { first, ticks, start: 0, units, by_pulse: false });
+        left -= units;
+        begin = end;
     }
-    let sum: i128 = pieces.iter().map(|piece| piece.units).sum();
-    let greatest = pieces.iter_mut().max_by_key(|piece| piece.units)?;
-    greatest.units += total - sum;
-    (greatest.units >= 0).then_some(pieces)
+    let greatest = pieces.get_mut(greatest)?;
+    greatest.units += left;
+    (greatest.units >= 0).then_some(())
 }
 
 /// Distance over whole ticks, in units. It is computed from a mean speed and not from the
@@ -130,50 +160,65 @@ pub(crate) fn distance<F: Real>(
     first: u64,
     ticks: u64,
 ) -> Option<i128> {
-    let end = first + ticks;
-    let mean = profile.mean_speed(clock.at(first), clock.at(end));
-    let used = if end == clock.ticks { float::<F>(ticks - 1) + clock.last } else { float(ticks) };
+    let ends = [first, first + ticks].map(|tick| clock.at(tick));
+    distance_between(profile, clock, (first, ticks), ends)
+}
+
+/// [`distance`], where the times of both ends are known, seconds.
+fn distance_between<F: Real>(
+    profile: &dyn Profile<F>,
+    clock: &Clock<F>,
+    (first, ticks): (u64, u64),
+    [begin, end]: [F; 2],
+) -> Option<i128> {
+    let mean = profile.mean_speed(begin, end);
+    let used = if first + ticks == clock.ticks {
+        float::<F>(ticks - 1) + clock.last
+    } else {
+        float(ticks)
+    };
     Some(units::nearest(mean * (used * clock.tick))?.max(0))
 }
 
-/// The ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
-fn cuts<F: Real>(
+/// Adds the ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
+fn cut<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     breakpoints: Breakpoints<F>,
-) -> Vec<u64> {
-    let mut cuts = vec![0, clock.ticks];
-    // A fitted move that comes to rest may do so up to a tick later.
-    let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
-    if clock.last < F::one() && !rests {
-        cuts.push(clock.ticks - 1);
-    }
+    cuts: &mut Vec<u64>,
+) {
+    cuts.push(0);
     for &breakpoint in profile.breakpoints() {
         let exact = breakpoint / clock.tick;
-        let nearest = exact.round();
+        let Some(whole) = exact.to_u64() else { continue };
+        let rest = exact - float(whole);
+        let nearest = whole + u64::from(rest + rest >= F::one());
         // This close to a boundary, the difference is float rounding or too small to move an edge.
         let noise = F::epsilon() * float(4) * exact + F::from(1e-9).unwrap_or_else(F::epsilon);
-        let off = (exact - nearest).abs();
+        let off = (exact - float(nearest)).abs();
         let rounded = match breakpoints {
             Breakpoints::Kept => false,
             Breakpoints::Rounded(most) => {
                 // A cruise that takes over this much of a ramp, or of a rest, begins with the wrong
                 // speed.
-                let [here, there] =
-                    [breakpoint, nearest * clock.tick].map(|t| profile.speed(t.min(clock.seconds)));
+                let [here, there] = [breakpoint, float::<F>(nearest) * clock.tick]
+                    .map(|t| profile.speed(t.min(clock.seconds)));
                 // A breakpoint at either end of the move is not rounded: without its ramp the move
                 // would start at its top speed.
-                let inside = nearest > F::zero() && nearest < float(clock.ticks);
+                let inside = 0 < nearest && nearest < clock.ticks;
                 inside && off * (here - there).abs() <= most * here
             }
         };
-        let on_boundary = rounded || off <= noise;
-        let before = if on_boundary { nearest } else { exact.floor() };
-        let Some(before) = before.to_u64() else { continue };
-        cuts.push(before.min(clock.ticks));
-        if !on_boundary {
-            cuts.push((before + 1).min(clock.ticks));
+        if rounded || off <= noise {
+            cuts.push(nearest.min(clock.ticks));
+        } else {
+            cuts.extend([whole, whole + 1].map(|tick| tick.min(clock.ticks)));
         }
     }
-    cuts
+    // A fitted move that comes to rest may do so up to a tick later.
+    let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
+    if clock.last < F::one() && !rests {
+        cuts.push(clock.ticks - 1);
+    }
+    cuts.push(clock.ticks);
 }

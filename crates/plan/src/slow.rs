@@ -39,6 +39,8 @@ pub(crate) struct Pulses<'a, F> {
     pub phases: u32,
     /// Units that the rest before the motion has already travelled.
     pub borrowed: i128,
+    /// Times at which the first and the last pulse are due, seconds.
+    times: [F; 2],
 }
 
 /// The special treatment that a slow move needs; both fields are empty for an ordinary move.
@@ -62,7 +64,26 @@ pub(crate) fn least_speed(timebase: &Timebase) -> f64 {
     f64::from(LEAST * timebase.phases()) * 2_f64.powi(-32) / timebase.tick_seconds()
 }
 
-impl<F: Real> Pulses<'_, F> {
+impl<'a, F: Real> Pulses<'a, F> {
+    /// The pulses of a move of `steps` steps, which are not 0.
+    pub fn new(
+        profile: &'a dyn Profile<F>,
+        clock: &Clock<F>,
+        steps: i64,
+        (timebase, phase): (&Timebase, StartPhase),
+        borrowed: i128,
+    ) -> Self {
+        let (backward, count) = (steps < 0, steps.unsigned_abs());
+        let times = [1, count].map(|k| profile.crossing(place(phase, k, backward)));
+        let phases = timebase.phases();
+        Self { profile, clock: *clock, phase, backward, count, phases, borrowed, times }
+    }
+
+    /// The ticks in which the profile comes to the first and to the last pulse.
+    pub fn ticks(&self) -> [u64; 2] {
+        self.times.map(|time| (time / self.clock.tick).to_u64().unwrap_or(0))
+    }
+
     /// Determines the special treatment that these pulses need.
     ///
     /// # Errors
@@ -115,7 +136,7 @@ impl<F: Real> Pulses<'_, F> {
 
     /// The pulses that are due in a part of the move, after `from` and up to `to`, both in 2^-64
     /// step from the start of the move.
-    pub fn due_between(&self, from: i128, to: i128) -> impl Iterator<Item = u64> + use<'_, F> {
+    pub fn due_between(&self, from: i128, to: i128) -> impl Iterator<Item = u64> + use<'_, 'a, F> {
         let first = u64::try_from(from / ONE_STEP).unwrap_or(0).max(1);
         (first..=self.count)
             .skip_while(move |&k| self.due(k) <= from)
@@ -134,14 +155,23 @@ impl<F: Real> Pulses<'_, F> {
     /// The phase in which pulse `k` is due, counted from the start of the move, and the speed there
     /// in units per tick. `None` if the phase is not finite.
     pub fn phase_of(&self, k: u64) -> Option<(i128, i128)> {
-        let t = self.profile.crossing(self.place(k)) / self.clock.tick;
+        let t = self.time(k) / self.clock.tick;
         let phase = (t * float(self.phases.into())).floor().to_i128()?;
         Some((phase, (self.speed(k) * 2_f64.powi(64)) as i128))
     }
 
     /// The position at which pulse `k` is due, steps.
     fn place(&self, k: u64) -> F {
-        F::from(self.phase.pulse_half_steps(k, self.backward) as f64 / 2.0).unwrap_or_else(F::nan)
+        place(self.phase, k, self.backward)
+    }
+
+    /// The time at which pulse `k` is due, seconds.
+    fn time(&self, k: u64) -> F {
+        match k {
+            1 => self.times[0],
+            k if k == self.count => self.times[1],
+            k => self.profile.crossing(self.place(k)),
+        }
     }
 
     /// [`LEAST`] in steps per tick.
@@ -151,8 +181,13 @@ impl<F: Real> Pulses<'_, F> {
 
     /// Speed at pulse `k`, steps per tick.
     fn speed(&self, k: u64) -> f64 {
-        wide(self.profile.speed(self.profile.crossing(self.place(k))) * self.clock.tick)
+        wide(self.profile.speed(self.time(k)) * self.clock.tick)
     }
+}
+
+/// The position at which pulse `k` is due, steps.
+fn place<F: Real>(phase: StartPhase, k: u64, backward: bool) -> F {
+    F::from(phase.pulse_half_steps(k, backward) as f64 / 2.0).unwrap_or_else(F::nan)
 }
 
 fn wide<F: Real>(x: F) -> f64 {

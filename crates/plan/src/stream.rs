@@ -17,6 +17,7 @@ use crate::totals::Totals;
 use carrystep_core::Build;
 use carrystep_files::{InputError, Machine, MoveSource, Moves};
 use carrystep_profile::{Course, Leg, ListEnd, Reader, Source, Timeline};
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -149,14 +150,14 @@ impl Survey {
 struct Planning {
     source: MoveSource,
     moves: Moves,
-    planner: Planner<f64>,
+    planner: Planner<'static, f64>,
 }
 
 impl Planning {
     fn new(source: &MoveSource) -> Result<Self, InputError> {
         let refused = |error: PlanError| InputError::new(error.to_string());
         Ok(Self {
-            planner: Planner::new(&source.machine).map_err(refused)?,
+            planner: Planner::new(Cow::Owned(source.machine.clone())).map_err(refused)?,
             moves: source.moves()?,
             source: source.clone(),
         })

@@ -6,35 +6,46 @@ use carrystep_profile::Real;
 
 /// Converts `steps` to units of 2^-64 step, rounded to the nearest, halves away from zero. Returns
 /// `None` if the value is not finite or does not fit into an i128.
+#[inline]
 pub fn nearest<F: Real>(steps: F) -> Option<i128> {
     scaled(steps, true)
 }
 
 /// Converts `steps` to units of 2^-64 step, rounded toward zero. Returns `None` if the value is not
 /// finite or does not fit into an i128.
+#[inline]
 pub(crate) fn toward_zero<F: Real>(steps: F) -> Option<i128> {
     scaled(steps, false)
 }
 
+#[inline]
 fn scaled<F: Real>(steps: F, round: bool) -> Option<i128> {
+    // The product by a power of two is exact.
+    let units = steps.to_f64()? * 2_f64.powi(FRACTION_BITS.cast_signed());
+    if units.abs() < 2_f64.powi(62) {
+        let whole = units as i64;
+        let rest = units - whole as f64;
+        let up = i64::from(round && rest >= 0.5) - i64::from(round && rest <= -0.5);
+        return Some((whole + up).into());
+    }
+    if units.abs() < 2_f64.powi(96) {
+        // There is no fraction of a unit, and the exponent of the mantissa is from 10 to 43.
+        let bits = units.abs().to_bits();
+        let mantissa = bits & ((1 << 52) - 1) | 1 << 52;
+        let magnitude = i128::from(mantissa) << ((bits >> 52).saturating_sub(1075));
+        return Some(if units < 0.0 { -magnitude } else { magnitude });
+    }
+    large(steps)
+}
+
+/// Converts a float of 2^96 units or more, if it fits.
+fn large<F: Real>(steps: F) -> Option<i128> {
     if !steps.is_finite() {
         return None;
     }
     let (mantissa, exponent, sign) = steps.integer_decode();
-    let shift = i32::from(exponent) + FRACTION_BITS.cast_signed();
-    let mantissa = i128::from(mantissa);
-    let magnitude = match shift {
-        0..=73 => mantissa << shift,
-        74.. if mantissa == 0 => 0,
-        74.. => return None,
-        ..-64 => 0,
-        _ => {
-            let down = shift.unsigned_abs();
-            let half = if round { 1 << (down - 1) } else { 0 };
-            (mantissa + half) >> down
-        }
-    };
-    Some(i128::from(sign) * magnitude)
+    let shift = u32::try_from(i32::from(exponent) + FRACTION_BITS.cast_signed()).ok()?;
+    (shift <= 73).then(|| i128::from(sign) * (i128::from(mantissa) << shift))
 }
 
 #[cfg(test)]

@@ -3,12 +3,35 @@
 //! A new kind has one row in each function here; the planner and the command `profile` call nothing
 //! else.
 
+use crate::logistic::{logistic_after, logistic_fastest};
+use crate::scurve_moves::{scurve_after, scurve_fastest};
+use crate::sine::{sine_after, sine_fastest};
+pub use crate::timed::Fastest;
 use crate::{Curve, LimitRefusal, Limits, Real, rule};
 use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
 /// A curve that the caller shares.
 pub type SharedCurve<F = f64> = Arc<dyn Curve<F>>;
+
+/// The fastest move of `distance` steps that keeps to the limits.
+///
+/// # Errors
+/// A [`LimitRefusal`] names the limit that no time can keep.
+pub fn fastest<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    limits: &Limits<F>,
+) -> Result<Fastest<F>, LimitRefusal> {
+    Ok(match kind {
+        ProfileKind::Ranade => Fastest::taking(rule::ranade_least_time(distance, limits)),
+        ProfileKind::Trapezoid => Fastest::taking(rule::trapezoid_least_time(distance, limits)),
+        ProfileKind::Scurve => scurve_fastest(distance, limits.start_speed, limits),
+        ProfileKind::Logistic => logistic_fastest(distance, limits),
+        ProfileKind::Sine => sine_fastest(distance, limits),
+        ProfileKind::Constant => Fastest::taking(rule::constant_least_time(distance, limits)?),
+    })
+}
 
 /// The least time, in seconds, in which a move of `distance` steps keeps to the limits.
 ///
@@ -19,14 +42,7 @@ pub fn least_time<F: Real>(
     distance: F,
     limits: &Limits<F>,
 ) -> Result<F, LimitRefusal> {
-    match kind {
-        ProfileKind::Ranade => Ok(rule::ranade_least_time(distance, limits)),
-        ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(distance, limits)),
-        ProfileKind::Scurve => Ok(rule::scurve_least_time(distance, limits)),
-        ProfileKind::Logistic => Ok(rule::logistic_least_time(distance, limits)),
-        ProfileKind::Sine => Ok(rule::sine_least_time(distance, limits)),
-        ProfileKind::Constant => rule::constant_least_time(distance, limits),
-    }
+    fastest(kind, distance, limits).map(|fastest| fastest.time)
 }
 
 /// A whole move of `distance` steps that takes `time` seconds.
@@ -39,12 +55,29 @@ pub fn whole<F: Real>(
     time: F,
     limits: &Limits<F>,
 ) -> Result<SharedCurve<F>, LimitRefusal> {
+    after(kind, distance, time, limits, &fastest(kind, distance, limits)?)
+}
+
+/// [`whole`], where the [`fastest`] move of the same kind, distance and limits is known, so that it
+/// is not sought again.
+///
+/// # Errors
+/// A [`LimitRefusal`] names the limit that fails, and the least time.
+pub fn after<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+    fastest: &Fastest<F>,
+) -> Result<SharedCurve<F>, LimitRefusal> {
     match kind {
         ProfileKind::Ranade => rule::ranade(distance, time, limits),
         ProfileKind::Trapezoid => rule::trapezoid(distance, time, limits).map(shared),
-        ProfileKind::Scurve => rule::scurve(distance, time, limits).map(shared),
-        ProfileKind::Logistic => rule::logistic(distance, time, limits).map(shared),
-        ProfileKind::Sine => rule::sine(distance, time, limits).map(shared),
+        ProfileKind::Scurve => {
+            scurve_after(distance, time, limits.start_speed, limits, fastest).map(shared)
+        }
+        ProfileKind::Logistic => logistic_after(distance, time, limits, fastest).map(shared),
+        ProfileKind::Sine => sine_after(distance, time, limits, fastest).map(shared),
         ProfileKind::Constant => rule::constant(distance, time, limits).map(shared),
     }
 }

@@ -26,6 +26,7 @@ mod ranade;
 pub mod reference;
 mod refusal;
 mod scurve;
+mod scurve_moves;
 mod shaped;
 mod sine;
 mod solve;
@@ -41,7 +42,7 @@ pub use growing::{ListEnd, Reader, Source};
 pub use line::Course;
 pub use logistic::{LogisticRamp, SHORTFALL};
 pub use own::{OwnRamp, Shape};
-pub use profile::{Profile, Real, SharedProfile};
+pub use profile::{Profile, Rates, Real, SharedProfile};
 pub use ramp::Ramp;
 pub use ramped::RampedMove;
 pub use refusal::{Limit, LimitRefusal, Limits};
@@ -57,7 +58,7 @@ pub mod rule {
     pub use crate::constant::{constant, constant_least_time};
     pub use crate::logistic::{logistic, logistic_least_time, logistic_ramp, logistic_ramp_about};
     pub use crate::ranade::{ranade, ranade_least_time};
-    pub use crate::scurve::{scurve, scurve_least_time, scurve_to, scurve_to_least_time};
+    pub use crate::scurve_moves::{scurve, scurve_least_time, scurve_to, scurve_to_least_time};
     pub use crate::sine::{sine, sine_least_time, sine_ramp};
     pub use crate::trapezoid::{trapezoid, trapezoid_least_time};
 }

@@ -47,6 +47,11 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     /// out.
     fn jerk(&self, t: F) -> F;
 
+    /// [`Self::speed`], [`Self::acceleration`] and [`Self::jerk`] at one time, in one call.
+    fn rates(&self, t: F) -> Rates<F> {
+        Rates { speed: self.speed(t), acceleration: self.acceleration(t), jerk: self.jerk(t) }
+    }
+
     /// Time at which the axis passes position `x` (0..=distance, steps), seconds.
     ///
     /// The result is well conditioned near rest at both ends of the move.
@@ -81,17 +86,41 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
             return self.speed(from);
         }
         let two = real::<F>(2.0);
-        let inner = self.breakpoints().iter().copied().filter(|&b| b > from && b < to);
-        let mut left = from;
-        let mut sum = F::zero();
-        for right in inner.chain(std::iter::once(to)) {
+        let gauss = |left: F, right: F| {
             let (middle, half) = (left + (right - left) / two, (right - left) / two);
             let offset = half / real::<F>(3.0).sqrt();
-            let mean = (self.speed(middle - offset) + self.speed(middle + offset)) / two;
-            sum = sum + mean * ((right - left) / whole);
+            (self.speed(middle - offset) + self.speed(middle + offset)) / two
+        };
+        let mut left = from;
+        let mut sum = F::zero();
+        for &right in self.breakpoints().iter().filter(|&&b| b > from && b < to) {
+            sum = sum + gauss(left, right) * ((right - left) / whole);
             left = right;
         }
+        if left == from {
+            // A single piece is the whole, and its part is 1.
+            return gauss(from, to);
+        }
+        sum = sum + gauss(left, to) * ((to - left) / whole);
         sum
+    }
+}
+
+/// How fast an axis moves at one time, and how fast that changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rates<F> {
+    /// Speed, steps/s.
+    pub speed: F,
+    /// Acceleration, steps/s^2.
+    pub acceleration: F,
+    /// Jerk, steps/s^3.
+    pub jerk: F,
+}
+
+impl<F: Real> Rates<F> {
+    /// Whether the speed is constant.
+    pub fn are_level(&self) -> bool {
+        self.acceleration.is_zero() && self.jerk.is_zero()
     }
 }
 

@@ -30,7 +30,8 @@ impl<F: Real, R: Curve<F>> RampedMove<F, R> {
         let rising = up.breakpoints().iter().copied().chain([up.duration()]);
         let falling = down.breakpoints().iter().rev().map(|&b| duration - b);
         let all = rising.chain([duration - down.duration()]).chain(falling);
-        let mut breakpoints = Vec::new();
+        let most = up.breakpoints().len() + down.breakpoints().len() + 2;
+        let mut breakpoints = Vec::with_capacity(most);
         for point in all {
             if point > breakpoints.last().copied().unwrap_or(F::zero()) && point < duration {
                 breakpoints.push(point);
@@ -180,6 +181,14 @@ impl<F: Real, R: Curve<F>> Profile<F> for RampedMove<F, R> {
         }
         let (up, down) = (self.up.duration(), self.down.duration());
         let cruise_end = (self.duration - down).max(up);
+        // Most spans are of one part of the move.
+        if to <= up {
+            return self.up.mean_speed(from, to);
+        } else if from >= cruise_end {
+            return self.down.mean_speed((self.duration - to).max(zero), self.duration - from);
+        } else if from >= up && to <= cruise_end {
+            return self.top;
+        }
         let mut sum = zero;
         if from < up {
             let end = to.min(up);

@@ -1,4 +1,4 @@
-//! The seven-segment S-curve, with limits on speed, acceleration and jerk.
+//! The ramp of the seven-segment S-curve, with limits on speed, acceleration and jerk.
 //!
 //! Each ramp has three segments (jerk up, constant acceleration, jerk down); the cruise is the
 //! seventh. The formulas are those of L. Biagiotti and C. Melchiorri, "Trajectory Planning for
@@ -7,9 +7,6 @@
 use crate::bad_ramp::{BadRamp, in_range, wide};
 use crate::curve::Curve;
 use crate::profile::{Profile, Real, real};
-use crate::ramped::RampedMove;
-use crate::refusal::{LimitRefusal, Limits};
-use crate::timed;
 
 /// One acceleration ramp of at most three segments.
 ///
@@ -267,58 +264,5 @@ impl<F: Real> Curve<F> for ScurveRamp<F> {
     /// 0, unless the jerk is not limited.
     fn acceleration_jump(&self) -> F {
         if self.rise > F::zero() { F::zero() } else { self.peak }
-    }
-}
-
-/// The seven-segment move of `distance` steps (over 0) in `time` seconds. The motor jumps from rest
-/// to the start speed and back.
-///
-/// In a time above the least time the ramps stay as steep and end at a lower top speed. If that is
-/// below the start speed, the whole move has constant speed, as in Ranade's rule.
-///
-/// # Errors
-/// A [`LimitRefusal`] names the limit that fails and the least time.
-pub fn scurve<F: Real>(
-    distance: F,
-    time: F,
-    limits: &Limits<F>,
-) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
-    scurve_to(distance, time, limits.start_speed, limits)
-}
-
-/// Least time of [`scurve`], seconds.
-pub fn scurve_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
-    scurve_to_least_time(distance, limits.start_speed, limits)
-}
-
-/// [`scurve`] with another jump at the end: from at most `end_speed` steps/s to rest.
-///
-/// # Errors
-/// A [`LimitRefusal`] names the limit that fails and the least time.
-pub fn scurve_to<F: Real>(
-    distance: F,
-    time: F,
-    end_speed: F,
-    limits: &Limits<F>,
-) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps(end_speed))
-}
-
-/// Least time of [`scurve_to`], seconds.
-pub fn scurve_to_least_time<F: Real>(distance: F, end_speed: F, limits: &Limits<F>) -> F {
-    timed::least_time(distance, limits, &ramps(end_speed))
-}
-
-fn ramps<F: Real>(end_speed: F) -> impl Fn(&Limits<F>, F) -> (ScurveRamp<F>, ScurveRamp<F>) {
-    move |limits, top| {
-        let from = |jump: F| {
-            ScurveRamp::steepest(
-                jump.max(F::zero()).min(top),
-                top,
-                limits.acceleration,
-                limits.jerk,
-            )
-        };
-        (from(limits.start_speed), from(end_speed))
     }
 }

@@ -54,6 +54,39 @@ pub(crate) fn largest<F: Real>(low: F, high: F, most: F, value: impl Fn(F) -> F)
     low
 }
 
+/// [`largest`] for a value that floats compute without a fall, where a guess `near` the result is
+/// known: the search goes away from it in steps that become twice as long each time, and bisects
+/// what they enclose. A guess that is not inside the bracket decides nothing.
+pub(crate) fn largest_near<F: Real>(
+    near: F,
+    (low, high): (F, F),
+    most: F,
+    value: impl Fn(F) -> F,
+) -> F {
+    if !(near > low && near < high) {
+        return largest(low, high, most, value);
+    }
+    if high.is_finite() && value(high) <= most {
+        return high;
+    }
+    let (mut low, mut high) = (low, high);
+    let (mut x, mut step) = (near, near * F::epsilon());
+    while x > low && x < high {
+        if value(x) <= most {
+            low = x;
+            x = x + step;
+        } else {
+            high = x;
+            x = x - step;
+        }
+        step = step + step;
+    }
+    while let Some(middle) = between(low, high) {
+        if value(middle) <= most { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// The smallest value from `low` on at which `holds`. Once the condition holds, it must hold for
 /// all greater values. Returns infinity if it never holds.
 pub(crate) fn smallest<F: Real>(low: F, holds: impl Fn(F) -> bool) -> F {
@@ -102,6 +135,21 @@ mod tests {
                 assert!(5 * taken < turns.get(), "{power} {most}: {taken} of {}", turns.get());
             }
         }
+    }
+
+    #[test]
+    fn any_guess_leads_to_the_same_float() {
+        for power in [1.0, 1.5, 2.0, 3.0] {
+            for most in [1e-9, 1e-3, 0.3, 1.0, 7.0, 123_456.789, 1e300] {
+                let value = |x: f64| x.powf(power);
+                let found = largest(0.0, 1e6, most, value);
+                for off in [0.0, 1e-300, 0.5, 1.0 - 1e-16, 1.0, 1.0 + 1e-15, 1.001, f64::NAN] {
+                    let near = largest_near(found * off, (0.0, 1e6), most, value);
+                    assert_eq!(near.to_bits(), found.to_bits(), "{power} {most} {off}");
+                }
+            }
+        }
+        assert_eq!(largest_near(7.0, (0.0, f64::INFINITY), 1e9, |x| x), 1e9);
     }
 
     #[test]

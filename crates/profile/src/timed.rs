@@ -11,7 +11,7 @@ use crate::curve::Curve;
 use crate::profile::Real;
 use crate::ramped::{RampedMove, time_with_cruise};
 use crate::refusal::{Limit, LimitRefusal, Limits};
-use crate::solve::{largest, smallest};
+use crate::solve::{largest_near, smallest};
 
 /// The ramps of one curve: returns the ramps up and down for the limits and the common top speed in
 /// steps/s.
@@ -19,17 +19,38 @@ pub(crate) trait Ramps<F: Real, R: Curve<F>>: Fn(&Limits<F>, F) -> (R, R) {}
 
 impl<F: Real, R: Curve<F>, S: Fn(&Limits<F>, F) -> (R, R)> Ramps<F, R> for S {}
 
-/// The top speed of the fastest move, steps/s: the speed limit, or the speed at which the two ramps
-/// meet.
-fn fastest_top<F: Real, R: Curve<F>>(
+/// The fastest move of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fastest<F> {
+    /// Its time, the least, in seconds.
+    pub time: F,
+    /// Its top speed in steps/s: the speed limit, or the speed at which the two ramps meet. It is
+    /// not a number for a kind of profile whose rule does not need it.
+    pub(crate) top: F,
+}
+
+impl<F: Real> Fastest<F> {
+    /// The fastest move of a kind of profile whose rule needs its time only.
+    pub(crate) fn taking(time: F) -> Self {
+        Self { time, top: F::nan() }
+    }
+}
+
+/// The fastest move. Its top speed is found soon if it is `near` a guess in steps/s; without one,
+/// that is not a number.
+pub(crate) fn fastest<F: Real, R: Curve<F>>(
     distance: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
-) -> F {
-    largest(F::zero(), limits.speed, distance, |top| {
+    near: F,
+) -> Fastest<F> {
+    let distance = distance.max(F::zero());
+    let top = largest_near(near, (F::zero(), limits.speed), distance, |top| {
         let (up, down) = ramps(limits, top);
         up.distance() + down.distance()
-    })
+    });
+    let time = if distance.is_zero() { distance } else { time_at(distance, top, limits, ramps) };
+    Fastest { time, top }
 }
 
 fn time_at<F: Real, R: Curve<F>>(
@@ -42,25 +63,6 @@ fn time_at<F: Real, R: Curve<F>>(
     time_with_cruise(distance, top, &up, &down)
 }
 
-/// Least time, seconds.
-pub(crate) fn least_time<F: Real, R: Curve<F>>(
-    distance: F,
-    limits: &Limits<F>,
-    ramps: &impl Ramps<F, R>,
-) -> F {
-    least_time_at(distance, fastest_top(distance, limits, ramps), limits, ramps)
-}
-
-/// Least time of a move whose greatest top speed is known, seconds.
-fn least_time_at<F: Real, R: Curve<F>>(
-    distance: F,
-    fastest: F,
-    limits: &Limits<F>,
-    ramps: &impl Ramps<F, R>,
-) -> F {
-    if distance <= F::zero() { F::zero() } else { time_at(distance, fastest, limits, ramps) }
-}
-
 /// Returns the move that takes exactly `time` seconds. Its top speed is the greatest one at which
 /// the move takes that long.
 ///
@@ -71,18 +73,19 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     time: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
+    fastest: &Fastest<F>,
+    near: F,
 ) -> Result<RampedMove<F, R>, LimitRefusal> {
     let distance = distance.max(F::zero());
-    let fastest = fastest_top(distance, limits, ramps);
-    let least = least_time_at(distance, fastest, limits, ramps);
+    let &Fastest { time: least, top: fastest } = fastest;
     if time.is_nan() || limits.too_short(time, least) {
         return Err(refusal(distance, time, least, limits, ramps));
     }
     let mean = distance / time;
     // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
     // speed.
-    let top =
-        largest(mean.min(fastest), fastest, -time, |top| -time_at(distance, top, limits, ramps));
+    let bracket = (mean.min(fastest), fastest);
+    let top = largest_near(near, bracket, -time, |top| -time_at(distance, top, limits, ramps));
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }
@@ -96,7 +99,7 @@ fn refusal<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
 ) -> LimitRefusal {
-    let does = |limits: &Limits<F>| least_time(distance, limits, ramps) <= time;
+    let does = |limits: &Limits<F>| fastest(distance, limits, ramps, F::nan()).time <= time;
     let infinity = F::infinity();
     let free = Limits { speed: infinity, jerk: infinity, ..*limits };
     if !does(&free) {

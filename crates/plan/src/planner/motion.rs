@@ -9,10 +9,12 @@ use crate::corridor::{Corridor, JOINT};
 use crate::cubic;
 use crate::demand::Clock;
 use crate::error::Broken;
+use crate::exchange::Row;
 use crate::fit::Fitter;
+use crate::fitted::Fitted;
 use crate::run::Writer;
 use crate::search::QUICK;
-use crate::share::{Breakpoints, Piece, share};
+use crate::share::{Breakpoints, Piece, Room, share};
 use crate::slow::Pulses;
 use carrystep_core::Segment;
 use carrystep_core::fixed::ONE_STEP;
@@ -26,92 +28,111 @@ const LEAST_RATIO: f64 = 64.0;
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
 const ROUNDED: f64 = 0.01;
 
-impl<F: Real> Planner<F> {
-    /// Returns the segments of the motion alone. The rest before it has already travelled
-    /// `borrowed` units (0 or 1) of the distance.
+impl<F: Real> Planner<'_, F> {
+    /// Returns the segments of the motion alone, in which the axis gives these pulses.
     pub(super) fn motion(
         &self,
         place: Place<'_>,
-        steps: i64,
-        profile: &dyn Profile<F>,
-        clock: &Clock<F>,
-        borrowed: i128,
+        pulses: &Pulses<'_, F>,
+        room: &mut Room,
     ) -> Result<Vec<Segment>, Broken> {
-        let total = i128::from(steps.unsigned_abs()) * ONE_STEP - borrowed;
-        let Move { profile: kind, fit_ns, .. } = *place.asked.moved;
+        let &Pulses { profile, clock, phase, backward, borrowed, .. } = pulses;
+        let clock = &clock;
+        let total = i128::from(pulses.count) * ONE_STEP - borrowed;
         let limits = self.limits(place, profile);
-        let (phase, backward) = (self.build.phase, steps < 0);
+        let mut fitting = Fitting::new(place.asked.moved, clock, self.build.timebase.tick_ns());
+        let breakpoints = fitting.as_ref().map_or(Breakpoints::Kept, |fitting| {
+            Breakpoints::Rounded(F::from(fitting.tolerance * ROUNDED).unwrap_or_else(F::zero))
+        });
+        share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest(), room)?;
+        let pieces = &room.pieces[..];
         let mut writer = Writer {
             profile,
             clock: *clock,
             limits: &limits,
             phase,
             backward,
-            segments: Vec::new(),
+            // Where a piece lands, its remainder takes a segment of its own, and a rest may take
+            // two.
+            segments: Vec::with_capacity(2 * pieces.len() + 2),
             ahead: 0,
         };
-        let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
-        let breakpoints = if kind.is_fitted() {
-            Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
-        } else {
-            Breakpoints::Kept
-        };
-        let pulses = Pulses {
-            profile,
-            clock: *clock,
-            phase,
-            backward,
-            count: steps.unsigned_abs(),
-            phases: self.build.timebase.phases(),
-            borrowed,
-        };
-        let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
-        let (mut rows, mut risen) = (Vec::new(), Vec::new());
-        // Along a line, the distances of the ramps depend on its direction. Hardly any two lines
-        // share a kept fit, and making one takes longer than a fit of this move alone.
-        let Move { path, steps: all, .. } = place.asked.moved;
-        let keeps = *path == PathKind::Free || all.iter().filter(|&&steps| steps != 0).count() < 2;
         for (index, &piece) in pieces.iter().enumerate() {
-            let last = index + 1 == pieces.len();
             // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
             // that are curved and belong to a fitted kind of profile are fitted. The rest are
             // exact.
-            if piece.by_pulse {
-                writer.placed(piece, &pulses)?;
-            } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
-                let pulses = pulses.count;
-                let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
-                let [begin, end] = [piece.first, piece.first + piece.ticks]
-                    .map(|tick| profile.speed(clock.at(tick)));
-                let rises = begin <= end;
-                let bend = cubic::steps(limits.acceleration);
-                let corridor = Corridor {
-                    profile,
-                    clock: *clock,
-                    phase,
-                    backward,
-                    pulses,
-                    piece,
-                    rises,
-                    tolerance,
-                    bend,
-                    joint: JOINT,
-                    longer: 1.0,
-                };
-                let held = std::mem::take(&mut rows);
-                let (limits, search) = (&limits, QUICK);
-                let mut fitter = Fitter { corridor, limits, rows: held, search, keeps };
-                let segments = fitter.segments(writer.position(piece), &risen);
-                rows = fitter.rows;
-                writer.fitted(piece, &segments, last)?;
-                if rises {
-                    risen = segments;
+            match &mut fitting {
+                _ if piece.by_pulse => writer.placed(piece, pulses)?,
+                None => writer.piece(piece, true)?,
+                Some(_) if is_straight(profile, clock, piece) => {
+                    writer.piece(piece, must_land(pieces, index))?;
                 }
-            } else {
-                writer.piece(piece, !kind.is_fitted() || must_land(&pieces, index))?;
+                Some(fitting) => {
+                    fitting.write(&mut writer, piece, pulses.count, index + 1 == pieces.len())?;
+                }
             }
         }
         Ok(writer.segments)
+    }
+}
+
+/// What the fitted pieces of one axis in one move share.
+struct Fitting {
+    /// The edge tolerance in ticks. In a short piece, [`LEAST_RATIO`] reduces it further.
+    tolerance: f64,
+    keeps: bool,
+    rows: Vec<Row>,
+    risen: Vec<Fitted>,
+}
+
+impl Fitting {
+    /// `None` for a profile that is followed exactly.
+    fn new<F: Real>(moved: &Move, clock: &Clock<F>, tick_ns: u64) -> Option<Self> {
+        moved.profile.is_fitted().then(|| Self {
+            tolerance: tolerance(moved.fit_ns, clock, tick_ns),
+            // Along a line, the distances of the ramps depend on its direction. Hardly any two
+            // lines share a kept fit, and making one takes longer than a fit of this move alone.
+            keeps: moved.path == PathKind::Free
+                || moved.steps.iter().filter(|&&steps| steps != 0).count() < 2,
+            rows: Vec::new(),
+            risen: Vec::new(),
+        })
+    }
+
+    /// Fits a piece of a move with so many pulses, and writes its segments.
+    fn write<F: Real>(
+        &mut self,
+        writer: &mut Writer<'_, F>,
+        piece: Piece,
+        pulses: u64,
+        last: bool,
+    ) -> Result<(), Broken> {
+        let Writer { profile, clock, limits, phase, backward, .. } = *writer;
+        let [begin, end] =
+            [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
+        let rises = begin <= end;
+        let corridor = Corridor {
+            profile,
+            clock,
+            phase,
+            backward,
+            pulses,
+            piece,
+            rises,
+            tolerance: self.tolerance.min(piece.ticks as f64 / LEAST_RATIO),
+            bend: cubic::steps(limits.acceleration),
+            joint: JOINT,
+            longer: 1.0,
+        };
+        let rows = std::mem::take(&mut self.rows);
+        let mut fitter = Fitter { corridor, limits, rows, search: QUICK, keeps: self.keeps };
+        let segments = fitter.segments(writer.position(piece), &self.risen);
+        self.rows = fitter.rows;
+        writer.fitted(piece, &segments, last)?;
+        if rises {
+            self.risen = segments;
+        }
+        Ok(())
     }
 }
 
