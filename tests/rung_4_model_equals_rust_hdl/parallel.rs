@@ -4,12 +4,16 @@
 
 use carrystep_core::StartPhase;
 use carrystep_hdl::AxisSim;
+use carrystep_plan::Plan;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, Edge, engine_vectors};
 use carrystep_tests::{effort, gcode_job, lockstep, moves, programs};
 use proptest::test_runner::{Config, TestRunner};
 
+/// An ordinary run draws the first third of the cases. With its fixed seed it draws the same ones each
+/// time.
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
+    let cases = if effort::repeats_in_full() { cases } else { cases / 3 };
     let build = lockstep::tight_build(phases, phase);
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 200, ..Config::default() });
     let held = runner.run(&programs::program(), |program| {
@@ -44,23 +48,22 @@ fn random_programs_on_three_axes() {
     lockstep::assert_random_programs_equal_model(Level::RustHdl, 3, 4, 60);
 }
 
-#[test]
-fn the_demo() {
-    let plan = moves::demo_at_48_mhz();
+/// Rung 5 compares the whole plan.
+fn planned(plan: &Plan) {
     let program = plan.program();
     let job = Job::new(&plan.build, &program, plan.total_ticks());
-    // Rung 5 compares the whole demo.
     let max_clocks = effort::tenth(job.max_clocks);
     lockstep::assert_equals_model(Level::RustHdl, &Job { max_clocks, ..job });
 }
 
 #[test]
+fn the_demo() {
+    planned(&moves::demo_at_48_mhz());
+}
+
+#[test]
 fn every_profile() {
-    let plan = moves::curves_at_6_mhz();
-    lockstep::assert_equals_model(
-        Level::RustHdl,
-        &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
-    );
+    planned(&moves::curves_at_6_mhz());
 }
 
 #[test]

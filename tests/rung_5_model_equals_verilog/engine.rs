@@ -12,6 +12,7 @@ use carrystep_tests::effort;
 use carrystep_tests::engine_builds::{build, parameter_sets, with_latches};
 use carrystep_tests::engine_programs::run_programs;
 use carrystep_tests::golden::{self, Case, Edge};
+use carrystep_tools::kept;
 use proptest::prelude::*;
 use std::cell::Cell;
 
@@ -253,6 +254,7 @@ fn golden_vectors_in_verilator() {
             }
         }
     }
+    kept::say();
 }
 
 /// The segments that fit into the queues, then the start, then the other segments as the queues

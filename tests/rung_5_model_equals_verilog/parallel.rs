@@ -7,6 +7,7 @@ use carrystep_plan::Plan;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, engine_vectors};
 use carrystep_tests::{axis_bench, effort, gcode_job, lockstep, moves, programs};
+use carrystep_tools::kept;
 use proptest::test_runner::{Config, TestRunner};
 
 fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
@@ -17,6 +18,7 @@ fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
         Ok(())
     });
     held.unwrap_or_else(|error| panic!("{error}"));
+    kept::say();
 }
 
 fn planned(level: Level, plan: &Plan) {
@@ -24,6 +26,7 @@ fn planned(level: Level, plan: &Plan) {
         level,
         &Job::new(&plan.build, &plan.program(), plan.total_ticks()),
     );
+    kept::say();
 }
 
 /// Icarus takes minutes for what Verilator compares in seconds: it runs the first tenth.
@@ -32,6 +35,7 @@ fn planned_in_icarus(plan: &Plan) {
     let job = Job::new(&plan.build, &program, plan.total_ticks());
     let max_clocks = effort::tenth(job.max_clocks);
     lockstep::assert_equals_model(Level::Icarus, &Job { max_clocks, ..job });
+    kept::say();
     if effort::repeats_in_full() {
         effort::figures(&format!("{} ticks in Icarus", plan.total_ticks()));
     }
@@ -123,12 +127,13 @@ fn golden_vectors_in_verilator() {
         let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
         let build = lockstep::quick_build(16, phase);
         let (program, ticks) = moves::side_by_side(&cases);
-        let record = lockstep::record(Level::Verilator, &Job::new(&build, &program, ticks))
-            .expect("Verilator");
+        let job = Job::new(&build, &program, ticks);
+        let record = lockstep::assert_equals_model(Level::Verilator, &job);
         for (axis, case) in cases.iter().enumerate() {
             case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
         }
     }
+    kept::say();
 }
 
 /// Runs the axis alone, because Icarus would take hours for the pins in three million ticks. The

@@ -5,7 +5,7 @@ use crate::stages::{self, Stages};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::{effort, engine_programs};
-use carrystep_tools::ice40;
+use carrystep_tools::{ice40, kept};
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::{Config, TestRunner};
 
@@ -42,6 +42,7 @@ fn assert_same(stages: &Stages, level: Level, most: u64, clocks: u64) -> (u32, u
         }
     }
     effort::say(&format!("three stages in {level}: {run} clocks, {edges} edges, {faults} stops"));
+    kept::say();
     (edges, faults)
 }
 

@@ -8,6 +8,7 @@ use carrystep_simulators::engine::replay::difference_of_mutant;
 use carrystep_tests::mutants::planted::{Planted, plant};
 use carrystep_tests::mutants::stimuli::{self, Engine};
 use carrystep_tests::{effort, jobs};
+use carrystep_tools::kept;
 
 /// The axes of the shipped machine whose drivers are so slow that the steps of a move in one
 /// direction crowd. Where no step is due while another one comes, the bugs of a pulser that are
@@ -65,6 +66,7 @@ fn alive(engine: &Engine, bugs: &[(Planted, String)]) -> Vec<String> {
         effort::say(&format!("{} is caught by {by}", bug.name));
         catcher.is_none().then(|| bug.name.clone())
     });
+    kept::say();
     found.into_iter().flatten().collect()
 }
 

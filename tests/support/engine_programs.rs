@@ -7,6 +7,7 @@ use crate::programs::{self, all};
 use carrystep_core::engine::{MAX_AXES, QUEUE_DEPTHS, SWITCH_ROWS, SeekSource};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
+use carrystep_tools::kept;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
@@ -364,4 +365,5 @@ pub fn run_programs(
         adders => format!("{} axes on {adders} adders: ", build.axes()),
     };
     effort::figures(&format!("{on}{} clocks, no difference", clocks.get()));
+    kept::say();
 }

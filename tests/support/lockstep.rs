@@ -8,12 +8,14 @@ use carrystep_core::{AXES, Build, EngineBuild, PinTiming, Program, StartPhase, T
 use carrystep_plan::Plan;
 use carrystep_simulators::engine::run::{EngineJob, EngineOutcome};
 use carrystep_simulators::{Job, Level, LevelError, Outcome, run};
+use carrystep_tools::kept;
+use carrystep_tools::programs::{ICARUS, VERILATOR};
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
 /// All outputs in each cycle in which any of them changed, and the end of the run. A host can block
 /// itself for ever (with a start that can never happen); then there is no end.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, PartialEq, Hash)]
 pub struct Record {
     /// Cycle and outputs of each change.
     pub changes: Vec<(u64, Outputs)>,
@@ -52,15 +54,32 @@ pub fn difference(expected: &Record, found: &Record) -> Option<String> {
 }
 
 /// Panics at the first clock in which a level differs from the clock-by-clock model or from the
-/// fast model.
-pub fn assert_equals_model(level: Level, job: &Job<'_>) {
-    let found = record(level, job).unwrap_or_else(|error| panic!("{level}: {error}"));
-    for model in [Level::Model, Level::Fast] {
-        let expected = record(model, job).expect("the model");
-        if let Some(difference) = difference(&expected, &found) {
-            panic!("{level} is not {model}: {difference}\n program {:?}", job.program);
+/// fast model. Returns the record, which is that of all of them.
+pub fn assert_equals_model(level: Level, job: &Job<'_>) -> Record {
+    let expected = record(Level::Model, job).expect("the model");
+    for level in [Level::Fast, level] {
+        let found = found_difference(level, job, &expected);
+        if let Some(difference) = found.unwrap_or_else(|error| panic!("{level}: {error}")) {
+            panic!("{level} is not the model: {difference}\n program {:?}", job.program);
         }
     }
+    expected
+}
+
+/// The first difference of a level from a record. An external simulation is not repeated if its
+/// output is known from an earlier run, see [`kept::difference`].
+fn found_difference(
+    level: Level,
+    job: &Job<'_>,
+    expected: &Record,
+) -> Result<Option<String>, LevelError> {
+    let run = || Ok(difference(expected, &record(level, job)?));
+    let tool = match level {
+        Level::Icarus => ICARUS,
+        Level::Verilator => VERILATOR,
+        Level::Fast | Level::Model | Level::RustHdl => return run(),
+    };
+    kept::difference(&tool, job.question(level)?, expected, run)
 }
 
 /// Panics at the first clock in which a level of the parallel core of this many axes differs from
@@ -71,8 +90,7 @@ pub fn assert_random_programs_equal_model(level: Level, axes: usize, phases: u32
     let refused = Cell::new(0);
     let held = runner.run(&programs::program_with_strangers(axes), |program| {
         let job = Job { axes, ..job(&build, &program) };
-        assert_equals_model(level, &job);
-        let model = record(Level::Model, &job).expect("the model");
+        let model = assert_equals_model(level, &job);
         refused.set(
             refused.get()
                 + u32::from(model.changes.iter().any(|(_, outputs)| outputs.faults.protocol)),
@@ -82,6 +100,7 @@ pub fn assert_random_programs_equal_model(level: Level, axes: usize, phases: u32
     held.unwrap_or_else(|error| panic!("{error}"));
     let refused = refused.get();
     assert!(refused > cases / 4, "only {refused} programs broke the protocol");
+    kept::say();
 }
 
 /// All outputs of a planned engine but those that the fast level does not tell (the `ready`s and
@@ -127,6 +146,7 @@ pub fn assert_engine_runs(level: Level, build: &EngineBuild, program: (&Program,
         .map(|pair| u64::from((pair[1].1.step & !pair[0].1.step).count_ones()))
         .sum::<u64>();
     assert_eq!((rising, ended.fault), (steps, None), "{level}: edges, and no stop");
+    kept::say();
 }
 
 /// A job for a random program: time for whatever the generators make.

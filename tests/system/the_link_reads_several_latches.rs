@@ -9,6 +9,7 @@ use carrystep_core::link::registers::{
 };
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_tests::link_bench::{Both, Host, LinkBench};
+use carrystep_tools::kept;
 use carrystep_verilog::{LINK_NAME, link_verilog};
 
 fn build(latches: usize) -> EngineBuild {
@@ -84,6 +85,7 @@ fn model_rust_hdl_and_exported_verilog_of_the_link_are_equal() {
     let planted = link.replacen("chosen <= byte[5:4];", "chosen <= byte[4:3];", 1);
     assert_ne!(planted, link, "the choice is not in the link");
     assert!(vectors.difference(LINK_NAME, &planted).expect("Icarus").is_some());
+    kept::say();
 }
 
 #[test]

@@ -10,6 +10,7 @@ use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_tests::link_bench::{
     Both, Host, LinkBench, Said, on_the_line, owners_read, wide, write,
 };
+use carrystep_tools::kept;
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// The reasons of a refusal, as the page numbers them.
@@ -313,6 +314,7 @@ fn replayed(mut bench: LinkBench, line: LineKind) {
             "{name}: {to} is not seen"
         );
     }
+    kept::say();
 }
 
 #[test]

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub const NEVER_RUN: &str = "It was never run on a real board: none was at hand.\n";
 
 /// What a bitstream takes of its part, the clock that it reaches, and how it is loaded.
-#[derive(JsonSchema, Serialize)]
+#[derive(Default, JsonSchema, Serialize)]
 pub struct Made {
     logic_cells: Use,
     block_rams: Use,
@@ -35,6 +35,14 @@ pub struct Made {
     pub load: String,
 }
 
+#[cfg(test)]
+impl Made {
+    /// A bitstream that this command loads.
+    pub fn loaded_by(load: &str) -> Self {
+        Self { bitstream: Some("a.bin".into()), load: load.to_owned(), ..Self::default() }
+    }
+}
+
 impl fmt::Display for Made {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { logic_cells, block_rams, clock_hz, mhz: reached, icetime_mhz, seed, .. } = self;
@@ -49,7 +57,7 @@ impl fmt::Display for Made {
 }
 
 /// A used amount and the available amount.
-#[derive(JsonSchema, Serialize)]
+#[derive(Default, JsonSchema, Serialize)]
 pub struct Use {
     pub used: u32,
     pub of: Option<u32>,

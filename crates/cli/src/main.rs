@@ -54,11 +54,14 @@ mod wanted;
 mod work;
 
 use arguments::{Arguments, Subcommand};
+use carrystep_tools::kept;
 use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     output::json_is_wanted(std::env::args_os());
+    // Whoever builds a bitstream, or simulates Verilog, expects that the tools are run.
+    kept::never();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return ending::usage(&error),

@@ -162,7 +162,7 @@ pub struct Inputs {
 }
 
 /// Output values of the core in one clock cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Outputs {
     /// The core accepts the offered segment in this cycle.
     pub seg_ready: bool,

@@ -9,7 +9,7 @@ use crate::check::speeds;
 use crate::cubic::wide;
 use crate::demand::Clock;
 use crate::error::Broken;
-use crate::fine::Fine;
+use crate::fine::{Fine, fine};
 use crate::fitted::Fitted;
 use crate::landing;
 use crate::limits::{ExactLimits, MOST_SEGMENTS};
@@ -149,13 +149,14 @@ impl<F: Real> Writer<'_, F> {
         let middle = self.profile.rates((ends_at[0] + ends_at[1]) / (F::one() + F::one()));
         let jerk = jerk.map_or_else(|| self.jerk(&middle), Ok)?;
         let (doubled, lost) = self.acceleration(&middle, jerk)?;
-        let fine = if ticks < 4 {
+        let whole = if ticks < 4 {
             Some(Fine::Carried)
         } else {
-            self.fine(piece, ends_at, &middle, [lost, jerk.lost])
+            let start = (self.phase, self.limits.tolerance);
+            fine(self.profile, piece, ends_at, &middle, [lost, jerk.lost], start)
         };
-        if let Some(fine) = fine {
-            return self.run(piece, doubled, jerk.units, ends || fine == Fine::Landed);
+        if let Some(whole) = whole {
+            return self.run(piece, doubled, jerk.units, ends || whole == Fine::Landed);
         }
         let half = ticks / 2;
         if doubled == 0 && jerk.units == 0 && middle.are_level() {

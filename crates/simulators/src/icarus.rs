@@ -1,10 +1,16 @@
 //! Runs the exported Verilog in Icarus Verilog.
 
-use crate::tool::{self, ICARUS};
+use crate::tool::{self, ICARUS, VVP};
 use crate::{Job, LevelError, Observer, Outcome, external};
 use std::process::Command;
 
 const BENCH: &str = include_str!("../bench/parallel_bench.v");
+
+/// Everything on which the output of a run depends, apart from Icarus.
+pub(crate) fn question(verilog: &str, job: &Job<'_>) -> Vec<String> {
+    let numbers = format!("{} {} {}", job.axes, job.tail, job.max_clocks);
+    vec![BENCH.to_owned(), verilog.to_owned(), external::program_text(job), numbers]
+}
 
 pub(crate) fn run(
     verilog: &str,
@@ -33,7 +39,7 @@ pub(crate) fn run(
             .args(files)
             .current_dir(folder.path()),
     )?;
-    let mut simulation = Command::new("vvp");
+    let mut simulation = Command::new(VVP.name);
     simulation.args(["-n", "bench.vvp", "+program=program.txt"]).current_dir(folder.path());
     simulation.args([format!("+tail={}", job.tail), format!("+max={}", job.max_clocks)]);
     external::observe(&ICARUS, &mut simulation, job, observer)

@@ -29,6 +29,7 @@ use carrystep_core::{AXES, Build};
 use carrystep_tools::programs::Tool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
@@ -111,6 +112,38 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Everything on which the output of this job's Verilog depends in Icarus or Verilator, apart from
+    /// the simulator itself.
+    ///
+    /// # Errors
+    /// [`LevelError::Gateware`] if there is no such Verilog, or if the level does not run Verilog.
+    pub fn question(&self, level: Level) -> Result<Vec<String>, LevelError> {
+        let verilog = self.verilog()?;
+        match level {
+            Level::Icarus => Ok(icarus::question(&verilog, self)),
+            Level::Verilator => Ok(verilator::question(&verilog, self)),
+            Level::Fast | Level::Model | Level::RustHdl => Err(no_verilog(level)),
+        }
+    }
+
+    /// The exported Verilog of the core. Hundreds of jobs may follow each other on the same core, so
+    /// the last one is remembered: exporting it takes longer than some of them.
+    fn verilog(&self) -> Result<Arc<str>, LevelError> {
+        static LAST: Mutex<Option<(Build, usize, Arc<str>)>> = Mutex::new(None);
+        let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((build, axes, text)) = &*last
+            && (build, *axes) == (self.build, self.axes)
+        {
+            return Ok(Arc::clone(text));
+        }
+        let text: Arc<str> =
+            carrystep_verilog::parallel_verilog(self.build, self.axes, "a simulation")
+                .map_err(|e| LevelError::Gateware(e.to_string()))?
+                .into();
+        *last = Some((self.build.clone(), self.axes, Arc::clone(&text)));
+        Ok(text)
+    }
+
     /// The greatest number of cycles, as far as it is known.
     pub(crate) fn limit(&self) -> u64 {
         limit(self.max_clocks, self.more_clocks)
@@ -124,7 +157,7 @@ pub(crate) fn limit(max_clocks: u64, more_clocks: Option<&AtomicU64>) -> u64 {
 }
 
 /// Result of a run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Outcome {
     /// Number of clock cycles run.
     pub clocks: u64,
@@ -200,11 +233,7 @@ pub fn run(
                 .map_err(|e| LevelError::Gateware(e.to_string()))?;
             host::run(&mut core, job, observer)
         }
-        Level::Icarus | Level::Verilator => {
-            let verilog = carrystep_verilog::parallel_verilog(job.build, job.axes, "a simulation")
-                .map_err(|e| LevelError::Gateware(e.to_string()))?;
-            run_verilog(level, &verilog, job, observer)
-        }
+        Level::Icarus | Level::Verilator => run_verilog(level, &job.verilog()?, job, observer),
     }
 }
 
@@ -223,10 +252,12 @@ pub fn run_verilog(
     match level {
         Level::Icarus => icarus::run(verilog, job, observer),
         Level::Verilator => verilator::run(verilog, job, observer),
-        Level::Fast | Level::Model | Level::RustHdl => {
-            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
-        }
+        Level::Fast | Level::Model | Level::RustHdl => Err(no_verilog(level)),
     }
+}
+
+fn no_verilog(level: Level) -> LevelError {
+    LevelError::Gateware(format!("the level {level} does not run Verilog"))
 }
 
 /// The cycle in which a job's first segments are loaded. It is the same at every level, so the

@@ -2,7 +2,7 @@
 //! hold times.
 
 use crate::LevelError;
-use crate::tool::{self, ICARUS};
+use crate::tool::{self, ICARUS, VVP};
 use crate::vectors::Vectors;
 use carrystep_tools::timed::{LATEST, VIOLATION};
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ impl Vectors {
         tool::put(folder.path(), &files)?;
         let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
         tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
-        let mut runs = Command::new("vvp");
+        let mut runs = Command::new(VVP.name);
         runs.args(["-n", "bench.vvp", "+vectors=vectors.txt"])
             .args([format!("+half={half_ps}"), format!("+late={}", LATE_PS.min(half_ps))])
             .arg(format!("+cycles={cycles}"))

@@ -2,7 +2,7 @@
 
 use crate::LevelError;
 use carrystep_tools::programs::Tool;
-pub(crate) use carrystep_tools::programs::{ICARUS, VERILATOR};
+pub(crate) use carrystep_tools::programs::{ICARUS, VERILATOR, VVP};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Mutex;

@@ -2,7 +2,8 @@
 //! Verilog in Icarus.
 
 use crate::LevelError;
-use crate::tool::{self, ICARUS};
+use crate::tool::{self, ICARUS, VVP};
+use carrystep_tools::kept;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::process::Command;
@@ -68,24 +69,27 @@ impl Vectors {
     }
 
     /// Describes the first cycle in which the module of this name in this Verilog has other
-    /// outputs; `None` if there is none.
+    /// outputs; `None` if there is none. A replay whose output is known from an earlier run is not
+    /// repeated, see [`kept::difference`].
     ///
     /// # Errors
     /// [`LevelError`] if Icarus is missing or fails.
     pub fn difference(&self, module: &str, verilog: &str) -> Result<Option<String>, LevelError> {
         tool::find(&ICARUS)?;
-        let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-        let bench = self.bench(BENCH, module);
-        let files = [("module.v", verilog), ("bench.v", &bench), ("vectors.txt", &self.text())];
-        tool::put(folder.path(), &files)?;
-        let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
-        tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
-        let mut runs = Command::new("vvp");
-        let said =
-            runs.args(["-n", "bench.vvp", "+vectors=vectors.txt"]).current_dir(&folder).output();
-        let said = said.map_err(tool::io("cannot start the simulation"))?;
-        let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
-        Ok((said != format!("same {}", self.cycles())).then_some(said))
+        let (bench, vectors) = (self.bench(BENCH, module), self.text());
+        let same = format!("same {}", self.cycles());
+        kept::difference(&ICARUS, (verilog, &bench, &vectors), &same, || {
+            let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+            let files = [("module.v", verilog), ("bench.v", &bench), ("vectors.txt", &vectors)];
+            tool::put(folder.path(), &files)?;
+            let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
+            tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
+            let runs = ["-n", "bench.vvp", "+vectors=vectors.txt"];
+            let said = Command::new(VVP.name).args(runs).current_dir(&folder).output();
+            let said = said.map_err(tool::io("cannot start the simulation"))?;
+            let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
+            Ok((said != same).then_some(said))
+        })
     }
 
     /// The cycles in the format of the benches.

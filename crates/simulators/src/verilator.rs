@@ -27,6 +27,12 @@ const OPTIONS: [&str; 9] = [
     "OPT_FAST=-O2",
 ];
 
+/// Everything on which the output of a run depends, apart from Verilator.
+pub(crate) fn question(verilog: &str, job: &Job<'_>) -> Vec<String> {
+    let compiled = with_parallel(job.axes, |parallel| parallel.hash(verilog));
+    vec![compiled, external::program_text(job), format!("{} {}", job.tail, job.max_clocks)]
+}
+
 pub(crate) fn run(
     verilog: &str,
     job: &Job<'_>,
@@ -34,15 +40,20 @@ pub(crate) fn run(
 ) -> Result<Outcome, LevelError> {
     let program_file =
         tempfile::NamedTempFile::new().map_err(tool::io("cannot make a temporary file"))?;
-    let top = carrystep_verilog::parallel_name(job.axes);
-    let axes = format!("-DAXES={}", job.axes);
-    let options = ["--prefix", "Vparallel", "-CFLAGS", &axes];
-    let parallel = Simulation { name: "parallel", top: &top, bench: BENCH, options: &options };
-    let mut simulation = Command::new(parallel.compiled(verilog)?);
+    let compiled = with_parallel(job.axes, |parallel| parallel.compiled(verilog))?;
     std::fs::write(&program_file, external::program_text(job))
         .map_err(tool::io("cannot write the program"))?;
+    let mut simulation = Command::new(compiled);
     simulation.arg(program_file.path()).args([job.tail.to_string(), job.max_clocks.to_string()]);
     external::observe(&VERILATOR, &mut simulation, job, observer)
+}
+
+/// What a compilation of the parallel core of this many axes gives.
+fn with_parallel<T>(axes: usize, asked: impl FnOnce(&Simulation<'_>) -> T) -> T {
+    let top = carrystep_verilog::parallel_name(axes);
+    let axes = format!("-DAXES={axes}");
+    let options = ["--prefix", "Vparallel", "-CFLAGS", &axes];
+    asked(&Simulation { name: "parallel", top: &top, bench: BENCH, options: &options })
 }
 
 /// Serialises compilations: two tests of a process may need the same simulation.
@@ -62,6 +73,12 @@ pub(crate) struct Simulation<'a> {
 }
 
 impl Simulation<'_> {
+    /// The hash of everything that the simulation of this Verilog is made from.
+    pub fn hash(&self, verilog: &str) -> String {
+        let of = [verilog, self.bench, self.top, env!("CARGO_PKG_VERSION")].into_iter();
+        hash(of.chain(self.options.iter().copied()).chain(OPTIONS))
+    }
+
     /// The compiled simulation of this Verilog, from the cache or newly compiled.
     ///
     /// # Errors
@@ -70,9 +87,7 @@ impl Simulation<'_> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
         let cache = cache::folder()?;
-        let of = [verilog, bench, top, env!("CARGO_PKG_VERSION")].into_iter();
-        let hash = hash(of.chain(options.iter().copied()).chain(OPTIONS));
-        let binary = cache.join(format!("{name}_{hash}"));
+        let binary = cache.join(format!("{name}_{}", self.hash(verilog)));
         let _one_at_a_time = COMPILER.lock();
         if !cache::holds(&binary)? {
             let folder =

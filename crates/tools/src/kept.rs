@@ -8,12 +8,16 @@
 //!
 //! Only an answer of a tool that ended with success is kept, and only where the caller finds it
 //! complete: a solver that ran out of time would answer otherwise on a faster machine. A kept
-//! answer carries the hash of its own content; a damaged one is not used.
+//! answer carries the hash of its own content; a damaged one is not used. Of a simulation whose
+//! output is compared with an expected one, only the hash of the output is kept ([`difference`]).
 //!
 //! With `CARRYSTEP_FRESH=1` no kept answer is used; `cargo xtask long` sets it.
 
 mod identity;
+mod known;
 mod record;
+
+pub use known::difference;
 
 use crate::programs::Tool;
 use record::Record;
@@ -53,10 +57,12 @@ pub fn summary() -> String {
     format!("{all} answers of tools, {kept} of them kept from an earlier run")
 }
 
-/// Prints [`summary`].
+/// Prints [`summary`], if this process has used any answer.
 pub fn say() {
-    // Nobody is left to tell if this fails.
-    let _ = writeln!(io::stderr(), "{}", summary());
+    if KEPT.load(Ordering::Relaxed) + ASKED.load(Ordering::Relaxed) > 0 {
+        // Nobody is left to tell if this fails.
+        let _ = writeln!(io::stderr(), "{}", summary());
+    }
 }
 
 /// Runs a tool to its end in a folder, or takes the answer that it gave before. An answer is kept
@@ -70,13 +76,19 @@ pub fn output(
     arguments: &[&str],
     is_complete: impl FnOnce(&Output) -> bool,
 ) -> io::Result<Output> {
-    let is_fresh = std::env::var_os(FRESH).is_some_and(|value| !value.is_empty() && value != "0");
-    let answers = if NEVER.load(Ordering::Relaxed) { None } else { answers() };
-    Question { tool, folder, arguments, is_fresh, answers }.ask(is_complete)
+    Question { tool, folder, arguments, is_fresh: is_fresh(), answers: answers() }.ask(is_complete)
+}
+
+/// Whether every tool is asked anew.
+fn is_fresh() -> bool {
+    std::env::var_os(FRESH).is_some_and(|value| !value.is_empty() && value != "0")
 }
 
 /// The user's folder of answers. Where it cannot be used nothing is kept, and every tool is asked.
 fn answers() -> Option<PathBuf> {
+    if NEVER.load(Ordering::Relaxed) {
+        return None;
+    }
     let folder = carrystep_files::cache_folder_of(FOLDER).ok()?;
     static REMOVED: Once = Once::new();
     REMOVED.call_once(|| remove_unused(&folder, SystemTime::now()));

@@ -53,6 +53,10 @@ pub const VERILATOR: Tool = tool(
     "--level verilator",
     &["sudo apt-get install verilator g++ make"],
 );
+/// Runs what Icarus has compiled; it comes with it.
+pub const VVP: Tool = Tool { name: "vvp", ..ICARUS };
+/// Compiles what Verilator has written.
+pub(crate) const GXX: Tool = Tool { name: "g++", ..VERILATOR };
 /// The solver of the proofs.
 pub const Z3: Tool =
     tool("z3", Some("--version"), "cargo xtask prove", &["sudo apt-get install z3"]);

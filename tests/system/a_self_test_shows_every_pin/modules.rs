@@ -5,6 +5,7 @@ use carrystep_core::link::Uart;
 use carrystep_core::self_test::{MAX_ROWS, Rows};
 use carrystep_tests::effort;
 use carrystep_tests::self_test_bench::{SelfTestBench, module_vectors, record};
+use carrystep_tools::kept;
 use carrystep_verilog::{SELF_TEST_NAME, self_test_verilog};
 use proptest::prelude::*;
 use std::ops::Range;
@@ -163,4 +164,5 @@ fn exported_verilog_equals_the_model_in_every_clock() {
             }
         }
     }
+    kept::say();
 }

@@ -7,7 +7,6 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_boards::Board;
 use carrystep_files::{InputError, Machine};
-use carrystep_tools::kept;
 use carrystep_verilog::{Gateware, TextFile};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -33,8 +32,6 @@ pub fn run(arguments: &BuildArguments) -> Result<(), Failure> {
     if let (Some(path), false) = (&arguments.machine, arguments.try_clock) {
         reachable(&board, arguments.part.as_deref(), path)?;
     }
-    // Whoever builds a bitstream expects the tools to be run.
-    kept::never();
     let gateware =
         boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));

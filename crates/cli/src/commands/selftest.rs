@@ -6,7 +6,6 @@ use crate::bitstream::{Made, NEVER_RUN, by_hand, make};
 use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_tools::kept;
 use carrystep_verilog::SelfTestGateware;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -38,8 +37,6 @@ const WARNING: &str = "Before you load it, disconnect motors, spindle and all el
 /// Writes the folder of the self-test and the bitstream into it.
 pub fn run(arguments: &SelftestArguments) -> Result<(), Failure> {
     let board = boards::find(&arguments.board)?;
-    // Whoever builds a bitstream expects the tools to be run.
-    kept::never();
     let part = board.part(arguments.part.as_deref())?;
     let gateware = SelfTestGateware::new(&board, part, arguments.spi)?;
     let usual = || Path::new("sim/out").join(format!("{}-selftest", board.name));
@@ -80,5 +77,29 @@ fn told(report: &SelftestReport) -> String {
             made.load
         ),
         None => format!("{head}THE CLOCK IS NOT REACHED: no bitstream.\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warning_stands_before_the_command_that_loads() {
+        let made = Made::loaded_by("icesprog a.bin");
+        let report = SelftestReport {
+            passed: true,
+            tried_on_hardware: false,
+            board: "icesugar".to_owned(),
+            part: "up5k".to_owned(),
+            baud: 115_200,
+            outputs: vec![],
+            inputs: vec![],
+            made,
+        };
+        let said = told(&report);
+        let (warning, load) =
+            (said.find("disconnect motors"), said.find("load it with: icesprog a.bin"));
+        assert!(warning.is_some() && warning < load, "{said}");
     }
 }

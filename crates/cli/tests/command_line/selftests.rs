@@ -103,18 +103,8 @@ fn self_test_of_the_icestick_becomes_a_bitstream_with_a_report() {
     let script = Command::new("sh").arg(folder.path("out/build.sh")).output().unwrap();
     assert!(script.status.success(), "{}", String::from_utf8_lossy(&script.stderr));
     assert!(std::fs::read(folder.path(bitstream)).unwrap() == made, "build.sh makes another one");
-}
-
-/// People see what to disconnect before they see the command that loads the bitstream.
-#[test]
-fn warning_stands_before_the_command_that_loads() {
-    let folder = Folder::new();
-    let said = folder.run("selftest --board icesugar --out out").stdout;
-    let find = |text: &str, what| text.find(what);
-    let (warning, load) = (find(&said, "disconnect motors"), find(&said, "load it with: icesprog"));
-    assert!(warning.is_some() && warning < load, "{said}");
+    // People see what to disconnect before they see the command that loads the bitstream.
     let page = std::fs::read_to_string(folder.path("out/README.md")).unwrap();
-    let (warning, load) =
-        (find(&page, "**Disconnect motors"), find(&page, "Load the bitstream with"));
+    let (warning, load) = (page.find("**Disconnect motors"), page.find("Load the bitstream with"));
     assert!(warning.is_some() && warning < load, "{page}");
 }

@@ -6,17 +6,19 @@
 
 use crate::bench;
 use crate::engine::{EngineHost, Events};
-use crate::tool::{self, ICARUS};
+use crate::tool::{self, ICARUS, VERILATOR, VVP};
 use crate::verilator::Simulation;
-use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
+use crate::{Halt, HowFar, Level, LevelError, halted, how_far, no_verilog};
 use carrystep_core::engine::{EngineInputs, EngineOutputs, is_recorded, ports_of};
 use carrystep_core::ports::{Direction, Port};
 use carrystep_core::{EngineBuild, Program};
 use carrystep_model::Engine;
+use carrystep_tools::kept;
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// P (low and high word), position and discarded steps of each axis.
 pub type Kept = Vec<[u32; 4]>;
@@ -40,6 +42,10 @@ pub struct Recording {
     several: bool,
     /// Number of adders of the engine.
     adders: usize,
+    /// [`Self::text`] and [`Self::lines`], made once: a recording may be replayed on hundreds of
+    /// mutants.
+    text: OnceLock<String>,
+    lines: OnceLock<Vec<Line>>,
 }
 
 impl Recording {
@@ -67,6 +73,8 @@ impl Recording {
             kept: Kept::default(),
             several: build.has_several_latches(),
             adders: build.adders,
+            text: OnceLock::new(),
+            lines: OnceLock::new(),
         };
         let settle = settle(build);
         let mut quiet = 0;
@@ -105,17 +113,19 @@ impl Recording {
 
     /// The stimuli as text, a line for each: the number of cycles, then the inputs in hexadecimal
     /// in the order of the engine's table of ports.
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for (count, inputs) in &self.stimuli {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{count}");
-            for value in self.driven(Direction::Input, &inputs.at_ports()) {
-                let _ = write!(text, " {value:x}");
+    fn text(&self) -> &str {
+        self.text.get_or_init(|| {
+            let mut text = String::new();
+            for (count, inputs) in &self.stimuli {
+                // Writing to a string cannot fail.
+                let _ = write!(text, "{count}");
+                for value in self.driven(Direction::Input, &inputs.at_ports()) {
+                    let _ = write!(text, " {value:x}");
+                }
+                text.push('\n');
             }
-            text.push('\n');
-        }
-        text
+            text
+        })
     }
 
     /// The value of each recorded port of this direction, cut to its width; 0 where it is not
@@ -142,6 +152,16 @@ impl Recording {
         ports.map(move |port| port.width.of(axes))
     }
 
+    /// What a bench has to print.
+    fn lines(&self) -> &[Line] {
+        self.lines.get_or_init(|| {
+            let outputs = self.outputs.iter().zip(&self.sums).map(|((cycle, outputs), sum)| {
+                Line::Outputs { cycle: *cycle, bits: self.packed(outputs), sum: *sum }
+            });
+            outputs.chain([Line::End { sum: self.sum }]).collect()
+        })
+    }
+
     /// Packs the outputs in the order of the benches, which is that of the engine's table of ports.
     fn packed(&self, outputs: &EngineOutputs) -> u128 {
         self.widths(Direction::Output)
@@ -156,7 +176,8 @@ pub(super) fn settle(build: &EngineBuild) -> u64 {
 }
 
 /// The first difference between a recording and its replay on the Verilog of an engine; `None` if
-/// there is none.
+/// there is none. A replay whose output is known from an earlier run is not repeated, see
+/// [`kept::difference`].
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, or if the level has no Verilog.
@@ -167,14 +188,20 @@ pub fn difference(
 ) -> Result<Option<String>, LevelError> {
     match level {
         Level::Icarus => {
-            let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-            tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
-            first_difference(&mut icarus(folder.path(), verilog, recording)?, recording)
+            tool::find(&ICARUS)?;
+            let bench = bench::icarus(recording.several, recording.adders)?;
+            let stimuli = recording.text();
+            let question = (verilog, &bench, recording.axes(), stimuli);
+            kept::difference(&ICARUS, question, recording.lines(), || {
+                let folder =
+                    tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+                let files = [("core.v", verilog), ("bench.v", &bench), ("stimuli.txt", stimuli)];
+                tool::put(folder.path(), &files)?;
+                first_difference(&mut icarus(folder.path(), recording.axes())?, recording)
+            })
         }
         Level::Verilator => difference_of_mutant(verilog, 0, recording),
-        Level::Fast | Level::Model | Level::RustHdl => {
-            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
-        }
+        Level::Fast | Level::Model | Level::RustHdl => Err(no_verilog(level)),
     }
 }
 
@@ -188,11 +215,21 @@ pub fn difference_of_mutant(
     mutant: usize,
     recording: &Recording,
 ) -> Result<Option<String>, LevelError> {
-    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-    tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
-    let mut simulation = Command::new(verilated(verilog, recording)?);
-    simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
-    first_difference(&mut simulation, recording)
+    tool::find(&VERILATOR)?;
+    let bench = bench::verilator(recording.several, recording.adders)?;
+    let flags = format!("-DAXES={}", recording.axes());
+    let options = ["-CFLAGS", &flags];
+    let top = "carrystep_engine";
+    let compiled = Simulation { name: "engine", top, bench: &bench, options: &options };
+    let stimuli = recording.text();
+    let question = (compiled.hash(verilog), mutant, stimuli);
+    kept::difference(&VERILATOR, question, recording.lines(), || {
+        let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+        tool::put(folder.path(), &[("stimuli.txt", stimuli)])?;
+        let mut simulation = Command::new(compiled.compiled(verilog)?);
+        simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
+        first_difference(&mut simulation, recording)
+    })
 }
 
 /// Runs a simulation until it differs from the recording, or to its end.
@@ -213,51 +250,47 @@ fn first_difference(
     Ok(difference)
 }
 
-fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
-    let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
-    for ((cycle, outputs), sum) in recording.outputs.iter().zip(&recording.sums) {
-        let line = next();
-        let bits = recording.packed(outputs);
-        if parsed(&line) != Some((*cycle, bits, *sum)) {
-            return Some(format!(
-                "expected in cycle {cycle} {outputs:?}: {bits:x}, and {sum:x} as the checksum of \
-                 all words of state before; found {line}"
-            ));
+/// A line of a bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Line {
+    /// A cycle in which an output changed: the packed outputs, and the checksum of the words of state
+    /// before it.
+    Outputs { cycle: u64, bits: u128, sum: u64 },
+    /// The last line: the checksum of all words of state.
+    End { sum: u64 },
+}
+
+impl Line {
+    /// Parses a line of a bench: cycle, packed outputs and checksum, or `S` and the checksum.
+    fn parse(line: &str) -> Option<Self> {
+        let (first, rest) = line.split_once(' ')?;
+        let sum = |digits| u64::from_str_radix(digits, 16).ok();
+        if first == "S" {
+            return Some(Self::End { sum: sum(rest)? });
         }
+        let (bits, digits) = rest.split_once(' ')?;
+        let bits = u128::from_str_radix(bits, 16).ok()?;
+        Some(Self::Outputs { cycle: first.parse().ok()?, bits, sum: sum(digits)? })
     }
-    let (line, sum) = (next(), recording.sum);
-    if line.strip_prefix("S ").and_then(|hex| u64::from_str_radix(hex, 16).ok()) != Some(sum) {
-        return Some(format!(
-            "expected {sum:x} as the checksum of all words of state, found {line}"
-        ));
+}
+
+fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
+    for (place, expected) in recording.lines().iter().enumerate() {
+        let line = found.next().unwrap_or_else(|| "nothing".to_owned());
+        if Line::parse(&line) != Some(*expected) {
+            let outputs = recording.outputs.get(place).map(|(_, outputs)| outputs);
+            return Some(format!("expected {expected:x?}, {outputs:?}; found {line}"));
+        }
     }
     found.next().map(|line| format!("expected nothing more, found {line}"))
 }
 
-/// Parses a line of a bench: cycle, packed outputs and checksum.
-fn parsed(line: &str) -> Option<(u64, u128, u64)> {
-    let (cycle, rest) = line.split_once(' ')?;
-    let (bits, sum) = rest.split_once(' ')?;
-    let hex = |digits| u128::from_str_radix(digits, 16).ok();
-    Some((cycle.parse().ok()?, hex(bits)?, u64::try_from(hex(sum)?).ok()?))
-}
-
-fn icarus(folder: &Path, verilog: &str, recording: &Recording) -> Result<Command, LevelError> {
-    tool::find(&ICARUS)?;
-    let bench = bench::icarus(recording.several, recording.adders)?;
-    tool::put(folder, &[("core.v", verilog), ("bench.v", &bench)])?;
-    let parameter = format!("-Pengine_bench.AXES={}", recording.axes());
+/// Compiles the Verilog in a folder for Icarus; the command that runs it.
+fn icarus(folder: &Path, axes: usize) -> Result<Command, LevelError> {
+    let parameter = format!("-Pengine_bench.AXES={axes}");
     let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
     tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
-    let mut simulation = Command::new("vvp");
+    let mut simulation = Command::new(VVP.name);
     simulation.args(["-n", "bench.vvp", "+stimuli=stimuli.txt"]).current_dir(folder);
     Ok(simulation)
-}
-
-/// The compiled simulation of this Verilog, from the cache or newly compiled.
-fn verilated(verilog: &str, recording: &Recording) -> Result<PathBuf, LevelError> {
-    let flags = format!("-DAXES={}", recording.axes());
-    let options: &[&str] = &["-CFLAGS", &flags];
-    let bench = &bench::verilator(recording.several, recording.adders)?;
-    Simulation { name: "engine", top: "carrystep_engine", bench, options }.compiled(verilog)
 }

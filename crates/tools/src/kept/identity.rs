@@ -1,6 +1,9 @@
 //! Which tool it is that answers: its version, and which file it is.
 
-use crate::programs::{ICEBOX_VLOG, ICETIME, PYTHON, Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
+use crate::programs::{
+    GXX, ICARUS, ICEBOX_VLOG, ICETIME, PYTHON, Tool, VERILATOR, VVP, YOSYS, YOSYS_ABC,
+    YOSYS_SMTBMC, Z3,
+};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs;
@@ -8,7 +11,9 @@ use std::process::Command;
 use std::sync::Mutex;
 
 /// Tools that others start, and those that come in one package and tell its version.
-const WITH: [(&str, &[Tool]); 5] = [
+const WITH: [(&str, &[Tool]); 7] = [
+    (ICARUS.name, &[VVP]),
+    (VERILATOR.name, &[GXX]),
     (YOSYS.name, &[YOSYS_ABC]),
     (YOSYS_ABC.name, &[YOSYS]),
     (YOSYS_SMTBMC.name, &[YOSYS, Z3]),

@@ -1,5 +1,6 @@
-//! A tool that counts how often it is run stands in for yosys.
+//! A tool that counts how often it is run stands in for yosys, and a function for a simulation.
 
+use super::known::difference_in;
 use super::{Question, UNUSED, files, remove_unused};
 use crate::programs::Tool;
 use std::fs;
@@ -147,4 +148,73 @@ fn answers_that_nothing_uses_are_removed() {
     assert!(bench.kept().is_empty());
     remove_unused(Path::new("/no/such/folder"), now);
     assert!(files(Path::new("/no/such/folder")).is_err());
+}
+
+/// A simulation that counts how often it is run, and says what it is told to.
+struct Simulation {
+    bench: Bench,
+    runs: std::cell::Cell<usize>,
+}
+
+impl Simulation {
+    fn new() -> Self {
+        Self { bench: Bench::new(), runs: std::cell::Cell::new(0) }
+    }
+
+    /// Compares its output with the expected one; the difference, and how often it has run.
+    fn ask(&self, question: &str, expected: &[u8], output: &[u8]) -> (Option<String>, usize) {
+        self.ask_anew(false, question, expected, output)
+    }
+
+    fn ask_anew(
+        &self,
+        is_fresh: bool,
+        question: &str,
+        expected: &[u8],
+        output: &[u8],
+    ) -> (Option<String>, usize) {
+        let answers = Some(self.bench.answers.path());
+        let run = || {
+            self.runs.set(self.runs.get() + 1);
+            Ok::<_, ()>((output != expected).then(|| format!("{output:?}")))
+        };
+        let found = difference_in(answers, is_fresh, &SH, question, expected, run);
+        (found.unwrap(), self.runs.get())
+    }
+}
+
+#[test]
+fn simulation_with_known_output_is_not_repeated() {
+    let simulation = Simulation::new();
+    assert_eq!(simulation.ask("a", b"12", b"12"), (None, 1));
+    assert_eq!(simulation.ask("a", b"12", b"12"), (None, 1));
+    assert_eq!(simulation.ask_anew(true, "a", b"12", b"12"), (None, 2), "a fresh run");
+    assert_eq!(simulation.ask("b", b"12", b"12"), (None, 3), "another question");
+}
+
+#[test]
+fn simulation_is_repeated_if_another_output_is_expected() {
+    let simulation = Simulation::new();
+    simulation.ask("a", b"12", b"12");
+    assert_eq!(simulation.ask("a", b"13", b"12"), (Some("[49, 50]".to_owned()), 2));
+    assert_eq!(simulation.ask("a", b"12", b"12"), (None, 2), "it is still known");
+    assert_eq!(simulation.ask("a", b"123", b"12").1, 3);
+}
+
+#[test]
+fn difference_is_looked_for_each_time() {
+    let simulation = Simulation::new();
+    for run in 1..=2 {
+        assert_eq!(simulation.ask("a", b"1", b"2"), (Some("[50]".to_owned()), run));
+    }
+    assert!(simulation.bench.kept().is_empty());
+}
+
+#[test]
+fn damaged_hash_of_an_output_is_not_used() {
+    let simulation = Simulation::new();
+    simulation.ask("a", b"1", b"1");
+    fs::write(&simulation.bench.kept()[0], "b").unwrap();
+    assert_eq!(simulation.ask("a", b"1", b"1"), (None, 2));
+    assert_eq!(simulation.ask("a", b"1", b"1"), (None, 2));
 }
