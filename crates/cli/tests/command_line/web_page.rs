@@ -132,15 +132,16 @@ impl Browser {
         ));
     }
 
-    /// How many pixels of the path's picture have this colour.
-    fn painted(&mut self, red: u8, green: u8, blue: u8) -> u64 {
-        let count = self.value(&format!(
+    /// Waits until more than a hundred pixels of the path's picture have this colour. The browser
+    /// paints after the texts have changed.
+    #[track_caller]
+    fn paints(&mut self, [red, green, blue]: [u8; 3]) {
+        self.waits(&format!(
             "(() => {{ const it = document.getElementById('path'); const {{ data }} = \
              it.getContext('2d').getImageData(0, 0, it.width, it.height); let count = 0; for (let k \
              = 0; k < data.length; k += 4) count += data[k] === {red} && data[k + 1] === {green} && \
-             data[k + 2] === {blue}; return count; }})()"
+             data[k + 2] === {blue}; return count > 100; }})()"
         ));
-        count.as_u64().unwrap()
     }
 }
 
@@ -178,8 +179,9 @@ fn page_shows_the_machine_runs_a_dropped_file_and_stops_it() {
     page.waits("document.getElementById('said').textContent === 'The program is done.'");
     page.waits(&is_state("Idle"));
     assert_eq!(page.text("axes"), "X0.0000.000Y0.0000.000Z0.0000.000");
-    assert!(page.painted(0x8a, 0x94, 0x9e) > 100, "the path of the file");
-    assert!(page.painted(0xe0, 0x20, 0x3f) > 100, "the tool");
+    // The path of the file, and the tool.
+    page.paints([0x8a, 0x94, 0x9e]);
+    page.paints([0xe0, 0x20, 0x3f]);
 
     // A line that is refused is named, and ends the program.
     page.drops("bad.nc", "G21\n\nG1 X1 F100 Q9 W2\nG1 X9\n");
