@@ -16,7 +16,7 @@ fn accuracy_page_gives_the_constants_of_planner_and_checker() {
     let lost = 16_f64.log2() + 1.0;
     let segments = constant("crates/plan/src/limits.rs", "MOST_SEGMENTS");
     let rounding = constant("crates/check/src/axis_check.rs", "ROUNDING_PS") / 1e3;
-    let shift = constant("crates/plan/src/run.rs", "EDGE_SHIFT") * 1e9;
+    let shift = constant("crates/plan/src/fine.rs", "EDGE_SHIFT") * 1e9;
     let samples = constant("crates/plan/src/corridor.rs", "SAMPLES") + 1.0;
     let longest = power_of_ten(behind("crates/files/src/move_file.rs", "if time <= "));
     says(
