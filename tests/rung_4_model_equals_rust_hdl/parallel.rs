@@ -10,8 +10,8 @@ use carrystep_tests::golden::{Case, Edge, engine_vectors};
 use carrystep_tests::{effort, gcode_job, lockstep, moves, programs};
 use proptest::test_runner::{Config, TestRunner};
 
-/// An ordinary run draws the first third of the cases. With its fixed seed it draws the same ones each
-/// time.
+/// An ordinary run draws the first third of the cases. With its fixed seed it draws the same ones
+/// each time.
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
     let cases = if effort::repeats_in_full() { cases } else { cases / 3 };
     let build = lockstep::tight_build(phases, phase);

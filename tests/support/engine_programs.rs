@@ -310,7 +310,8 @@ pub fn program_with_latches(axes: usize) -> impl Strategy<Value = (Program, Even
 }
 
 /// Programs and events are made for ticks of 80 clocks. The same ones for an engine with several
-/// adders, with its ticks: otherwise most events would happen long after its axes have come to rest.
+/// adders, with its ticks: otherwise most events would happen long after its axes have come to
+/// rest.
 pub fn in_ticks_of(build: &EngineBuild, program: Program, events: Events) -> (Program, Events) {
     if build.adders == 1 {
         return (program, events);

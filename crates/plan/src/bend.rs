@@ -126,8 +126,8 @@ impl Wanted {
         if self.one_way && if doubled_middle < 0 { most_a > 0 } else { least_a < 0 } {
             return None;
         }
-        // The product is below 2^126. With a distance below 2^120, as what J adds is, no sum of them
-        // overflows.
+        // The product is below 2^126. With a distance below 2^120, as what J adds is, no sum of
+        // them overflows.
         let by_acceleration = product(pairs(n.cast_unsigned()), a);
         if !(0..1 << 120).contains(&self.distance) {
             return None;

@@ -24,8 +24,9 @@ pub(crate) enum Fine {
 
 /// Decides whether a run of this profile may have the length of this piece, and how it then treats
 /// its remainder. The piece is from `begin` to `end` seconds, and `middle` are the rates between
-/// them; `acceleration` and `jerk` are the magnitudes that rounding leaves out of A and J. The start
-/// speed may exceed its limit by `tolerance` units. `None` means that the piece has to be divided.
+/// them; `acceleration` and `jerk` are the magnitudes that rounding leaves out of A and J. The
+/// start speed may exceed its limit by `tolerance` units. `None` means that the piece has to be
+/// divided.
 pub(crate) fn fine<F: Real>(
     profile: &dyn Profile<F>,
     piece: &Piece,

@@ -2,7 +2,8 @@
 //! writes the segments, runs the exact check, and adds the rest that DIR needs.
 //!
 //! This file holds the order of these steps; each step has a module of its own. The exact check
-//! (`check.rs`) decides whether a plan leaves this crate. A unit is 2^-64 step throughout the crate.
+//! (`check.rs`) decides whether a plan leaves this crate. A unit is 2^-64 step throughout the
+//! crate.
 
 use crate::asked::Asked;
 use crate::check::{Duty, check};

@@ -60,9 +60,9 @@ pub(crate) fn scurve_fastest<F: Real>(distance: F, end_speed: F, limits: &Limits
 /// The top speed of a move of two ramps of the same start speed in `time` seconds, up to rounding;
 /// not a number where the start speeds differ.
 ///
-/// A top speed of s + w has the time T if T (s + w) - N is w (w / a + r), where the ramps hold their
-/// acceleration and r = a / j is their rise, and otherwise 2 w sqrt(w / j). Newton's method solves
-/// the latter from below: the difference of both sides is concave.
+/// A top speed of s + w over a distance N has the time T if T (s + w) - N is w (w / a + r), where
+/// the ramps hold their acceleration and r = a / j is their rise, and otherwise 2 w sqrt(w / j).
+/// Newton's method solves the latter from below: the difference of both sides is concave.
 fn cruise_speed<F: Real>(distance: F, time: F, end_speed: F, limits: &Limits<F>) -> F {
     let Limits { start_speed: start, acceleration, jerk, .. } = *limits;
     if start != end_speed {

@@ -1,7 +1,7 @@
 //! `run` and `simulate` make the same pulses: each edge of STEP and DIR, and each change of an
 //! output, of the shipped programs on a board of models is that of the fast model, clock by clock
-//! from the first start. Behind a place where the program waits, clocks are counted from the start of
-//! the stretch, because a board may rest there for any time.
+//! from the first start. Behind a place where the program waits, clocks are counted from the start
+//! of the stretch, because a board may rest there for any time.
 #![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 use crate::jobs::{Job, PROGRAMS};

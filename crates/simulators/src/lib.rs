@@ -112,8 +112,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Everything on which the output of this job's Verilog depends in Icarus or Verilator, apart from
-    /// the simulator itself.
+    /// Everything on which the output of this job's Verilog depends in Icarus or Verilator, apart
+    /// from the simulator itself.
     ///
     /// # Errors
     /// [`LevelError::Gateware`] if there is no such Verilog, or if the level does not run Verilog.
@@ -126,8 +126,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The exported Verilog of the core. Hundreds of jobs may follow each other on the same core, so
-    /// the last one is remembered: exporting it takes longer than some of them.
+    /// The exported Verilog of the core. Hundreds of jobs may follow each other on the same core,
+    /// so the last one is remembered: exporting it takes longer than some of them.
     fn verilog(&self) -> Result<Arc<str>, LevelError> {
         static LAST: Mutex<Option<(Build, usize, Arc<str>)>> = Mutex::new(None);
         let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);

