@@ -58,7 +58,7 @@ pub fn difference(expected: &Record, found: &Record) -> Option<String> {
 pub fn assert_equals_model(level: Level, job: &Job<'_>) -> Record {
     let expected = record(Level::Model, job).expect("the model");
     for level in [Level::Fast, level] {
-        let found = found_difference(level, job, &expected);
+        let found = difference_of_level(level, job, &expected);
         if let Some(difference) = found.unwrap_or_else(|error| panic!("{level}: {error}")) {
             panic!("{level} is not the model: {difference}\n program {:?}", job.program);
         }
@@ -68,7 +68,7 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) -> Record {
 
 /// The first difference of a level from a record. An external simulation is not repeated if its
 /// output is known from an earlier run, see [`kept::difference`].
-fn found_difference(
+fn difference_of_level(
     level: Level,
     job: &Job<'_>,
     expected: &Record,

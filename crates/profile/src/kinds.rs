@@ -3,11 +3,9 @@
 //! A new kind has one row in each function here; the planner and the command `profile` call nothing
 //! else.
 
-use crate::logistic::{logistic_after, logistic_fastest};
 use crate::scurve_moves::{scurve_after, scurve_fastest};
-use crate::sine::{sine_after, sine_fastest};
 pub use crate::timed::Fastest;
-use crate::{Curve, LimitRefusal, Limits, Real, rule};
+use crate::{Curve, LimitRefusal, Limits, Real, logistic, rule, sine, timed};
 use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
@@ -27,8 +25,8 @@ pub fn fastest<F: Real>(
         ProfileKind::Ranade => Fastest::taking(rule::ranade_least_time(distance, limits)),
         ProfileKind::Trapezoid => Fastest::taking(rule::trapezoid_least_time(distance, limits)),
         ProfileKind::Scurve => scurve_fastest(distance, limits.start_speed, limits),
-        ProfileKind::Logistic => logistic_fastest(distance, limits),
-        ProfileKind::Sine => sine_fastest(distance, limits),
+        ProfileKind::Logistic => timed::fastest(distance, limits, &logistic::ramps, F::nan()),
+        ProfileKind::Sine => timed::fastest(distance, limits, &sine::ramps, F::nan()),
         ProfileKind::Constant => Fastest::taking(rule::constant_least_time(distance, limits)?),
     })
 }
@@ -76,8 +74,12 @@ pub fn after<F: Real>(
         ProfileKind::Scurve => {
             scurve_after(distance, time, limits.start_speed, limits, fastest).map(shared)
         }
-        ProfileKind::Logistic => logistic_after(distance, time, limits, fastest).map(shared),
-        ProfileKind::Sine => sine_after(distance, time, limits, fastest).map(shared),
+        ProfileKind::Logistic => {
+            timed::in_time(distance, time, limits, &logistic::ramps, fastest, F::nan()).map(shared)
+        }
+        ProfileKind::Sine => {
+            timed::in_time(distance, time, limits, &sine::ramps, fastest, F::nan()).map(shared)
+        }
         ProfileKind::Constant => rule::constant(distance, time, limits).map(shared),
     }
 }

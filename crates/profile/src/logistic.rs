@@ -13,7 +13,7 @@ use crate::own::{OwnRamp, Shape};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
 use crate::refusal::{LimitRefusal, Limits};
-use crate::timed::{self, Fastest};
+use crate::timed;
 
 /// The fraction of the asymptote that is missing at the end of a ramp, and present at its start:
 /// the source ends its ramp at 99.5 %.
@@ -303,30 +303,17 @@ pub fn logistic<F: Real>(
     time: F,
     limits: &Limits<F>,
 ) -> Result<RampedMove<F, LogisticRamp<F>>, LimitRefusal> {
-    logistic_after(distance, time, limits, &logistic_fastest(distance, limits))
-}
-
-/// [`logistic`], where the fastest move is known.
-pub(crate) fn logistic_after<F: Real>(
-    distance: F,
-    time: F,
-    limits: &Limits<F>,
-    fastest: &Fastest<F>,
-) -> Result<RampedMove<F, LogisticRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps, fastest, F::nan())
-}
-
-/// The fastest move of [`logistic`].
-pub(crate) fn logistic_fastest<F: Real>(distance: F, limits: &Limits<F>) -> Fastest<F> {
-    timed::fastest(distance, limits, &ramps, F::nan())
+    let fastest = timed::fastest(distance, limits, &ramps, F::nan());
+    timed::in_time(distance, time, limits, &ramps, &fastest, F::nan())
 }
 
 /// Least time of [`logistic`], seconds.
 pub fn logistic_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
-    logistic_fastest(distance, limits).time
+    timed::fastest(distance, limits, &ramps, F::nan()).time
 }
 
-fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (LogisticRamp<F>, LogisticRamp<F>) {
+/// The two ramps of [`logistic`].
+pub(crate) fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (LogisticRamp<F>, LogisticRamp<F>) {
     let ramp = LogisticRamp::within(limits, top);
     (ramp, ramp)
 }

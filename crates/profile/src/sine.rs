@@ -12,7 +12,7 @@ use crate::own::{OwnRamp, Shape};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
 use crate::refusal::{LimitRefusal, Limits};
-use crate::timed::{self, Fastest};
+use crate::timed;
 use std::f64::consts::PI;
 
 /// One acceleration ramp from rest to `top` steps/s in `duration` seconds. Acceleration and jerk
@@ -191,30 +191,17 @@ pub fn sine<F: Real>(
     time: F,
     limits: &Limits<F>,
 ) -> Result<RampedMove<F, SineRamp<F>>, LimitRefusal> {
-    sine_after(distance, time, limits, &sine_fastest(distance, limits))
-}
-
-/// [`sine`], where the fastest move is known.
-pub(crate) fn sine_after<F: Real>(
-    distance: F,
-    time: F,
-    limits: &Limits<F>,
-    fastest: &Fastest<F>,
-) -> Result<RampedMove<F, SineRamp<F>>, LimitRefusal> {
-    timed::in_time(distance, time, limits, &ramps, fastest, F::nan())
-}
-
-/// The fastest move of [`sine`].
-pub(crate) fn sine_fastest<F: Real>(distance: F, limits: &Limits<F>) -> Fastest<F> {
-    timed::fastest(distance, limits, &ramps, F::nan())
+    let fastest = timed::fastest(distance, limits, &ramps, F::nan());
+    timed::in_time(distance, time, limits, &ramps, &fastest, F::nan())
 }
 
 /// Least time of [`sine`], seconds.
 pub fn sine_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
-    sine_fastest(distance, limits).time
+    timed::fastest(distance, limits, &ramps, F::nan()).time
 }
 
-fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (SineRamp<F>, SineRamp<F>) {
+/// The two ramps of [`sine`].
+pub(crate) fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (SineRamp<F>, SineRamp<F>) {
     let ramp = SineRamp::within(limits, top);
     (ramp, ramp)
 }

@@ -54,7 +54,9 @@ pub fn page(found: &Measurements) -> String {
     }
     text += "\n## Xilinx\n\n\
          Cells by yosys 0.23 (`synth_xilinx -nowidelut -flatten`), which calls these families\n\
-         experimental; not placed. The engine of the first row. A carry cell\nis one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, which is written bit by \
+         experimental; not placed. The engine of the first row. A carry cell\n\
+         is one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, \
+         which is written bit by \
          bit: the boards of that family have it in LUTs\n(decision 38).\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n";
     for (family, found) in FAMILIES.iter().zip(families) {
@@ -63,7 +65,8 @@ pub fn page(found: &Measurements) -> String {
     text += &format!(
         "\n## ECP5\n\n\
          Engine, link and UART together, by yosys 0.23 (`synth_ecp5`): *all*, queues {} deep, {} MHz.\n\
-         LUTs as nextpnr counts them: with two for each carry cell. The clock that is reached\non each board is in [boards.md](boards.md).\n\n\
+         LUTs as nextpnr counts them: with two for each carry cell. The clock that is reached\n\
+         on each board is in [boards.md](boards.md).\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n{}",
         ECP5.of.queue,
         ECP5.of.clock_hz / 1_000_000,
