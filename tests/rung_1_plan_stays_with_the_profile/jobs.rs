@@ -11,7 +11,7 @@ use num_bigint::BigInt;
 fn limits(axis: &Axis, tick_ns: u64) -> [(BigInt, BigInt); 3] {
     let whole = |text: String| text.parse::<BigInt>().expect("whole steps");
     let [speed, acceleration] = [&axis.speed_limit, &axis.accel_limit]
-        .map(|limit| whole(limit.normalized().to_plain_string()));
+        .map(|limit| whole(limit.steps.normalized().to_plain_string()));
     // Without jerk_limit, J is A / 4 ms = 250 A.
     let jerk = &acceleration * 250;
     let mut power = 0;

@@ -177,11 +177,11 @@ fn limits_hold(
 ) {
     let one = BigDecimal::from(STEP);
     let tick = BigDecimal::new(tick_ns.into(), 9);
-    let speed = &axis.speed_limit * &one * &tick;
+    let speed = &axis.speed_limit.steps * &one * &tick;
     let relative =
         if f64_used { BigDecimal::new(1.into(), 9) } else { BigDecimal::new(1.into(), 5) };
     let tolerance = &speed * relative + BigDecimal::from(1);
-    let acceleration = &axis.accel_limit * &one * &tick * &tick;
+    let acceleration = &axis.accel_limit.steps * &one * &tick * &tick;
     for planned in &plan.moves {
         let moved = &planned.axes[index];
         let mut rest = planned.rest_ticks;
@@ -204,7 +204,7 @@ fn limits_hold(
                 assert!(a == 0 || acceleration >= a - 1, "acceleration: {s:?}");
             }
             if let Some(jerk) = &axis.jerk_limit {
-                assert!(jerk * &one * &tick * &tick * &tick >= j.abs() - 1, "jerk: {s:?}");
+                assert!(&jerk.steps * &one * &tick * &tick * &tick >= j.abs() - 1, "jerk: {s:?}");
             }
             if std::mem::take(&mut first) {
                 // 6 v = 6 V - 3 A + 2 J. A separate first tick may contain the ramp.
@@ -219,8 +219,8 @@ fn limits_hold(
                 // A logistic curve is never at rest: without a start speed, its own initial jump
                 // counts.
                 let own = BigDecimal::try_from(moved.profile.speed(0.0)).unwrap();
-                let logistic = moved.shape == "logistic" && axis.start_speed == 0;
-                let start = if logistic { &own } else { &axis.start_speed } * &one * &tick;
+                let logistic = moved.shape == "logistic" && axis.start_speed.steps == 0;
+                let start = if logistic { &own } else { &axis.start_speed.steps } * &one * &tick;
                 assert!(
                     sixfold <= (start + &tolerance) * BigDecimal::from(6),
                     "start speed: {s:?}"

@@ -49,8 +49,8 @@ fn flow_of_a_move_page_has_the_numbers_of_machine_and_guard() {
     let (file, plan) = moves::shipped("demo");
     let (axis, engine) = (&file.machine.axes[0], file.machine.engine());
     let unit = number(&axis.steps_per_unit);
-    let (v, a) = (number(&axis.start_speed), number(&axis.accel_limit));
-    let (start, speed) = (v / unit, number(&axis.speed_limit) / unit);
+    let (v, a) = (axis.start_speed.float, axis.accel_limit.float);
+    let (start, speed) = (v / unit, axis.speed_limit.float / unit);
     let accel = grouped((a / unit) as u64);
     let time = plan.build.timebase;
     let moved = &plan.moves[0];

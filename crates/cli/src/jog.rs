@@ -54,7 +54,7 @@ impl JogWish {
         let motors = machine.motor_steps(&letters);
         let seconds = |(axis, distance): (&Axis, &f64)| {
             let scale = decimal::to_f64(&axis.steps_per_unit);
-            let accel = decimal::to_f64(&axis.accel_limit) / scale;
+            let accel = axis.accel_limit.float / scale;
             let distance = distance.abs();
             // A short move does not reach its part of the feed.
             let speed = (feed / 60.0 * distance / length).min((distance * accel).sqrt());

@@ -5,7 +5,7 @@ use crate::table::columns;
 use carrystep_core::Timebase;
 use carrystep_files::machine::Kinematics;
 use carrystep_files::unit::digits;
-use carrystep_files::{Axis, Unit, decimal};
+use carrystep_files::{Axis, Unit};
 use carrystep_program::{AxisSurvey, ProgramFile, Survey, unit};
 use carrystep_report::TimeUse;
 use schemars::JsonSchema;
@@ -168,8 +168,8 @@ impl ProgramFigures {
 impl ProgramAxis {
     fn new(axis: &Axis, planned: &AxisSurvey, unit: &str, timebase: &Timebase) -> Self {
         let place = |units: i128| units as f64 / STEP / axis.unit.steps;
-        let acceleration = decimal::to_f64(&axis.accel_limit);
-        let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
+        let acceleration = axis.accel_limit.float;
+        let jerk = axis.jerk_limit.as_ref().map(|limit| limit.float);
         Self {
             axis: axis.name.clone(),
             unit: unit.to_owned(),
@@ -181,7 +181,7 @@ impl ProgramAxis {
             greatest: place(planned.extent[1]),
             travel: axis.travel.map(|ends| ends.map(|steps| steps as f64 / axis.unit.steps)),
             speed_steps_per_s: planned.peaks.steps_per_s(timebase),
-            speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
+            speed_limit_steps_per_s: axis.speed_limit.float,
             acceleration_steps_per_s2: planned.peaks.steps_per_s2(timebase),
             acceleration_limit_steps_per_s2: acceleration,
             jerk_steps_per_s3: planned.peaks.steps_per_s3(timebase),

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::OutputFile;
 use crate::program_table::JERK_TIME;
-use carrystep_files::{Machine, decimal};
+use carrystep_files::{AxisLimit, Machine};
 use carrystep_plan::PlannedMove;
 use carrystep_program::{ProgramError, ProgramFile, Row, Survey, SurveyedRows};
 use carrystep_report::{
@@ -43,7 +43,7 @@ impl MoveRecorder {
     pub fn new(machine: &Machine, detail: Detail) -> Self {
         let axes = machine.axes.iter().enumerate().map(|(number, axis)| {
             let linear = axis.unit.name == machine.axes[0].unit.name;
-            let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
+            let jerk = axis.jerk_limit.as_ref().map(|limit| limit.float);
             AxisSetup { linear, ..setup(machine, number, 0.0, jerk) }
         });
         let tick_seconds = machine.timebase.tick_seconds();
@@ -112,8 +112,8 @@ fn of_program(file: &ProgramFile, detail: Detail) -> Recorder {
     let starts = file.steps(&file.settings().start);
     let axes = machine.axes.iter().zip(file.letters().of_axes()).enumerate();
     let axes = axes.map(|(number, (axis, &letter))| {
-        let jerk = axis.jerk_limit.as_ref().map(decimal::to_f64);
-        let jerk = jerk.unwrap_or_else(|| decimal::to_f64(&axis.accel_limit) / JERK_TIME);
+        let jerk = axis.jerk_limit.as_ref().map(|limit| limit.float);
+        let jerk = jerk.unwrap_or_else(|| axis.accel_limit.float / JERK_TIME);
         let start = starts[number] as f64 / axis.unit.steps;
         let unit = carrystep_program::unit(letter);
         let linear = unit == "mm";
@@ -140,7 +140,7 @@ fn setup(machine: &Machine, number: usize, start: f64, jerk: Option<f64>) -> Axi
     };
     let leads = machine.leader(number) == number;
     let name = &axis.name;
-    let limit = |limit| Some(decimal::to_f64(limit) / steps);
+    let limit = |limit: &AxisLimit| Some(limit.float / steps);
     AxisSetup {
         name: axis.name.clone(),
         unit: axis.unit.name.clone(),

@@ -3,7 +3,7 @@
 
 use carrystep_core::Timebase;
 use carrystep_files::unit::digits;
-use carrystep_files::{Axis, Machine, Unit, decimal};
+use carrystep_files::{Axis, Machine, Unit};
 use carrystep_plan::{AxisTotals, Totals};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
@@ -69,11 +69,11 @@ fn axis_limits(axis: &Axis, totals: &AxisTotals, timebase: &Timebase) -> AxisLim
         steps: totals.travel.position,
         residue: totals.residue(),
         speed_steps_per_s: totals.peaks.steps_per_s(timebase),
-        speed_limit_steps_per_s: decimal::to_f64(&axis.speed_limit),
+        speed_limit_steps_per_s: axis.speed_limit.float,
         acceleration_steps_per_s2: totals.peaks.steps_per_s2(timebase),
-        acceleration_limit_steps_per_s2: decimal::to_f64(&axis.accel_limit),
+        acceleration_limit_steps_per_s2: axis.accel_limit.float,
         start_speed_steps_per_s: totals.peaks.start_steps_per_s(timebase),
-        start_speed_limit_steps_per_s: decimal::to_f64(&axis.start_speed),
+        start_speed_limit_steps_per_s: axis.start_speed.float,
     }
 }
 

@@ -37,7 +37,7 @@ pub use bigdecimal::BigDecimal;
 pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};
 pub use error::{InputError, SourceText};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
-pub use machine::{Axis, Machine, TooManyAxes};
+pub use machine::{Axis, AxisLimit, Machine, TooManyAxes};
 pub use move_file::{Move, MoveFile, MovePlace, PathKind};
 pub use moves::{MoveSource, Moves};
 pub use names::{did_you_mean, nearest};

@@ -21,6 +21,7 @@ mod guard;
 mod home;
 mod inputs;
 mod kinematics;
+mod limit;
 mod link;
 mod outputs;
 mod queue;
@@ -30,6 +31,7 @@ mod units;
 
 pub use home::{End, Home, overrun};
 pub use kinematics::Kinematics;
+pub use limit::AxisLimit;
 pub use outputs::OutputUses;
 pub(crate) use raw::RawMachine;
 use raw::RawMachineFile;
@@ -89,13 +91,13 @@ pub struct Axis {
     /// The unit for display.
     pub unit: Unit,
     /// Greatest speed at which the motor starts from rest, steps/s; 0 or more.
-    pub start_speed: BigDecimal,
+    pub start_speed: AxisLimit,
     /// Greatest speed, steps/s.
-    pub speed_limit: BigDecimal,
+    pub speed_limit: AxisLimit,
     /// Greatest acceleration, steps/s^2.
-    pub accel_limit: BigDecimal,
+    pub accel_limit: AxisLimit,
     /// Greatest jerk, steps/s^3, if the file gives one.
-    pub jerk_limit: Option<BigDecimal>,
+    pub jerk_limit: Option<AxisLimit>,
     /// Acceleration with which the engine's guard ramps the axis down, 2^-64 step per tick^2, from
     /// 1 to 2^62.
     pub stop: u64,

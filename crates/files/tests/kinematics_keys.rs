@@ -51,15 +51,15 @@ fn motors_of_crossed_belts_have_the_least_limits_and_the_longest_times() {
     assert_eq!(machine.kinematics, Kinematics::CoreXy);
     let [x, y, z] = &machine.axes[..] else { panic!("three axes") };
     for axis in [x, y] {
-        assert_eq!(axis.speed_limit, BigDecimal::from(90 * 80));
-        assert_eq!(axis.accel_limit, BigDecimal::from(1000 * 80));
-        assert_eq!(axis.jerk_limit, Some(BigDecimal::from(50_000 * 80)));
+        assert_eq!(axis.speed_limit.steps, BigDecimal::from(90 * 80));
+        assert_eq!(axis.accel_limit.steps, BigDecimal::from(1000 * 80));
+        assert_eq!(axis.jerk_limit.as_ref().unwrap().steps, BigDecimal::from(50_000 * 80));
         assert_eq!((axis.stop, axis.pins), (y.stop, y.pins));
     }
     // What is of the letters stays.
     assert_eq!([x, y].map(|axis| axis.travel), [Some([0, 24_000]), Some([0, 16_000])]);
     assert_ne!(x.home.unwrap().seek, y.home.unwrap().seek);
-    assert_eq!(z.speed_limit, BigDecimal::from(10 * 400));
+    assert_eq!(z.speed_limit.steps, BigDecimal::from(10 * 400));
     assert_eq!(machine.home_order, [[0, 1]]);
 }
 

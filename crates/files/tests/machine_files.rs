@@ -28,7 +28,7 @@ fn missing_keys_have_their_defaults() {
     assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (80, 5));
     assert_eq!(machine.phase, StartPhase::Half);
     let axis = &machine.axes[0];
-    assert_eq!(axis.start_speed, number("0"));
+    assert_eq!(axis.start_speed.steps, number("0"));
     assert_eq!(axis.jerk_limit, None);
 }
 
@@ -40,8 +40,8 @@ fn given_values_replace_the_defaults() {
     let timebase = machine.timebase;
     assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (16_000_000, 2000, 4));
     assert_eq!(machine.phase, StartPhase::Zero);
-    assert_eq!(machine.axes[0].start_speed, number("2.5"));
-    assert_eq!(machine.axes[0].jerk_limit, Some(number("5e6")));
+    assert_eq!(machine.axes[0].start_speed.steps, number("2.5"));
+    assert_eq!(machine.axes[0].jerk_limit.as_ref().unwrap().steps, number("5e6"));
 }
 
 #[test]
@@ -49,8 +49,8 @@ fn limits_are_exact_products() {
     let text = "[machine]\n[[machine.axis]]\nname = \"a\"\nsteps_per_unit = 8.888888888888889\nspeed_limit = 0.1\n\
         accel_limit = 1_000.3\ndriver = \"a4988\"\n";
     let axis = &machine(text).axes[0];
-    assert_eq!(axis.speed_limit, number("0.8888888888888889"));
-    assert_eq!(axis.accel_limit, number("8891.5555555555556667"));
+    assert_eq!(axis.speed_limit.steps, number("0.8888888888888889"));
+    assert_eq!(axis.accel_limit.steps, number("8891.5555555555556667"));
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn periodic_steps_per_unit_round_as_the_fraction_does() {
     assert_eq!(moved("0.05624"), (0, 0.499_911_111_111_111_1));
     let machine = read(axis).unwrap();
     // 1000 / 60 x 3200 / 360 = 148.148148... steps/s.
-    let speed = &machine.axes[0].speed_limit;
+    let speed = &machine.axes[0].speed_limit.steps;
     assert!(
         *speed > number("148.148148148148148148148148148")
             && *speed < number("148.148148148148148148148148149")

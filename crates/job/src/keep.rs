@@ -23,7 +23,7 @@ impl Keep {
     /// # Errors
     /// [`JobError::Axes`].
     pub fn new(machine: &Machine) -> Result<Self, JobError> {
-        let limits = crate::limits::exact(machine)?;
+        let limits = crate::limits::exact(machine);
         let quiet = machine.axes.iter().map(|axis| quiet(&axis.pins, &machine.timebase)).collect();
         Ok(Self { limits, quiet })
     }

@@ -2,7 +2,6 @@
 
 use crate::error::JobError;
 use crate::vector::Point;
-use bigdecimal::ToPrimitive;
 use carrystep_files::Machine;
 use carrystep_plan::exact::ExactLimits;
 
@@ -59,33 +58,23 @@ pub(crate) fn of_machine<const N: usize>(
 ) -> Result<([Limit; N], [ExactLimits; N]), JobError> {
     let mut limits = [Limit { speed: 0.0, acceleration: 0.0, jerk: 0.0 }; N];
     for (limit, axis) in limits.iter_mut().zip(&machine.axes) {
-        let float = |value: &carrystep_files::BigDecimal| {
-            value.to_f64().filter(|x| x.is_finite() && *x > 0.0)
-        };
-        let [speed, acceleration] = [&axis.speed_limit, &axis.accel_limit].map(float);
-        let (Some(speed), Some(acceleration)) = (speed, acceleration) else {
-            return Err(JobError::Axes(machine.axes.len()));
-        };
-        let jerk = axis.jerk_limit.as_ref().and_then(float).unwrap_or(acceleration / SHORTEST);
+        let [speed, acceleration] = [&axis.speed_limit, &axis.accel_limit].map(|limit| limit.float);
+        let jerk = axis.jerk_limit.as_ref().map_or(acceleration / SHORTEST, |limit| limit.float);
         *limit = Limit { speed, acceleration, jerk };
     }
-    let exact = exact(machine)?.try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
+    let exact = exact(machine).try_into().map_err(|_| JobError::Axes(machine.axes.len()))?;
     Ok((limits, exact))
 }
 
 /// The limits of a machine's motors in exact integers. Without `jerk_limit`, J is A / 4 ms.
-///
-/// # Errors
-/// [`JobError::Axes`].
-pub(crate) fn exact(machine: &Machine) -> Result<Vec<ExactLimits>, JobError> {
+pub(crate) fn exact(machine: &Machine) -> Vec<ExactLimits> {
     let tick_seconds = machine.timebase.tick_seconds();
     let of = |axis| {
-        let limits = ExactLimits::new::<f64>(axis, &machine.timebase)?;
+        let limits = ExactLimits::new::<f64>(axis);
         let jerk = limits.jerk.unwrap_or_else(|| default_jerk(&limits, tick_seconds));
-        Some(ExactLimits { jerk: Some(jerk), ..limits })
+        ExactLimits { jerk: Some(jerk), ..limits }
     };
-    let limits: Option<Vec<_>> = machine.axes.iter().map(of).collect();
-    limits.ok_or(JobError::Axes(machine.axes.len()))
+    machine.axes.iter().map(of).collect()
 }
 
 /// J = A / 4 ms in 2^-64 step per tick^3, rounded down; the ticks of 4 ms are rounded up.

@@ -93,6 +93,11 @@ impl Wanted {
     /// limit at both ends of the run, and A and J within their limits. If there are none with J,
     /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
+        if self.doubled_middle == 0 && self.jerk == 0 && self.one_way && !self.first {
+            // No A over 0 could mend what exceeds a bound at constant speed: it takes as much from V
+            // at one end as it adds at the other.
+            return Bend::default();
+        }
         let j = match limits.jerk {
             Some(most) if self.jerk != 0 => self.jerk.clamp(-most, most),
             _ => self.jerk,

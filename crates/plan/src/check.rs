@@ -74,7 +74,7 @@ struct Found {
 impl Found {
     /// Takes in the values of a segment, and returns the units that it travels.
     fn add(&mut self, segment: &Segment) -> Result<i128, Broken> {
-        self.pass(segment.v.into())?;
+        self.pass_register(segment.v)?;
         self.acceleration = self.acceleration.max(segment.a.unsigned_abs());
         if segment.j != 0 {
             return self.add_bent(segment);
@@ -98,15 +98,22 @@ impl Found {
         Ok(travel(segment, segment.ticks.into()))
     }
 
-    /// Takes in a V.
+    /// Takes in a V, which may not fit into its register.
     #[inline]
     fn pass(&mut self, v: i128) -> Result<(), Broken> {
-        let v = if self.backward { -v } else { v };
-        if v < 0 {
-            return Err(Broken::Sign);
+        match i64::try_from(v) {
+            Ok(v) => self.pass_register(v),
+            Err(_) if (v < 0) != self.backward => Err(Broken::Sign),
+            Err(_) => Err(Broken::Overspeed),
         }
-        let onward = i64::try_from(v).map_err(|_| Broken::Overspeed)?;
-        self.speed = self.speed.max(onward.unsigned_abs());
+    }
+
+    /// Takes in a V.
+    #[inline]
+    fn pass_register(&mut self, v: i64) -> Result<(), Broken> {
+        let onward = if self.backward { v.checked_neg().ok_or(Broken::Overspeed)? } else { v };
+        let onward = u64::try_from(onward).map_err(|_| Broken::Sign)?;
+        self.speed = self.speed.max(onward);
         Ok(())
     }
 }

@@ -5,17 +5,20 @@
 use crate::asked::Asked;
 use crate::error::PlanError;
 use crate::line;
+use arrayvec::ArrayVec;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
-use carrystep_core::{StartPhase, Timebase};
+use carrystep_core::{AXES, StartPhase, Timebase};
 use carrystep_files::{Machine, PathKind};
 use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
 /// closed forms stay inside an i128 and the segments fit in memory.
 const MOST_TICKS: u64 = 1 << 42;
+
+/// One entry for each axis of a machine whose moves are planned.
+pub(crate) type PerAxis<T> = ArrayVec<T, AXES>;
 
 /// The duration of a move.
 #[derive(Debug, Clone, Copy)]
@@ -53,15 +56,15 @@ pub(crate) fn demand<F: Real>(
     limits: &[Limits<F>],
     Asked { index, moved }: Asked<'_>,
     time: Option<&BigDecimal>,
-) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
+) -> Result<(Clock<F>, PerAxis<SharedProfile<F>>), PlanError> {
     let timebase = machine.timebase;
-    let own: Vec<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
+    let own: PerAxis<(F, Limits<F>)> = (limits.iter().zip(&moved.steps))
         .map(|(&limits, steps)| (float(steps.unsigned_abs()), limits))
         .collect();
     let straight = moved.path == PathKind::Straight;
-    let mut axes = Cow::Borrowed(&own[..]);
+    let mut axes = own.clone();
     if straight {
-        line::share_limits(moved.profile, axes.to_mut());
+        line::share_limits(moved.profile, &mut axes);
     }
     let refused = |axis: usize, refusal: LimitRefusal, least_time| {
         let (axis, refusal) = if straight {
@@ -74,7 +77,7 @@ pub(crate) fn demand<F: Real>(
     };
 
     let mut least = F::zero();
-    let mut fastest = Vec::with_capacity(axes.len());
+    let mut fastest = PerAxis::new();
     for (axis, (steps, limits)) in axes.iter().enumerate() {
         if steps.is_zero() {
             fastest.push(None);
@@ -100,7 +103,7 @@ pub(crate) fn demand<F: Real>(
     // Where several axes refuse the time, the error names the slowest one: its least time works for
     // all axes.
     let mut worst: Option<(usize, LimitRefusal)> = None;
-    let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
+    let mut profiles: PerAxis<SharedProfile<F>> = PerAxis::new();
     for (axis, ((steps, limits), fastest)) in axes.iter().zip(&fastest).enumerate() {
         let Some(fastest) = fastest else {
             profiles.push(Arc::new(Constant::rest(clock.seconds)));

@@ -83,10 +83,11 @@ impl Edges<'_> {
     /// soon the edge is found. Returns `None` if the segments have no pulse.
     pub fn first(&self, guess: u64) -> Option<i128> {
         let (mut p, mut before) = (i128::from(self.start), 0);
+        let target = self.target(1);
         for segment in self.segments {
             let end = p + travel(segment, segment.ticks.into());
-            if self.passed(1, end) {
-                return Some(self.edge(1, segment, (p, before), guess));
+            if self.passed(target, end) {
+                return Some(self.edge(target, segment, (p, before), guess));
             }
             p = end;
             before += u64::from(segment.ticks);
@@ -100,33 +101,40 @@ impl Edges<'_> {
         let steps = i128::from(count) * ONE_STEP;
         let mut p = i128::from(self.start) + if self.backward { -steps } else { steps };
         let mut before = self.segments.iter().map(|segment| u64::from(segment.ticks)).sum();
+        let target = self.target(count);
         for segment in self.segments.iter().rev() {
             p -= travel(segment, segment.ticks.into());
             before -= u64::from(segment.ticks);
-            if !self.passed(count, p) {
-                return Some(self.edge(count, segment, (p, before), guess));
+            if !self.passed(target, p) {
+                return Some(self.edge(target, segment, (p, before), guess));
             }
         }
         None
     }
 
-    /// Whether P is at pulse `k` or past it.
-    fn passed(&self, k: u64, p: i128) -> bool {
-        let target = i128::from(k) * ONE_STEP;
-        if self.backward { p < ONE_STEP - target } else { p >= target }
+    /// Where pulse `k` is due: forward the first P that has carried, backward the last that has not
+    /// borrowed.
+    fn target(&self, k: u64) -> i128 {
+        let steps = i128::from(k) * ONE_STEP;
+        if self.backward { ONE_STEP - steps } else { steps }
     }
 
-    /// The clocks of pulse `k`, whose edge is in this segment. Before the segment, P is `p` and
-    /// `before` ticks have passed. The search goes away from `guess` in steps that become twice as
-    /// long each time, and bisects what they enclose.
-    fn edge(&self, k: u64, segment: &Segment, (p, before): (i128, u64), guess: u64) -> i128 {
+    /// Whether P has carried, or borrowed, at this target.
+    fn passed(&self, target: i128, p: i128) -> bool {
+        if self.backward { p < target } else { p >= target }
+    }
+
+    /// The clocks of the pulse with this target, whose edge is in this segment. Before the segment,
+    /// P is `p` and `before` ticks have passed. The search goes away from `guess` in steps that
+    /// become twice as long each time, and bisects what they enclose.
+    fn edge(&self, target: i128, segment: &Segment, (p, before): (i128, u64), guess: u64) -> i128 {
         // The edge is after `low` ticks, where P is `old`, and not after the end of tick `high`.
         let (mut low, mut old, mut high) = (0, p, u64::from(segment.ticks));
         let (mut next, mut step) = (guess.saturating_sub(before), 1);
         while high - low > 1 {
             let middle = if low < next && next < high { next } else { low + (high - low) / 2 };
             let there = p + travel(segment, middle);
-            if self.passed(k, there) {
+            if self.passed(target, there) {
                 high = middle;
                 next = middle.saturating_sub(step);
             } else {

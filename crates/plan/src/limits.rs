@@ -1,13 +1,9 @@
 //! The limits of an axis, exactly in the gateware's units and as floats for the profiles.
 //!
-//! The directions of rounding ensure that a checked plan does not exceed a limit; they may not
-//! change.
+//! The machine file's limits are rounded down, so that a checked plan does not exceed them.
 
-use bigdecimal::num_bigint::BigInt;
-use bigdecimal::{BigDecimal, ToPrimitive};
-use carrystep_core::Timebase;
-use carrystep_core::fixed::FRACTION_BITS;
-use carrystep_files::Axis;
+use crate::units;
+use carrystep_files::{Axis, AxisLimit};
 use carrystep_profile::{Limits, Real};
 
 /// The greatest number of segments of one axis in one move. A move that needs more is refused.
@@ -30,20 +26,18 @@ pub struct ExactLimits {
 }
 
 impl ExactLimits {
-    /// Converts the limits of an axis. Returns `None` if one of them exceeds an i128; the check of
-    /// the machine file already refuses such a limit.
-    pub fn new<F: Real>(axis: &Axis, timebase: &Timebase) -> Option<Self> {
-        let units = |value, ticks| units(value, timebase.tick_ns(), ticks);
-        let speed = units(&axis.speed_limit, 1)?;
-        let relative = (F::epsilon().to_f64()? * 64.0).max(1e-9);
-        Some(Self {
-            start_speed: units(&axis.start_speed, 1)?,
+    /// The limits of an axis, for profiles computed in floats of type `F`.
+    pub fn new<F: Real>(axis: &Axis) -> Self {
+        let speed = axis.speed_limit.units;
+        let relative = F::epsilon().to_f64().map_or(1e-9, |epsilon| (epsilon * 64.0).max(1e-9));
+        Self {
+            start_speed: axis.start_speed.units,
             speed,
-            acceleration: units(&axis.accel_limit, 2)?,
+            acceleration: axis.accel_limit.units,
             // A jerk limit beyond an i128 limits nothing.
-            jerk: axis.jerk_limit.as_ref().and_then(|jerk| units(jerk, 3)),
-            tolerance: (speed as f64 * relative) as i128 + 1,
-        })
+            jerk: axis.jerk_limit.as_ref().map(|jerk| jerk.units).filter(|&j| j < i128::MAX),
+            tolerance: (units::float(speed) * relative) as i128 + 1,
+        }
     }
 
     /// The greatest V that a segment may be planned with, 2^-64 step per tick: the speed limit and
@@ -53,34 +47,9 @@ impl ExactLimits {
     }
 }
 
-/// Converts `value` steps per s, s^2 or s^3 (`ticks` is the power) to units of 2^-64 step per power
-/// of a tick of `tick_ns`, rounded down. The decimal is digits / 10^scale, and a tick is tick_ns /
-/// 10^9 s.
-fn units(value: &BigDecimal, tick_ns: u64, ticks: u32) -> Option<i128> {
-    let (digits, scale) = value.as_bigint_and_scale();
-    let tens = scale + 9 * i64::from(ticks);
-    if let Some(units) = small_units(digits.to_u64(), tick_ns.checked_pow(ticks), tens) {
-        return Some(units);
-    }
-    let units = (&*digits << FRACTION_BITS) * BigInt::from(tick_ns).pow(ticks);
-    let power = BigInt::from(10).pow(u32::try_from(tens.unsigned_abs()).ok()?);
-    if tens < 0 { units * power } else { units / power }.to_i128()
-}
-
-/// The same from numbers that fit into 64 bits and 128 bits, as those of most machines do.
-fn small_units(digits: Option<u64>, scale: Option<u64>, tens: i64) -> Option<i128> {
-    let mut value = digits?.checked_mul(scale?)?;
-    let mut tens = u32::try_from(tens).ok()?;
-    while tens > 0 && value.is_multiple_of(10) && value > 0 {
-        (value, tens) = (value / 10, tens - 1);
-    }
-    let power = 10_u128.checked_pow(tens)?;
-    i128::try_from((u128::from(value) << FRACTION_BITS) / power).ok()
-}
-
 /// The same limits in steps and seconds, as floats. A missing jerk limit is infinite.
 pub(crate) fn float_limits<F: Real>(axis: &Axis) -> Limits<F> {
-    let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
+    let float = |limit: &AxisLimit| F::from(limit.float).unwrap_or_else(F::nan);
     Limits {
         start_speed: float(&axis.start_speed),
         speed: float(&axis.speed_limit),

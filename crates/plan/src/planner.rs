@@ -7,7 +7,7 @@
 
 use crate::asked::Asked;
 use crate::check::{Duty, check};
-use crate::demand::{Clock, demand};
+use crate::demand::{Clock, PerAxis, demand};
 use crate::direction::{Pins, Strokes, borrows, still, turning_rest};
 use crate::edges::{self, Edges};
 use crate::error::{Broken, PlanError};
@@ -57,9 +57,9 @@ struct Place<'a> {
 pub(crate) struct Planner<'a, F> {
     machine: Cow<'a, Machine>,
     pub(crate) build: Build,
-    limits: Vec<ExactLimits>,
-    float_limits: Vec<Limits<F>>,
-    pins: Vec<Pins>,
+    limits: PerAxis<ExactLimits>,
+    float_limits: PerAxis<Limits<F>>,
+    pins: PerAxis<Pins>,
     room: Room,
     /// The next move, counted from 0.
     next: usize,
@@ -82,14 +82,11 @@ impl<'a, F: Real> Planner<'a, F> {
     /// A [`PlanError`] if no gateware can be built for the machine.
     pub(crate) fn new(machine: Cow<'a, Machine>) -> Result<Self, PlanError> {
         let timebase = machine.timebase;
-        let exact = |axis: &Axis| {
-            ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
-        };
         Ok(Self {
             build: machine.build()?,
-            limits: machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
+            limits: machine.axes.iter().map(ExactLimits::new::<F>).collect(),
             float_limits: machine.axes.iter().map(float_limits).collect(),
-            pins: vec![Pins::new(&timebase); machine.axes.len()],
+            pins: machine.axes.iter().map(|_| Pins::new(&timebase)).collect(),
             room: Room::default(),
             machine,
             next: 0,
@@ -106,8 +103,9 @@ impl<'a, F: Real> Planner<'a, F> {
         self.next += 1;
         let asked = Asked { index, moved };
         let mut room = std::mem::take(&mut self.room);
-        let (clock, drafts) = self
-            .drafts(asked, moved.time.as_ref(), &mut room)
+        let mut drafts = PerAxis::new();
+        let clock = self
+            .drafts(asked, moved.time.as_ref(), &mut room, &mut drafts)
             .map_err(|error| self.explained(asked, error))?;
         self.room = room;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
@@ -135,20 +133,20 @@ impl<'a, F: Real> Planner<'a, F> {
     }
 
     /// Plans all axes of a move, in the given time in seconds, or without one as fast as the limits
-    /// allow.
+    /// allow. They are put into `drafts`.
     fn drafts(
         &self,
         asked: Asked<'_>,
         time: Option<&BigDecimal>,
         room: &mut Room,
-    ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
+        drafts: &mut PerAxis<Draft<F>>,
+    ) -> Result<Clock<F>, PlanError> {
         let (clock, profiles) = demand(&self.machine, &self.float_limits, asked, time)?;
-        let mut drafts = Vec::with_capacity(profiles.len());
         for (axis, profile) in profiles.into_iter().enumerate() {
             let draft = self.draft(Place { asked, axis }, profile, &clock, room);
             drafts.push(draft.map_err(|b| broken(asked.index, &self.machine.axes[axis], b))?);
         }
-        Ok((clock, drafts))
+        Ok(clock)
     }
 
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
@@ -161,8 +159,10 @@ impl<'a, F: Real> Planner<'a, F> {
             return error;
         };
         let timebase = &self.build.timebase;
-        let trial = |time: Option<&BigDecimal>| self.drafts(asked, time, &mut Room::default()).ok();
-        let shortest = trial(None).and_then(|(clock, _)| clock.seconds.to_f64());
+        let trial = |time: Option<&BigDecimal>| {
+            self.drafts(asked, time, &mut Room::default(), &mut PerAxis::new()).ok()
+        };
+        let shortest = trial(None).and_then(|clock| clock.seconds.to_f64());
         let given = asked.moved.time.as_ref().and_then(BigDecimal::to_f64);
         let works = |time: &BigDecimal| trial(Some(time)).is_some();
         let longest = shortest

@@ -219,7 +219,7 @@ impl<F: Real> Writer<'_, F> {
     /// is carried into the next run.
     pub fn lay(&mut self, n: u64, distance: i128, bend: Bend, ends: bool) -> Result<(), Broken> {
         let [a, j] = [register(self.signed(bend.a))?, register(self.signed(bend.j))?];
-        let bent = if n == 1 { Some(0) } else { bend.distance(n) };
+        let bent = if n == 1 || (a == 0 && j == 0) { Some(0) } else { bend.distance(n) };
         let level = distance - self.signed(bent.ok_or(Broken::Range)?);
         let (v, remainder) = shared_out(level, n);
         if ends {

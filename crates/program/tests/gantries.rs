@@ -231,10 +231,10 @@ fn motors_of_a_letter_have_the_least_limits_and_the_longest_times() {
     let [first, second] = &machine.axes[..] else { panic!("two motors") };
     for axis in [first, second] {
         assert_eq!(axis.letter, "y");
-        assert_eq!((&axis.start_speed, &axis.speed_limit), (&0.into(), &7200.into()));
+        assert_eq!((&axis.start_speed.steps, &axis.speed_limit.steps), (&0.into(), &7200.into()));
         assert_eq!(
-            (&axis.accel_limit, axis.jerk_limit.clone()),
-            (&80_000.into(), Some(4_000_000.into()))
+            (&axis.accel_limit.steps, axis.jerk_limit.as_ref().map(|limit| &limit.steps)),
+            (&80_000.into(), Some(&4_000_000.into()))
         );
         assert_eq!((axis.pins_ns.step_high, axis.travel), (1000, Some([0, 24_000])));
         let home = axis.home.unwrap();

@@ -96,7 +96,7 @@ fn keeps(job: &Job, rows: &[Row]) {
     let machine = &job.machine;
     let mut at = job.start.clone();
     for (axis, setup) in machine.axes.iter().enumerate() {
-        let limits = ExactLimits::new::<f64>(setup, &machine.timebase).unwrap();
+        let limits = ExactLimits::new::<f64>(setup);
         let jerk = limits.jerk.unwrap_or(limits.acceleration / 4000);
         let mut before = 0;
         for (number, row) in rows.iter().enumerate() {

@@ -29,9 +29,10 @@ const PROBES_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARIT
      chtype -set $memrd t:memory_probe\n";
 
 /// Conversion of the system to gates; flip-flops without a value at configuration may have any
-/// value.
-const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt -full\ntechmap\nopt -full\ndffunmap\n\
-     setundef -undriven -anyseq\nabc -g AND -fast\nopt_clean\nwrite_aiger -zinit promises.aig\n";
+/// value. ABC simplifies while it unrolls, and takes a hundredth of the time in which yosys would
+/// simplify the gates before.
+const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_clean -purge\nsimplemap\ntechmap\n\
+     dffunmap\nsetundef -undriven -anyseq\naigmap\nwrite_aiger -zinit promises.aig\n";
 
 /// The reason why there is no answer, or not the expected one.
 #[derive(Debug, Error)]

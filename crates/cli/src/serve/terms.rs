@@ -37,8 +37,8 @@ pub fn settings(machine: &Machine, letters: &Letters, soft: &[bool]) -> MachineS
             letter,
             name: axis.letter.clone(),
             steps_per_unit: decimal::to_f64(&axis.steps_per_unit),
-            rate: decimal::to_f64(&axis.speed_limit) / steps * 60.0,
-            acceleration: decimal::to_f64(&axis.accel_limit) / steps,
+            rate: axis.speed_limit.float / steps * 60.0,
+            acceleration: axis.accel_limit.float / steps,
             travel,
         }
     });

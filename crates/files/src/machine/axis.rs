@@ -2,7 +2,7 @@
 
 use super::gantry::RawMotor;
 use super::home::{RawHome, RawPlace};
-use super::{Axis, stop};
+use super::{Axis, AxisLimit, stop};
 use crate::decimal;
 use crate::did_you_mean;
 use crate::driver::drivers;
@@ -76,15 +76,22 @@ impl RawAxis {
         }
         let steps_per_unit = self.steps_per_unit(source, table.clone())?;
         let unit = self.unit(source, &steps_per_unit)?;
-        let in_steps = |value: BigDecimal| value * &steps_per_unit;
+        let limit = |steps, seconds| AxisLimit::new(steps, seconds, timebase);
+        let in_steps = |value: BigDecimal, seconds| limit(value * &steps_per_unit, seconds);
         let start = self.start_speed(source, &steps_per_unit)?;
         let speed = self.speed_limit(source, table, &steps_per_unit)?;
-        let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
+        let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?, 2);
         not_too_slow(source, speed.span.clone(), speed.key, &speed.steps, (&unit, 1))?;
-        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, (&unit, 2))?;
+        not_too_slow(
+            source,
+            self.accel_limit.span(),
+            "accel_limit",
+            &accel_limit.steps,
+            (&unit, 2),
+        )?;
         let jerk_limit = match &self.jerk_limit {
             None => None,
-            Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
+            Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?, 3)),
         };
         if let Some(start) = start.as_ref().filter(|start| start.steps > speed.steps) {
             let message = format!("{} is over {}", start.key, speed.key);
@@ -94,7 +101,7 @@ impl RawAxis {
         let start_speed = start.map_or_else(BigDecimal::zero, |start| start.steps);
         let (pins_ns, pins) = self.pins(source, timebase)?;
         let stop = match &self.stop_accel {
-            None => stop::at_the_limit(&accel_limit, timebase),
+            None => stop::at_the_limit(&accel_limit),
             Some(value) => stop::units(source, value, &steps_per_unit, &unit, timebase)?,
         };
         let axis = Axis {
@@ -102,8 +109,8 @@ impl RawAxis {
             name,
             steps_per_unit,
             unit,
-            start_speed,
-            speed_limit: speed.steps,
+            start_speed: limit(start_speed, 1),
+            speed_limit: limit(speed.steps, 1),
             accel_limit,
             jerk_limit,
             stop,
@@ -207,8 +214,8 @@ impl Axis {
         span: Range<usize>,
         timebase: &Timebase,
     ) -> Result<(), InputError> {
-        let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
-        let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
+        let limit = self.unit.both(self.speed_limit.float, 1);
+        let doubled = &self.speed_limit.steps * BigDecimal::from(2 * timebase.tick_ns());
         if doubled >= 1_000_000_000 {
             let half = self.unit.at_most(0.5e9 / timebase.tick_ns() as f64, 1);
             return Err(InputError::at(
@@ -221,7 +228,7 @@ impl Axis {
         let PinTiming { step_high, step_low, .. } = self.pins;
         let clocks =
             u64::from(step_high) + u64::from(step_low) + u64::from(timebase.clocks_per_phase());
-        if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
+        if &self.speed_limit.steps * BigDecimal::from(clocks) > timebase.clock_hz() {
             let most = self.unit.at_most(timebase.clock_hz() as f64 / clocks as f64, 1);
             return Err(InputError::at(
                 source,
@@ -246,8 +253,8 @@ impl Axis {
         timebase: &Timebase,
     ) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
-        if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
-            let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);
+        if &self.accel_limit.steps * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
+            let limit = self.unit.both(self.accel_limit.float, 2);
             let half = self.unit.at_most(0.5e18 / (timebase.tick_ns() as f64).powi(2), 2);
             return Err(InputError::at(
                 source,

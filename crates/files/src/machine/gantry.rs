@@ -4,7 +4,7 @@
 //! depends on which of them it is: all get the least of their limits, the longest of their driver's
 //! times and the same travel. In homing each finds a switch of its own, and all rest at one place.
 
-use super::Axis;
+use super::{Axis, AxisLimit};
 use crate::error::{InputError, SourceText, quoted};
 use carrystep_core::build::{PinTimes, PinTiming, Timebase};
 use carrystep_core::engine::LimitWiring;
@@ -112,7 +112,7 @@ impl Axis {
     /// Takes the other motor's limits where they are less, and its driver's times where they are
     /// longer.
     fn take_least(&mut self, other: &Self) {
-        let least = |own: &mut bigdecimal::BigDecimal, other: &bigdecimal::BigDecimal| {
+        let least = |own: &mut AxisLimit, other: &AxisLimit| {
             if *other < *own {
                 own.clone_from(other);
             }

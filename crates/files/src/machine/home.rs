@@ -151,10 +151,10 @@ struct Checked<'a> {
 
 impl Checked<'_> {
     fn home(&self, raw: &RawHome) -> Result<Home, InputError> {
-        let accel = stop::at_the_limit(&self.axis.accel_limit, self.timebase);
-        let start = per_tick(&self.axis.start_speed, self.timebase);
+        let accel = stop::at_the_limit(&self.axis.accel_limit);
+        let start = per_tick(&self.axis.start_speed.steps, self.timebase);
         let seek =
-            self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit, "speed_limit")?;
+            self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit.steps, "speed_limit")?;
         let limit =
             positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
         let slow = self.speed(&raw.slow_speed, "slow_speed", &limit, "seek_speed")?;
@@ -270,8 +270,11 @@ impl Checked<'_> {
     /// the switch, plus a hundredth of the travel.
     fn usual_move_off(&self) -> Result<u32, InputError> {
         let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
-        let full =
-            overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
+        let full = overrun(
+            per_tick(&self.axis.speed_limit.steps, self.timebase),
+            self.axis.stop,
+            self.guard,
+        );
         let steps = full.saturating_add((high - low).unsigned_abs().div_ceil(100));
         match u32::try_from(steps) {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),

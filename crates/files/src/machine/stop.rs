@@ -1,11 +1,12 @@
 //! `stop_accel`: the acceleration with which the engine ramps an axis down, as the integer that it
 //! subtracts from V in each tick.
 
+use super::limit::{AxisLimit, per_tick};
 use crate::decimal;
 use crate::error::{InputError, SourceText};
 use crate::number::positive;
 use crate::unit::Unit;
-use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use bigdecimal::BigDecimal;
 use carrystep_core::build::Timebase;
 use toml::Spanned;
 
@@ -22,9 +23,9 @@ pub(super) fn units(
     timebase: &Timebase,
 ) -> Result<u64, InputError> {
     let exact = positive(source, value, "stop_accel")? * steps_per_unit;
-    let units = counted(&exact, timebase);
     let (least, most) = (1, MOST);
-    if let Some(fine) = units.to_u64().filter(|units| (least..=most).contains(units)) {
+    let fits = |units: &u64| (least..=most).contains(units);
+    if let Some(fine) = u64::try_from(per_tick(&exact, 2, timebase)).ok().filter(fits) {
         return Ok(fine);
     }
     let given = unit.both(decimal::to_f64(&exact), 2);
@@ -41,16 +42,7 @@ pub(super) fn units(
     )))
 }
 
-/// The stop acceleration of a file that gives none: the axis' acceleration limit in steps/s^2, at
-/// most [`MOST`].
-pub(super) fn at_the_limit(accel_limit: &BigDecimal, timebase: &Timebase) -> u64 {
-    counted(accel_limit, timebase).to_u64().unwrap_or(MOST).clamp(1, MOST)
-}
-
-/// Converts steps/s^2 to 2^-64 step per tick^2, rounded toward zero.
-fn counted(steps: &BigDecimal, timebase: &Timebase) -> BigDecimal {
-    let tick_ns = BigDecimal::from(timebase.tick_ns());
-    // The factor 10^-18 converts ns^2 to s^2; it is exact in decimals.
-    let per_tick = steps * &tick_ns * &tick_ns * BigDecimal::new(1.into(), 18);
-    (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down)
+/// The stop acceleration of a file that gives none: the axis' acceleration limit, at most [`MOST`].
+pub(super) fn at_the_limit(accel_limit: &AxisLimit) -> u64 {
+    u64::try_from(accel_limit.units).unwrap_or(MOST).clamp(1, MOST)
 }

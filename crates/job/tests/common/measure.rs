@@ -51,7 +51,10 @@ fn limits(machine: &Machine) -> Limits {
     let of = |limit: fn(&carrystep_files::Axis) -> &carrystep_files::BigDecimal| {
         machine.axes.iter().map(|axis| value(limit(axis)) / value(&axis.steps_per_unit)).collect()
     };
-    Limits { speed: of(|axis| &axis.speed_limit), acceleration: of(|axis| &axis.accel_limit) }
+    Limits {
+        speed: of(|axis| &axis.speed_limit.steps),
+        acceleration: of(|axis| &axis.accel_limit.steps),
+    }
 }
 
 /// The emitted curve: speeds and accelerations in mm and seconds, from the integers.

@@ -88,8 +88,8 @@ impl Replay {
     pub fn assert_limits(&self, machine: &Machine) {
         for (state, axis) in self.axes.iter().zip(&machine.axes) {
             let value = |x: &carrystep_files::BigDecimal| x.to_string().parse::<f64>().unwrap();
-            let (v, a) = (value(&axis.speed_limit), value(&axis.accel_limit));
-            let j = axis.jerk_limit.as_ref().map_or(a / 0.004, value);
+            let (v, a) = (value(&axis.speed_limit.steps), value(&axis.accel_limit.steps));
+            let j = axis.jerk_limit.as_ref().map_or(a / 0.004, |limit| value(&limit.steps));
             let most =
                 [v * 1e-6, a * 1e-12, j * 1e-18, a * 1e-12 * 0.02, a * 1e-12].map(|x| x * STEP);
             for (what, (peak, most)) in

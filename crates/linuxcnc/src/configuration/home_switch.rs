@@ -102,7 +102,7 @@ impl HomeSwitch {
             return refused(format!("the machine has no general input {}", self.input));
         }
         let scale = decimal::to_f64(&axis.steps_per_unit);
-        if self.seek_speed > decimal::to_f64(&axis.speed_limit) / scale {
+        if self.seek_speed > axis.speed_limit.float / scale {
             return refused("seek_speed is over speed_limit".to_owned());
         }
         let sign = if self.at_low_end { -1.0 } else { 1.0 };

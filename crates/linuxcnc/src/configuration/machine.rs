@@ -180,8 +180,8 @@ fn joint(machine: &Machine, number: usize, letter: char, angular: bool) -> Joint
     Joint {
         letter,
         scale,
-        speed: decimal::to_f64(&axis.speed_limit) / scale,
-        acceleration: decimal::to_f64(&axis.accel_limit) / scale,
+        speed: axis.speed_limit.float / scale,
+        acceleration: axis.accel_limit.float / scale,
         travel: axis.travel.map(|[low, high]| (units(low), units(high))),
         angular,
         homing: Homing::InPlace { at: units(rests(axis)) },

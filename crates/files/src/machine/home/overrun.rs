@@ -1,6 +1,7 @@
 //! The distance by which an axis overruns its switch, and conversions of speeds.
 
-use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use crate::machine::limit;
+use bigdecimal::BigDecimal;
 use carrystep_core::build::Timebase;
 use carrystep_core::engine::Guard;
 
@@ -14,10 +15,8 @@ pub fn overrun(speed: u64, stop: u64, guard: &Guard) -> u64 {
 
 /// Converts steps/s to 2^-64 step per tick, rounded down.
 pub(super) fn per_tick(speed: &BigDecimal, timebase: &Timebase) -> u64 {
-    let per_tick = speed * BigDecimal::from(timebase.tick_ns()) * BigDecimal::new(1.into(), 9);
-    let units = (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down);
     // Speeds are below half a step per tick, so that the value fits.
-    units.to_u64().unwrap_or(u64::MAX >> 1)
+    u64::try_from(limit::per_tick(speed, 1, timebase)).unwrap_or(u64::MAX >> 1)
 }
 
 /// Distance in 2^-64 step that an axis of this speed moves while the guard accepts a level.
