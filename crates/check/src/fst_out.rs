@@ -1,19 +1,24 @@
 //! Writes the waveform as FST, which GTKWave opens quickly however long it is.
 //!
-//! `waves.rs` decides what is written and when; this file only holds the file format.
+//! `waves.rs` decides what is written and when; this file only holds the file format. The library
+//! writes the names and kinds of the signals. Their changes, of which there are millions, are put
+//! together in `fst_body.rs`.
 
 use crate::edge::PinSink;
+use crate::fst_body::{self, Body, Kind};
 use crate::vcd_own::OwnCapture;
 use crate::wave_format::{Format, MILLION, SCOPE, SIGNALS, VERSION};
 use crate::waves::{WaveWriter, Waves};
 use fst_writer::{
-    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType,
-    FstVarDirection, FstVarType, FstWriteError,
+    FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalType, FstVarDirection,
+    FstVarType, FstWriteError,
 };
-use std::io::{self, Seek, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 
-/// Changes are kept in memory up to this many bytes and then written as a block.
-const BLOCK: usize = 1 << 20;
+/// Where the header of the file has its last time.
+const LAST_TIME: u64 = 17;
+/// Where it has the number of blocks of value changes.
+const BLOCKS: u64 = 65;
 
 /// Returns a writer of an FST, which writes the header with the first change.
 pub fn fst_writer<'a>(out: impl Write + Seek + 'a, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
@@ -22,7 +27,7 @@ pub fn fst_writer<'a>(out: impl Write + Seek + 'a, waves: Waves<'a>) -> Box<dyn 
 
 /// The same without a parameter, so that all of it is compiled with this crate.
 fn boxed<'a>(out: Box<dyn Output + 'a>, waves: Waves<'a>) -> Box<dyn PinSink + 'a> {
-    Box::new(WaveWriter::new(FstFormat(State::New(out)), waves))
+    Box::new(WaveWriter::new(FstFormat { out, body: Body::new([]) }, waves))
 }
 
 /// A file that can be written anywhere.
@@ -31,13 +36,10 @@ trait Output: Write + Seek {}
 impl<W: Write + Seek> Output for W {}
 
 /// An FST file that is being written.
-struct FstFormat<'a>(State<'a>);
-
-enum State<'a> {
-    New(Box<dyn Output + 'a>),
-    Body(Box<FstBodyWriter<Box<dyn Output + 'a>>>),
-    /// The file is complete, or writing has failed.
-    Over,
+struct FstFormat<'a> {
+    out: Box<dyn Output + 'a>,
+    /// Without signals until they are declared.
+    body: Body,
 }
 
 /// Converts an error of the library; an error of the system is passed on unchanged.
@@ -48,27 +50,28 @@ fn told(error: FstWriteError) -> io::Error {
     }
 }
 
-impl<'a> FstFormat<'a> {
-    fn body(&mut self) -> io::Result<&mut FstBodyWriter<Box<dyn Output + 'a>>> {
-        match &mut self.0 {
-            State::Body(body) => Ok(body),
-            State::New(_) | State::Over => Err(io::Error::other("nothing is declared")),
-        }
+/// The part of a file of the library before its first block of value changes.
+pub(crate) fn before_changes(mut file: Vec<u8>) -> Vec<u8> {
+    let mut place = 0;
+    while file.get(place).is_some_and(|&kind| kind != fst_body::CHANGES) {
+        // The length counts its own eight bytes, and not that of the kind.
+        let length = file.get(place + 1..place + 9).and_then(|bytes| bytes.try_into().ok());
+        let length = usize::try_from(length.map_or(0, u64::from_be_bytes)).unwrap_or(0);
+        place += 1 + length.max(8);
     }
+    file.truncate(place);
+    file
 }
 
 impl Format for FstFormat<'_> {
-    type Id = FstSignalId;
+    type Id = usize;
     const NAME: &'static str = "the FST";
 
     fn declare(
         &mut self,
         own: &OwnCapture,
         axes: &[&str],
-    ) -> io::Result<Vec<[FstSignalId; SIGNALS.len()]>> {
-        let State::New(out) = std::mem::replace(&mut self.0, State::Over) else {
-            return Err(io::Error::other("declared twice"));
-        };
+    ) -> io::Result<Vec<[usize; SIGNALS.len()]>> {
         let info = FstInfo {
             start_time: 0,
             timescale_exponent: -12,
@@ -77,12 +80,11 @@ impl Format for FstFormat<'_> {
             date: String::new(),
             file_type: FstFileType::Verilog,
         };
-        let mut header = FstHeaderWriter::new(out, &info).map_err(told)?;
+        let mut header = FstHeaderWriter::write_to_mem(&info).map_err(told)?;
         header.scope(SCOPE, "", FstScopeType::Module).map_err(told)?;
-        let mut all = Vec::new();
+        let mut kinds = Vec::new();
         for axis in axes {
             header.scope(axis, "", FstScopeType::Module).map_err(told)?;
-            let mut ids = Vec::new();
             for (name, bits) in SIGNALS {
                 let (name, signal, kind) = match bits {
                     0 => (name.to_owned(), FstSignalType::real(), FstVarType::Real),
@@ -93,19 +95,17 @@ impl Format for FstFormat<'_> {
                         FstVarType::Wire,
                     ),
                 };
-                ids.push(
-                    header.var(name, signal, kind, FstVarDirection::Output, None).map_err(told)?,
-                );
+                kinds.push(if bits == 0 { Kind::Real } else { Kind::Bits(bits) });
+                header.var(name, signal, kind, FstVarDirection::Output, None).map_err(told)?;
             }
             header.up_scope().map_err(told)?;
-            all.extend(<[FstSignalId; SIGNALS.len()]>::try_from(ids));
         }
         header.up_scope().map_err(told)?;
-        let mut body = header.finish().map_err(told)?;
-        // A viewer that interpolates needs both ends of a level, so repeated values are kept.
-        body.set_deduplicate(false);
-        self.0 = State::Body(Box::new(body));
-        Ok(all)
+        let file = header.finish().and_then(|body| body.finish()).map_err(told)?;
+        self.out.write_all(&before_changes(file.into_inner()))?;
+        self.body = Body::new(kinds);
+        let first = |axis| axis * SIGNALS.len();
+        Ok((0..axes.len()).map(|axis| std::array::from_fn(|signal| first(axis) + signal)).collect())
     }
 
     fn initial(
@@ -124,35 +124,31 @@ impl Format for FstFormat<'_> {
     }
 
     fn time(&mut self, ps: u64) -> io::Result<()> {
-        let body = self.body()?;
-        if body.size() > BLOCK {
-            body.flush().map_err(told)?;
+        if self.body.is_full() {
+            self.body.write_block(&mut self.out)?;
         }
-        body.time_change(ps).map_err(told)
+        self.body.time(ps)
     }
 
-    fn bit(&mut self, id: FstSignalId, level: bool) -> io::Result<()> {
-        self.body()?.signal_change(id, if level { b"1" } else { b"0" }).map_err(told)
+    fn bit(&mut self, id: usize, level: bool) -> io::Result<()> {
+        self.body.change(id, level.into())
     }
 
-    fn vector(&mut self, id: FstSignalId, value: u64, bits: u32) -> io::Result<()> {
-        let mut text = [b'0'; u64::BITS as usize];
-        let text = &mut text[..bits as usize];
-        for (bit, digit) in text.iter_mut().rev().enumerate() {
-            *digit = b'0' + (value >> bit & 1) as u8;
-        }
-        self.body()?.signal_change(id, text).map_err(told)
+    fn vector(&mut self, id: usize, value: u64, _bits: u32) -> io::Result<()> {
+        self.body.change(id, value)
     }
 
-    fn real(&mut self, id: FstSignalId, millionths: f64) -> io::Result<()> {
-        let value = millionths / MILLION;
-        self.body()?.signal_change(id, &value.to_le_bytes()).map_err(told)
+    fn real(&mut self, id: usize, millionths: f64) -> io::Result<()> {
+        self.body.change(id, (millionths / MILLION).to_bits())
     }
 
     fn end(&mut self) -> io::Result<()> {
-        let State::Body(body) = std::mem::replace(&mut self.0, State::Over) else {
-            return Err(io::Error::other("nothing is declared"));
-        };
-        (*body).finish().map_err(told)?.flush()
+        self.body.write_block(&mut self.out)?;
+        let (last_time, blocks) = self.body.end();
+        for (place, number) in [(LAST_TIME, last_time), (BLOCKS, blocks)] {
+            self.out.seek(SeekFrom::Start(place))?;
+            self.out.write_all(&number.to_be_bytes())?;
+        }
+        self.out.flush()
     }
 }

@@ -18,6 +18,7 @@ mod error;
 mod error_counts;
 mod exact;
 mod follow;
+mod fst_body;
 mod fst_out;
 mod gtkw;
 mod ideal;
