@@ -21,7 +21,7 @@ mod travel;
 
 pub(super) use order::RawOrder;
 pub use overrun::overrun;
-use overrun::{accepted, per_tick, steps_up};
+use overrun::{accepted, per_tick, register, steps_up};
 
 /// Greatest distance or machine coordinate, steps: the range of a position register.
 const MOST_STEPS: i64 = i32::MAX as i64;
@@ -152,7 +152,7 @@ struct Checked<'a> {
 impl Checked<'_> {
     fn home(&self, raw: &RawHome) -> Result<Home, InputError> {
         let accel = stop::at_the_limit(&self.axis.accel_limit);
-        let start = per_tick(&self.axis.start_speed.steps, self.timebase);
+        let start = register(self.axis.start_speed.units);
         let seek =
             self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit.steps, "speed_limit")?;
         let limit =
@@ -270,11 +270,7 @@ impl Checked<'_> {
     /// the switch, plus a hundredth of the travel.
     fn usual_move_off(&self) -> Result<u32, InputError> {
         let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
-        let full = overrun(
-            per_tick(&self.axis.speed_limit.steps, self.timebase),
-            self.axis.stop,
-            self.guard,
-        );
+        let full = overrun(register(self.axis.speed_limit.units), self.axis.stop, self.guard);
         let steps = full.saturating_add((high - low).unsigned_abs().div_ceil(100));
         match u32::try_from(steps) {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),

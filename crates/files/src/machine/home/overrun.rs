@@ -15,8 +15,12 @@ pub fn overrun(speed: u64, stop: u64, guard: &Guard) -> u64 {
 
 /// Converts steps/s to 2^-64 step per tick, rounded down.
 pub(super) fn per_tick(speed: &BigDecimal, timebase: &Timebase) -> u64 {
-    // Speeds are below half a step per tick, so that the value fits.
-    u64::try_from(limit::per_tick(speed, 1, timebase)).unwrap_or(u64::MAX >> 1)
+    register(limit::per_tick(speed, 1, timebase))
+}
+
+/// A speed in 2^-64 step per tick, which fits because it is below half a step per tick.
+pub(super) fn register(speed: i128) -> u64 {
+    u64::try_from(speed).unwrap_or(u64::MAX >> 1)
 }
 
 /// Distance in 2^-64 step that an axis of this speed moves while the guard accepts a level.
