@@ -8,9 +8,10 @@
 //!         times      of all changes, each relative to the one before, compressed with zlib
 //! ```
 //!
-//! The library `fst-writer` writes the same bytes, which the tests compare. It takes a value as
-//! text, a character for each bit, and three times as long (decision 116). The format is that of
-//! GTKWave's `fstapi` (T. Bybell, 2009); numbers are big-endian, and a *varint* is LEB128.
+//! A *varint* is a number in LEB128; other numbers are big-endian, and floats little-endian. The
+//! format is that of GTKWave's `fstapi` (T. Bybell, 2009). The tests compare the blocks with those of
+//! the library `fst-writer`, byte for byte. The library itself is not used for them, because it takes
+//! each value as text, a character for each bit, which takes three times as long (decision 116).
 
 use std::io::{self, Write};
 
@@ -22,8 +23,7 @@ const LZ4: u8 = b'4';
 const SHORT: usize = 32;
 /// The level of zlib: 3 of 10.
 const ZLIB_LEVEL: u8 = 3;
-/// A block is complete with so many bytes of changes and times, not compressed. They stay in the
-/// processor's cache until they are.
+/// A block is written when its changes and times have more than so many bytes, before compression.
 const BLOCK: usize = 1 << 19;
 
 /// The values that a signal can have.
@@ -216,8 +216,9 @@ impl Body {
     }
 }
 
-/// Adds the changes of a signal, compressed where that makes them shorter, behind their length or
-/// behind 0 if they are not compressed.
+/// Adds the changes of a signal to the block. They are compressed if that makes them shorter. In
+/// front of them stands a varint: their number of bytes before compression, or 0 if they are not
+/// compressed.
 fn pack(block: &mut Vec<u8>, changes: &[u8]) {
     if changes.len() >= SHORT {
         let packed = lz4_flex::compress(changes);
@@ -231,7 +232,8 @@ fn pack(block: &mut Vec<u8>, changes: &[u8]) {
     block.extend_from_slice(changes);
 }
 
-/// Adds that so many signals have no changes.
+/// Notes in the places that so many signals, one after the other, have no changes, and sets the
+/// number back to 0.
 fn skip(places: &mut Vec<u8>, without: &mut u64) {
     let count = std::mem::take(without);
     if count > 0 {
@@ -248,7 +250,8 @@ fn varint(bytes: &mut Vec<u8>, mut number: u64) {
     bytes.push(number as u8);
 }
 
-/// The same for a reader that takes bit 6 of the last group as the sign: it is 0.
+/// The same for the places, which a reader takes as signed numbers: it reads bit 6 of the last group
+/// as the sign, so that bit must be 0.
 fn signed_varint(bytes: &mut Vec<u8>, mut number: u64) {
     while number > 0x3f {
         bytes.push(number as u8 & 0x7f | 0x80);

@@ -94,8 +94,8 @@ impl Wanted {
     /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
         if self.doubled_middle == 0 && self.jerk == 0 && self.one_way && !self.first {
-            // No A over 0 could mend what exceeds a bound at constant speed: it takes as much from V
-            // at one end as it adds at the other.
+            // The run has constant speed. If that exceeds a bound, no A helps: it lowers V at one end
+            // of the run by as much as it raises V at the other end.
             return Bend::default();
         }
         let j = match limits.jerk {

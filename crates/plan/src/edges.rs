@@ -112,14 +112,14 @@ impl Edges<'_> {
         None
     }
 
-    /// Where pulse `k` is due: forward the first P that has carried, backward the last that has not
-    /// borrowed.
+    /// The position at which pulse `k` is due, 2^-64 step. Forward, P reaches it; backward, P falls
+    /// below it.
     fn target(&self, k: u64) -> i128 {
         let steps = i128::from(k) * ONE_STEP;
         if self.backward { ONE_STEP - steps } else { steps }
     }
 
-    /// Whether P has carried, or borrowed, at this target.
+    /// Whether the pulse with this target is given when P is `p`.
     fn passed(&self, target: i128, p: i128) -> bool {
         if self.backward { p < target } else { p >= target }
     }

@@ -1,7 +1,7 @@
 //! A limit of an axis, as the file gives it and as the gateware counts it.
 //!
-//! The direction of rounding ensures that a plan that keeps the integers keeps the file's limits; it
-//! may not change.
+//! The integers are rounded down. A plan that keeps them therefore keeps the file's limits; this
+//! direction of rounding may not change.
 
 use crate::decimal;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};

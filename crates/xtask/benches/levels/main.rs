@@ -28,6 +28,10 @@ use verilator::Verilated;
 /// Verilator needs for a clock in the same run.
 const EDGE_AT_MOST: f64 = 0.15;
 
+/// The greatest time of writing the waveform of the busy move as FST, as a part of that as VCD. They
+/// take about the same, and a run may find either a little faster.
+const FST_AT_MOST: f64 = 1.1;
+
 /// The number of clocks that Verilator runs in a smoke run: less than a second.
 const SMOKE_CLOCKS: u64 = 2_000_000;
 
@@ -85,12 +89,17 @@ fn measure(carrystep: &Path, smoke: bool) -> Result<BenchReport, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let busy = &moves[0];
     let ports = writers::ports(busy, folder.path())?;
-    let waveform = writers::waveform(busy, folder.path())?;
+    let [waveform, fst] = writers::waveforms(busy, folder.path())?;
+    let fst_per_vcd = fst.seconds / waveform.seconds.max(1e-9);
     let (feed, clocks) = (busy.feed(), most_clocks(busy, smoke));
     let untraced = tracing.run(&feed, clocks, None)?.seconds;
     let theirs = writers::verilators(&tracing, &feed, clocks, untraced, folder.path())?;
     if ports.megabytes_per_second() < theirs.megabytes_per_second() / 2.0 {
         failures.push("our VCD is written at less than half the speed of Verilator's".to_owned());
+    }
+    if fst_per_vcd > FST_AT_MOST {
+        failures
+            .push(format!("FST takes {fst_per_vcd:.2} of the time of VCD, {FST_AT_MOST} wanted"));
     }
     if let Some(busy) = rows.first() {
         let edge = busy.fast_ns_per_edge * 1e-9 * busy.verilator;
@@ -122,6 +131,7 @@ fn measure(carrystep: &Path, smoke: bool) -> Result<BenchReport, String> {
         ticked_ns_side_by_side,
         vcd_mb_per_s: ports.megabytes_per_second(),
         waveform_mb_per_s: waveform.megabytes_per_second(),
+        fst_per_vcd,
         verilator_vcd_mb_per_s: theirs.megabytes_per_second(),
         growth,
         measured_s: begin.elapsed().as_secs_f64(),

@@ -33,6 +33,8 @@ pub struct BenchReport {
     /// Writing speed for the waveform of the product: pins and registers beside the float profile,
     /// MB/s.
     pub waveform_mb_per_s: f64,
+    /// Time of writing that waveform as FST, as a part of the time as VCD.
+    pub fst_per_vcd: f64,
     pub verilator_vcd_mb_per_s: f64,
     /// How the time of each command grows with its work.
     pub growth: Growth,
@@ -144,6 +146,7 @@ impl fmt::Display for BenchReport {
             "VCD of the ports: {:.0} MB/s, Verilator's own trace of them {:.0} MB/s; our whole waveform {:.0} MB/s",
             self.vcd_mb_per_s, self.verilator_vcd_mb_per_s, self.waveform_mb_per_s
         )?;
+        writeln!(f, "FST of the whole waveform takes {:.2} of the time of VCD", self.fst_per_vcd)?;
         write!(f, "{}", self.growth)?;
         writeln!(f, "measured in {:.0} s", self.measured_s)?;
         if !self.judged {

@@ -4,7 +4,7 @@
 use crate::moves::Moves;
 use crate::stopwatch;
 use crate::verilator::Verilated;
-use carrystep_check::{AxisWaves, PinSink, View, Waves, vcd_writer};
+use carrystep_check::{AxisWaves, PinSink, View, Waves, fst_writer, vcd_writer};
 use carrystep_core::AXES;
 use carrystep_core::ports::Outputs;
 use carrystep_simulators::pins::PinFeed;
@@ -52,10 +52,19 @@ pub fn ports(moves: &Moves, folder: &Path) -> Result<Written, String> {
     Ok(Written { bytes: length(&path)?, seconds: with - without })
 }
 
-/// Writes STEP, DIR, position and V of each axis beside the float profile, like `carrystep simulate
-/// --vcd`.
-pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
-    let path = folder.join("waveform.vcd");
+/// Begins a waveform of one format in a file.
+type Format = for<'a> fn(File, Waves<'a>) -> Box<dyn PinSink + 'a>;
+
+/// Writes STEP, DIR, position and V of each axis beside the float profile, like `carrystep simulate`
+/// with `--vcd` and with `--fst`. Returns what was written in each of the two formats.
+pub fn waveforms(moves: &Moves, folder: &Path) -> Result<[Written; 2], String> {
+    let vcd: Format = |file, waves| vcd_writer(file, waves);
+    let fst: Format = |file, waves| fst_writer(file, waves);
+    Ok([waveform(moves, folder, vcd)?, waveform(moves, folder, fst)?])
+}
+
+fn waveform(moves: &Moves, folder: &Path, format: Format) -> Result<Written, String> {
+    let path = folder.join("waveform");
     let simulate = |sink: &mut dyn PinSink| {
         let mut feed = PinFeed::new(moves.plan.build.timebase, AXES, sink);
         let outcome =
@@ -81,7 +90,7 @@ pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
             axes: axes.collect(),
             view: View::default(),
         };
-        simulate(&mut *vcd_writer(file, waves))
+        simulate(&mut *format(file, waves))
     });
     result?;
     Ok(Written { bytes: length(&path)?, seconds: with - without })

@@ -14,8 +14,8 @@ const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equa
 const WIDE: [&str; 2] =
     ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
 
-/// With so many seconds or less a binary with workers mostly compares kept answers of tools, and
-/// hardly uses a second core.
+/// If a binary of [`WIDE`] is expected to take at most so many seconds, nearly all answers of its
+/// tools are kept, and its workers hardly use a second core.
 const SHORT: f64 = 100.0;
 
 /// Tests that mostly wait for a board or a line that runs in real time: the binary, and how the names
