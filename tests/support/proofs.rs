@@ -29,6 +29,7 @@ pub mod independence;
 mod lane_seek;
 mod lane_slots;
 mod latch_bank;
+mod modules;
 mod output_control;
 mod parallel_core;
 mod promises;

@@ -20,13 +20,13 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_ready",
-        text: "(selected[4] & axis_4_waiting)",
-        becomes: "(selected[4] & axis_3_waiting)",
+        text: "(selected[2] & axis_2_waiting)",
+        becomes: "(selected[2] & axis_1_waiting)",
     },
     Bug {
         breaks: "promise_6_taken_by_its_axis",
-        text: "(push & selected[5])",
-        becomes: "(push & selected[4])",
+        text: "(push & selected[2])",
+        becomes: "(push & selected[1])",
     },
     Bug { breaks: "promise_6_broken_is_told", text: "(taken & !push) | ", becomes: "" },
     Bug { breaks: "promise_6_start_ready", text: "!(frozen | armed)", becomes: "!frozen" },
@@ -62,7 +62,8 @@ pub(super) fn proof() -> Proof {
         promises: Promises {
             text: include_str!("../../../crates/hdl/src/parallel/core/promises.sv"),
         },
-        cases: all.chain([fewer(3)]).collect(),
+        // Covers and bugs use the first case. Yosys converts it in half of the time of the others.
+        cases: [fewer(3)].into_iter().chain(all).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

@@ -17,6 +17,8 @@ module promises (
     input wire [`LANES-1:0] limit,
     input wire [`LANES-1:0] dry
 );
+    // Four bits wide, because a remainder of 32 bits takes yosys some seconds.
+    localparam [3:0] AXES = `AXES, LANES = `LANES;
     wire [`AXES-1:0] axis_one_hot = 32'd1 << axis;
     wire tells, some_run, is_too_fast, is_limit, is_dry;
     wire [`AXES-1:0] culprit;
@@ -35,7 +37,7 @@ module promises (
         if (time_slot_ends) {fast, limits, dries, first, ran} <= {too_fast, limit, dry, axis, runs};
     end
     always_comb begin
-        assume (axis % `LANES == 0 && axis + `LANES <= `AXES);
+        assume (axis % LANES == 0 && axis + LANES <= AXES);
         assume (!time_slot_ends || since == 0);
     end
 
@@ -81,7 +83,7 @@ module promises (
         invariant_1: assert ({ended, again} == {since == 1, since == 2} && since != 3);
         invariant_2: assert ({dut_fast, dut_limits, dut_dries, dut_ran} == {fast, limits, dries, ran});
         invariant_3: assert (since == 0 || slot == 32'd1 << first);
-        invariant_4: assert (first % `LANES == 0 && first + `LANES <= `AXES);
+        invariant_4: assert (first % LANES == 0 && first + LANES <= AXES);
         invariant_5: assert (!first_clock || since == 0 && {fast, limits, dries} == 0);
     end
 `endif
