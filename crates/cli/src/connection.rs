@@ -34,6 +34,11 @@ const RESEND_TO_A_PROGRAM: u32 = 3000;
 const SILENCE_OF_A_PROGRAM: u32 = 10_000;
 const LOSS_OF_A_PROGRAM: u32 = 30_000;
 
+/// Time between two reads of the state of a board that is a program, ms. A fast board runs ahead of the
+/// last byte by 6 ms of a move (`PART_IN_A_MOVE` in `crates/virtual-board/src/pace.rs`), and then waits
+/// for the next one: with the 20 ms of a real board it would home no faster than a real one.
+const STATUS_PERIOD_OF_A_PROGRAM: u32 = 2;
+
 /// A board on a serial port.
 pub type ConnectedBoard = Host<ClaimedLine<SerialLine>, SystemClock>;
 
@@ -213,6 +218,7 @@ fn patience(port: &str) -> Patience {
         patience.timing.resend = RESEND_TO_A_PROGRAM;
         patience.silence = SILENCE_OF_A_PROGRAM;
         patience.lost = LOSS_OF_A_PROGRAM;
+        patience.status_period = STATUS_PERIOD_OF_A_PROGRAM;
     }
     patience
 }

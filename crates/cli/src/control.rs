@@ -183,7 +183,7 @@ impl Control {
                     waited(program.as_mut().and_then(|program| program.pauses(text))).to_owned()
                 }
                 SocketRequest::Result => {
-                    program.as_ref().and_then(|program| program.result.clone()).unwrap_or_default()
+                    program.as_mut().map(ProgramControl::fetch).unwrap_or_default()
                 }
                 SocketRequest::Status => known.as_ref().map_or_else(String::new, |known| {
                     let found = FoundBoard {

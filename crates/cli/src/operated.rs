@@ -43,7 +43,7 @@ impl<B: SimulatedBoard> OperatedBoard<B> {
     }
 
     /// Runs for a short time. Returns false if the board is to end.
-    pub fn step(&mut self, to: &mut impl Edges) -> Result<bool, Failure> {
+    pub fn step(&mut self, to: &mut dyn Edges) -> Result<bool, Failure> {
         let look = self.panel.look(|axis| self.real_time.board.position(axis));
         for line in look.unknown {
             // If this write fails, there is no channel left to report it.

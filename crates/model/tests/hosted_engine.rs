@@ -56,7 +56,7 @@ fn compare(build: &EngineBuild, history: &[Cycle], random: &mut Random, met: &mu
         let rest = &history[from as usize..];
         let same = rest.iter().take_while(|(other, _)| other == inputs).count() as u64;
         let most = same.min(1 + random.below(longest));
-        let leapt = fast.leap(inputs, most, &mut fast_edges, |word| fast_memory.store(word));
+        let leapt = fast.leap(inputs, most, &mut fast_edges, &mut |word| fast_memory.store(word));
         if leapt == 0 {
             assert_eq!(fast.outputs(inputs), *outputs, "outputs in cycle {from}");
             outputs.state.into_iter().for_each(|word| fast_memory.store(word));

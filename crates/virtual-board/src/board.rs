@@ -148,7 +148,7 @@ impl ModelBoard {
     /// Runs the board up to cycle `end`; `to` receives the edges of the pins. The run ends early,
     /// once, when the first start has loaded its segments. Up to then, and for a tick after, there
     /// are no edges.
-    pub fn run(&mut self, end: u64, to: &mut impl Edges) {
+    pub fn run(&mut self, end: u64, to: &mut dyn Edges) {
         let waits = self.loads.is_empty();
         while self.cycle() < end && self.loads.is_empty() == waits {
             let inputs = self.inputs(&self.link.outputs());
@@ -201,10 +201,10 @@ impl ModelBoard {
 
     /// Runs the engine up to the cycle that the link has reached, and delivers what it has output
     /// meanwhile to the link.
-    fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
+    fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut dyn Edges) {
         while self.cycle() < end {
             let Self { engine, link, .. } = self;
-            if engine.leap(inputs, end - engine.cycle(), to, |word| link.store(word)) == 0 {
+            if engine.leap(inputs, end - engine.cycle(), to, &mut |word| link.store(word)) == 0 {
                 let says = engine.outputs(inputs);
                 says.state.into_iter().for_each(|word| link.store(word));
                 self.clock_engine(inputs, &says, to);
@@ -213,7 +213,7 @@ impl ModelBoard {
     }
 
     /// Runs link and engine for one clock.
-    fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
+    fn clock(&mut self, inputs: &EngineInputs, to: &mut dyn Edges) {
         let engine = self.engine.outputs(inputs);
         let Driven { rx, spi, .. } = self.wire.drive(self.cycle());
         self.link.clock(&LinkInputs { rx, spi, engine });
@@ -221,7 +221,7 @@ impl ModelBoard {
         self.wire.hear(self.cycle(), self.link.tx());
     }
 
-    fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut impl Edges) {
+    fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut dyn Edges) {
         self.engine.clock(inputs, to);
         if says.started {
             self.loads.push(self.cycle());

@@ -66,7 +66,7 @@ pub trait SimulatedBoard {
     ///
     /// # Errors
     /// [`LevelError`] if the simulation has failed.
-    fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError>;
+    fn run(&mut self, end: u64, to: &mut dyn Edges) -> Result<(), LevelError>;
 
     /// Runs the board up to cycle `end`; `seen` receives the levels of all pins in each cycle in
     /// which one of them has changed. A board of models skips no clock here.
@@ -137,7 +137,7 @@ impl SimulatedBoard for ModelBoard {
         self.press(switches);
     }
 
-    fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+    fn run(&mut self, end: u64, to: &mut dyn Edges) -> Result<(), LevelError> {
         self.run(end, to);
         Ok(())
     }

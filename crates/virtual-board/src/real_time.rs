@@ -55,7 +55,7 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
     ///
     /// # Errors
     /// [`RealTimeError`] if the simulation or the terminal has failed.
-    pub fn step(&mut self, to: &mut impl Edges) -> Result<(), RealTimeError> {
+    pub fn step(&mut self, to: &mut dyn Edges) -> Result<(), RealTimeError> {
         if self.board.unsaid() < FULL {
             self.terminal.take().into_iter().for_each(|byte| self.board.say(byte));
         }

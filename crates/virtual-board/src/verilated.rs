@@ -42,7 +42,7 @@ enum LateChange {
 }
 
 impl Late {
-    fn deliver(&mut self, to: &mut impl Edges) {
+    fn deliver(&mut self, to: &mut dyn Edges) {
         for change in self.0.drain(..) {
             match change {
                 LateChange::Edge(edge) => to.edge(edge),
@@ -103,7 +103,7 @@ impl VerilatedBoard {
     fn go(
         &mut self,
         end: u64,
-        to: &mut impl Edges,
+        to: &mut dyn Edges,
         seen: &mut dyn FnMut(u64, PinLevels),
     ) -> Result<(), LevelError> {
         let pins = self.switches.pins(&self.build.guard);
@@ -219,7 +219,7 @@ impl SimulatedBoard for VerilatedBoard {
         self.switches = switches;
     }
 
-    fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+    fn run(&mut self, end: u64, to: &mut dyn Edges) -> Result<(), LevelError> {
         self.late.deliver(to);
         let waits = self.loads.is_empty();
         while self.cycle() < end && self.loads.is_empty() == waits {

@@ -35,6 +35,10 @@ use std::time::Duration;
 /// chance. Plain `cargo test` draws new cases.
 const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "2009");
 
+/// Half cores that are given to tests although the computer does not have them: each test waits at
+/// times, for a disk, a line or a tool that it has started.
+const SPARE: usize = 1;
+
 /// How often the running binaries are looked at.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -53,6 +57,7 @@ impl Workspace {
     /// A test failed, a binary ended early, or no test was executed.
     pub fn run(&self) -> TaskResult {
         let cores = thread::available_parallelism().map_or(1, usize::from);
+        let halves = 2 * cores + SPARE;
         let path = self.target.join("test-durations.json");
         let mut memory = TestTimes::read(&path);
         let slices = self.slices(&memory)?;
@@ -64,7 +69,7 @@ impl Workspace {
         loop {
             let busy: usize = running.iter().map(|one| slices[one.slice].halves(cores)).sum();
             let waits = running.iter().any(|one| slices[one.slice].needs == Needs::Patience);
-            if let Some(slice) = schedule.next((2 * cores).saturating_sub(busy), waits) {
+            if let Some(slice) = schedule.next(halves.saturating_sub(busy), waits) {
                 running.push(self.start(&slices, slice, &outputs)?);
                 continue;
             }

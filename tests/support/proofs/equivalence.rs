@@ -8,7 +8,7 @@
 //! if nothing is left of the miter. A planted bug is treated in the same way.
 
 use super::builds::{small, small_engine};
-use super::solver::{LIMIT, ProofError, reached, run, run_until};
+use super::solver::{LIMIT, ProofError, reached, run, run_until, to_gates};
 use super::{Bug, Case, Promises};
 use carrystep_core::engine::LimitWiring;
 use carrystep_core::{AXES, Build, PinTiming};
@@ -18,11 +18,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Conversion to gates. A port that the miter does not name is 0; a register without a value at
-/// configuration is arbitrary.
-const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_clean\ntechmap\ndffunmap\nsetundef -undriven -zero\n\
-     aigmap\nwrite_aiger -zinit promises.aig\n";
 
 /// The assertions about both cores, and the covers.
 pub const EQUAL: Promises =
@@ -238,5 +233,6 @@ fn script(pair: &Move, asked: Asked) -> String {
         " promises.sv\nhierarchy -check -top promises\nproc\nflatten\nsetattr -set keep 1 t:$assert t:$cover\n\
          prep -nordff -top promises\ndelete t:$cover\ndelete t:$assert {keep} %d"
     );
-    text + TO_GATES
+    // A port that the miter does not name is 0.
+    text + &to_gates("-zero")
 }

@@ -30,12 +30,18 @@ const PROBES_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARIT
      chtype -set $memrd t:memory_probe\n";
 
 /// Conversion of the system to gates; flip-flops without a value at configuration may have any
-/// value. Yosys does not simplify the gates, because ABC does so while it unrolls them: for a bug of
-/// the parallel core, the conversion took 10.7 s with simplification and takes 2.3 s without. It only
-/// drops what selects between words of a memory by bits of an address that are constant, which is
-/// most of a small engine.
-const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_expr\nopt_clean -purge\nsimplemap\ntechmap\n\
-     dffunmap\nsetundef -undriven -anyseq\naigmap\nwrite_aiger -zinit promises.aig\n";
+/// value. `undriven` is what a wire without a driver is: `-anyseq` or `-zero`.
+///
+/// Yosys does not simplify the gates, because ABC does so while it unrolls them: for a bug of the
+/// parallel core, the conversion took 10.7 s with simplification and takes 2.3 s without. It only drops
+/// what selects between words of a memory by bits of an address that are constant, which is most of a
+/// small engine.
+pub(super) fn to_gates(undriven: &str) -> String {
+    format!(
+        "opt_clean -purge\nmemory_map\nopt_expr\nopt_clean -purge\nsimplemap\ntechmap\ndffunmap\n\
+         setundef -undriven {undriven}\naigmap\nwrite_aiger -zinit promises.aig\n"
+    )
+}
 
 /// The reason why there is no answer, or not the expected one.
 #[derive(Debug, Error)]
@@ -194,11 +200,11 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
             "delete t:$cover\n".to_owned()
         }
     });
-    text.push_str(match question {
+    text.push_str(&match question {
         Question::Base(_) | Question::Induction(_) => {
-            "opt_clean -purge\nwrite_smt2 promises.smt2\n"
+            "opt_clean -purge\nwrite_smt2 promises.smt2\n".to_owned()
         }
-        Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => TO_GATES,
+        Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => to_gates("-anyseq"),
     });
     text
 }

@@ -32,7 +32,9 @@ pub struct ProgramControl {
     pub block: Option<BlockFound>,
     /// What is to be done while it waits, and how the last of it has ended.
     wish: Option<String>,
-    pub(super) result: Option<String>,
+    result: Option<String>,
+    /// Whether the command that wants the result has not fetched it yet.
+    unfetched: bool,
     overrides: OverrideSetting,
     /// Whether an output sets the speed of a spindle.
     spindle: bool,
@@ -102,7 +104,8 @@ impl ProgramControl {
         // A command may still ask for the result of what it wanted.
         let (block, overrides, spindle) = (self.block, self.overrides, self.spindle);
         let (result, before) = (self.result.take(), interrupt::count());
-        *self = Self { before, result, block, overrides, spindle, ..Self::default() };
+        let unfetched = self.unfetched;
+        *self = Self { before, result, unfetched, block, overrides, spindle, ..Self::default() };
     }
 
     /// Notes a request for a hold; false if the program rests.
@@ -129,7 +132,18 @@ impl ProgramControl {
 
     /// It was done, with this result.
     pub fn did(&mut self, result: String) {
-        (self.wish, self.result) = (None, Some(result));
+        (self.wish, self.result, self.unfetched) = (None, Some(result), true);
+    }
+
+    /// The result of what was done last, for the command that wanted it; empty while it goes on.
+    pub(super) fn fetch(&mut self) -> String {
+        self.unfetched &= self.result.is_none();
+        self.result.clone().unwrap_or_default()
+    }
+
+    /// Whether the command that wants the result of what was done has not fetched it yet.
+    pub const fn is_unfetched(&self) -> bool {
+        self.unfetched
     }
 
     /// Nothing is held or overridden any more.

@@ -11,10 +11,17 @@ use carrystep_link::{HostError, Wish};
 use carrystep_runner::Wait;
 use std::io::{self, Write as _};
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Time between two looks at the board.
 const LOOK: Duration = Duration::from_millis(10);
+
+/// For how long a program that ends waits until the command that has moved the machine in its wait
+/// has fetched the result. It asks for it every 10 ms.
+const FETCHED: Duration = Duration::from_millis(500);
+
+/// Time between two looks at the requests of that command.
+const SOON: Duration = Duration::from_millis(1);
 
 /// The lines that the user enters in this terminal.
 pub(super) struct Keys {
@@ -75,6 +82,24 @@ pub(super) enum Waited {
 
 /// Waits until somebody lets the program go on, or ends it.
 pub(super) fn wait(
+    board: &mut ConnectedBoard,
+    control: &mut Control,
+    of_terminal: (&mut Keys, &Line<'_>),
+    place: (Wait, &mut Pause<'_>),
+) -> Result<Waited, ConnectedBoardError> {
+    let waited = until_it_goes_on(board, control, of_terminal, place)?;
+    let begin = Instant::now();
+    let is_unfetched =
+        |control: &mut Control| control.program().is_some_and(|program| program.is_unfetched());
+    while matches!(waited, Waited::Ends) && is_unfetched(control) && begin.elapsed() < FETCHED {
+        std::thread::sleep(SOON);
+        // Only the requests of other commands are wanted here: the program ends in any case.
+        let _ = control.wish(board.status());
+    }
+    Ok(waited)
+}
+
+fn until_it_goes_on(
     board: &mut ConnectedBoard,
     control: &mut Control,
     (keys, line): (&mut Keys, &Line<'_>),

@@ -84,7 +84,7 @@ pub(super) fn changes(
     axis: u8,
     before: &shaper::ShaperState,
     now: &shaper::ShaperState,
-    to: &mut impl Edges,
+    to: &mut (impl Edges + ?Sized),
 ) {
     let backward = now.dir;
     if now.position != before.position {

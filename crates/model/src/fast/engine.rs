@@ -81,7 +81,7 @@ impl FastEngine {
 
     /// Advances by one cycle and reports the edges on the pins, and the outputs that have changed,
     /// to `to`.
-    pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
+    pub fn clock(&mut self, inputs: &EngineInputs, to: &mut (impl Edges + ?Sized)) {
         let axes = self.core.build().axes();
         let before: [_; MAX_AXES] =
             std::array::from_fn(|axis| *self.core.shaper(axis.min(axes - 1)));

@@ -57,7 +57,7 @@ impl HostedEngine {
     }
 
     /// Advances by one cycle and reports the edges on the pins to `to`.
-    pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
+    pub fn clock(&mut self, inputs: &EngineInputs, to: &mut dyn Edges) {
         let ending = self.readout.observe(self.engine.core(), inputs);
         self.engine.clock(inputs, to);
         self.readout.clock(self.engine.core(), inputs, ending);
@@ -71,8 +71,8 @@ impl HostedEngine {
         &mut self,
         inputs: &EngineInputs,
         most: u64,
-        to: &mut impl Edges,
-        mut words: impl FnMut(StateWord),
+        to: &mut dyn Edges,
+        words: &mut dyn FnMut(StateWord),
     ) -> u64 {
         if inputs.snapshot {
             return 0;
@@ -94,13 +94,13 @@ impl HostedEngine {
         let output = self.words.drain(..).filter(|(clock, _)| u64::from(*clock) < passed);
         output.for_each(|(_, word)| words(word));
         let clocks = self.cycle() - from;
-        begin.switch_words(self.engine.core(), inputs, clocks, &mut words);
+        begin.switch_words(self.engine.core(), inputs, clocks, words);
         clocks
     }
 
     /// Skips all cycles before the last whole tick of those that can be skipped, if this whole tick
     /// is a later one than the present tick.
-    fn leap_to_whole_tick(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
+    fn leap_to_whole_tick(&mut self, inputs: &EngineInputs, most: u64, to: &mut dyn Edges) -> u64 {
         let per_tick = u64::from(self.core().clocks_per_tick());
         let clock = u64::from(self.core().clock_of_tick());
         let fit = |clocks: u64| {
@@ -111,7 +111,7 @@ impl HostedEngine {
     }
 
     /// Passes one tick, from its first cycle on. Returns the number of its cycles.
-    fn pass_tick(&mut self, inputs: &EngineInputs, to: &mut impl Edges) -> u64 {
+    fn pass_tick(&mut self, inputs: &EngineInputs, to: &mut dyn Edges) -> u64 {
         let clocks = u64::from(self.core().clocks_per_tick());
         let end = self.cycle() + clocks;
         while self.cycle() < end {
@@ -123,7 +123,7 @@ impl HostedEngine {
     }
 
     /// Skips cycles up to the end of the present tick at most.
-    fn leap_within_tick(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
+    fn leap_within_tick(&mut self, inputs: &EngineInputs, most: u64, to: &mut dyn Edges) -> u64 {
         let left = self.core().clocks_per_tick() - self.core().clock_of_tick();
         self.pass(inputs, most.min(left.into()), |clocks| clocks, to)
     }
@@ -133,7 +133,7 @@ impl HostedEngine {
         inputs: &EngineInputs,
         most: u64,
         fit: impl Fn(u64) -> u64,
-        to: &mut impl Edges,
+        to: &mut dyn Edges,
     ) -> u64 {
         let mut following = Following::new(&mut self.readout, &self.engine, to);
         let passed = self.engine.leap_fitting(inputs, most, fit, &mut following);

@@ -32,7 +32,7 @@ struct EveryClock {
 }
 
 impl EveryClock {
-    fn run(&mut self, end: u64, to: &mut impl Edges) {
+    fn run(&mut self, end: u64, to: &mut dyn Edges) {
         while self.cycle < end {
             let inputs = self.link.outputs().engine.with_pins(&self.pins);
             let engine = self.engine.outputs(&inputs);

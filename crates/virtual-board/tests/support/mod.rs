@@ -61,7 +61,7 @@ pub trait Kind: SimulatedBoard + Sized {
     fn least_waiting(&self) -> Option<usize>;
 
     /// Runs up to this cycle.
-    fn reach(&mut self, end: u64, to: &mut impl Edges) {
+    fn reach(&mut self, end: u64, to: &mut dyn Edges) {
         while self.cycle() < end {
             self.run(end, to).unwrap();
         }

@@ -72,9 +72,9 @@ impl Recorder {
 }
 
 /// Records what another receiver of edges gets, too.
-struct Both<'a, E>(&'a mut Recording, &'a mut E);
+struct Both<'a>(&'a mut Recording, &'a mut dyn Edges);
 
-impl<E: Edges> Edges for Both<'_, E> {
+impl Edges for Both<'_> {
     fn edge(&mut self, edge: Edge) {
         self.0.edges.push(edge);
         self.1.edge(edge);
@@ -149,7 +149,7 @@ impl SimulatedBoard for Recorder {
         self.board.press(switches);
     }
 
-    fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+    fn run(&mut self, end: u64, to: &mut dyn Edges) -> Result<(), LevelError> {
         let Self { board, recording, .. } = self;
         board.run(end, &mut Both(recording, to));
         Ok(())

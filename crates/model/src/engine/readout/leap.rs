@@ -105,7 +105,7 @@ impl Begin {
         motion: &Motion,
         inputs: &EngineInputs,
         clocks: u64,
-        words: &mut impl FnMut(StateWord),
+        words: &mut dyn FnMut(StateWord),
     ) {
         let (round, per_tick) = (motion.build().guard.round, u64::from(motion.clocks_per_tick()));
         for row in motion.rows() {

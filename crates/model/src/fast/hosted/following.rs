@@ -8,9 +8,9 @@ use crate::parts::shaper::ShaperState;
 use carrystep_core::engine::MAX_AXES;
 
 /// A readout that receives the edges of a leap, and passes them on to `to`.
-pub(super) struct Following<'a, E> {
+pub(super) struct Following<'a> {
     readout: &'a mut Readout,
-    to: &'a mut E,
+    to: &'a mut dyn Edges,
     /// The cycle in which the leap begins, and the clock of the tick in it.
     from: u64,
     clock: u64,
@@ -29,9 +29,13 @@ struct Followed {
     carried: i32,
 }
 
-impl<'a, E> Following<'a, E> {
+impl<'a> Following<'a> {
     /// Follows a leap of this engine from its present cycle on.
-    pub(super) fn new(readout: &'a mut Readout, engine: &FastEngine, to: &'a mut E) -> Self {
+    pub(super) fn new(
+        readout: &'a mut Readout,
+        engine: &FastEngine,
+        to: &'a mut dyn Edges,
+    ) -> Self {
         let (cycle, motion) = (engine.cycle(), engine.core());
         let followed = |axis| Followed {
             cycle,
@@ -79,7 +83,7 @@ impl<'a, E> Following<'a, E> {
     }
 }
 
-impl<E: Edges> Edges for Following<'_, E> {
+impl Edges for Following<'_> {
     fn edge(&mut self, edge: Edge) {
         if edge.change == Change::Rise {
             let axis = usize::from(edge.axis);
