@@ -7,7 +7,6 @@ mod common;
 use carrystep_boards::{Board, Way, board, boards};
 use carrystep_files::SourceText;
 use carrystep_verilog::{CLOCK_NAME, Gateware, shipped_machine};
-use std::process::Command;
 
 /// A replacement for the board's clock module that passes the oscillator through.
 const CLOCK: &str = "module carrystep_clock (input wire oscillator, output wire clock); assign clock = oscillator; endmodule\n";
@@ -159,13 +158,7 @@ fn held_line_becomes_a_buffer_with_an_output_enable() {
              select -assert-count 1 t:OBUFT",
             gateware.top()
         );
-        let output = Command::new("yosys")
-            .args(["-q", "-p", &script])
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        let said =
-            String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "spi: {spi}: {said}");
+        let (fine, said) = common::run("yosys", &["-q", "-p", &script], folder.path());
+        assert!(fine, "spi: {spi}: {said}");
     }
 }
