@@ -333,4 +333,6 @@ fn virtual_board_page_gives_the_times_of_its_pace() {
             format!("takes the line for dead after {loss} s"),
         ],
     );
+    let period = patience("STATUS_PERIOD_OF_A_PROGRAM");
+    says("docs/protocol.md", &[format!("the command reads it every {period} ms")]);
 }

@@ -134,7 +134,7 @@ mod tests {
         let memory = TestTimes::default();
         assert_eq!(
             memory.expect("carrystep-virtual-board::virtual_board::bad_line", &tests(&["x", "y"])),
-            [100.0; 2]
+            [20.0; 2]
         );
         assert_eq!(memory.expect("unheard of", &tests(&["x", "y"])), [UNKNOWN; 2]);
     }
