@@ -133,7 +133,9 @@ impl Step {
 
 /// Whether the text contains the signal's name.
 pub(crate) fn mentions(text: &str, signal: &str) -> bool {
-    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
+    // By bytes: a large module is searched for each of its signals.
+    let is_of_name = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    text.as_bytes().split(|byte| !is_of_name(byte)).any(|word| word == signal.as_bytes())
 }
 
 fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, ExportError> {

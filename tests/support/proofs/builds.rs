@@ -10,7 +10,7 @@ use carrystep_core::engine::{
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, Mutex};
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped() -> (Build, Arc<str>) {
@@ -59,6 +59,19 @@ pub fn shipped_engine() -> BuiltEngine {
     (machine.engine(), text.into())
 }
 
+/// An engine with its Verilog. Proofs of several modules are about the same one, and the mutants ask
+/// for all of them again: each is written once.
+pub(super) fn exported(build: EngineBuild) -> BuiltEngine {
+    static WRITTEN: Mutex<Vec<BuiltEngine>> = Mutex::new(Vec::new());
+    let mut written = WRITTEN.lock().expect("no test has failed in here");
+    if let Some(found) = written.iter().find(|(known, _)| *known == build) {
+        return found.clone();
+    }
+    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
+    written.push((build, text));
+    written[written.len() - 1].clone()
+}
+
 /// An engine with this many axes and clocks per tick, with extreme pin timings, a guard with small
 /// figures, and cuts.
 pub fn small_engine(
@@ -67,9 +80,7 @@ pub fn small_engine(
     phases: u32,
     limits: LimitWiring,
 ) -> (EngineBuild, Arc<str>) {
-    let build = small_build(axes, clocks, phases, limits);
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(small_build(axes, clocks, phases, limits))
 }
 
 fn small_build(axes: usize, clocks: u32, phases: u32, limits: LimitWiring) -> EngineBuild {
@@ -95,20 +106,14 @@ fn small_build(axes: usize, clocks: u32, phases: u32, limits: LimitWiring) -> En
 /// As [`small_engine`], with limits at both ends and this number of adders.
 pub fn engine_on_adders(axes: usize, adders: usize, clocks: u32, phases: u32) -> BuiltEngine {
     let small = small_build(axes, clocks, phases, LimitWiring::Pair);
-    let build = EngineBuild { adders, ..small };
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(EngineBuild { adders, ..small })
 }
 
 /// Engines with several adders in the shortest ticks: six axes on two and on six, eight on eight; and
 /// six on two in a longer tick.
 pub fn engines_on_adders() -> Vec<BuiltEngine> {
-    // Three proofs are about them, and each takes some seconds to write.
-    static BUILT: LazyLock<Vec<BuiltEngine>> = LazyLock::new(|| {
-        let builds = [(6, 2, 42), (6, 6, 16), (8, 8, 16), (6, 2, 48)];
-        builds.map(|(axes, adders, clocks)| engine_on_adders(axes, adders, clocks, 1)).into()
-    });
-    BUILT.clone()
+    let builds = [(6, 2, 42), (6, 6, 16), (8, 8, 16), (6, 2, 48)];
+    builds.map(|(axes, adders, clocks)| engine_on_adders(axes, adders, clocks, 1)).into()
 }
 
 /// The parameter with the number of adders for `promises.sv`.
@@ -118,12 +123,11 @@ pub fn lanes(build: &EngineBuild) -> (&'static str, String) {
 
 /// The same with limits at both ends, with inputs in both rows, and with a latch of two looks.
 pub fn engine_with_inputs(axes: usize, clocks: u32, phases: u32) -> (EngineBuild, Arc<str>) {
-    let (mut build, _) = small_engine(axes, clocks, phases, LimitWiring::Pair);
+    let mut build = small_build(axes, clocks, phases, LimitWiring::Pair);
     build.guard.round = 4;
     build.guard.inputs = [InputRow { exist: 3, low: 1 }, InputRow { exist: 1, low: 1 }];
     build.guard.latches = vec![Latch::of_pin(false, 2)];
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(build)
 }
 
 /// The same engine of two axes with this number of latches, of one or two looks.
@@ -131,24 +135,20 @@ pub fn engine_with_latches(count: usize) -> (EngineBuild, Arc<str>) {
     let (mut build, _) = engine_with_inputs(2, 32, 4);
     let latch = |number: usize| Latch::of_pin(number == 1, 1 + (number as u8 & 1));
     build.guard.latches = (0..count).map(latch).collect();
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(build)
 }
 
 /// An engine of two axes on two adders, with one latch.
 pub fn engine_with_latch_on_adders() -> BuiltEngine {
     let (build, _) = engine_with_latches(1);
-    let build = EngineBuild { adders: 2, ..build };
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(EngineBuild { adders: 2, ..build })
 }
 
 /// An engine of six axes with these outputs, and a PWM with this divider.
 pub fn engine_with_outputs(exist: u8, pwm_divider: u32) -> (EngineBuild, Arc<str>) {
-    let (mut build, _) = small_engine(6, 80, 4, LimitWiring::Pair);
+    let mut build = small_build(6, 80, 4, LimitWiring::Pair);
     build.outputs = Outputs { exist, pwm_divider, off_at_ramps: true };
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
-    (build, text)
+    exported(build)
 }
 
 /// The parameter with the number of axes for `promises.sv`.

@@ -10,7 +10,9 @@
 //!                                 -/-> step, dir, enabled, fault, ...        all other outputs
 //! ```
 
-use super::builds::{engine_with_latch_on_adders, engine_with_latches, engine_with_outputs};
+use super::builds::{
+    engine_with_latch_on_adders, engine_with_latches, engine_with_outputs, exported,
+};
 use super::solver::{ProofError, run_until};
 use super::{Bug, Case};
 use carrystep_core::engine::{EngineBuild, Latch};
@@ -76,7 +78,6 @@ pub struct Paths {
 pub fn cases() -> Vec<Case> {
     let (mut build, _) = engine_with_outputs(0xff, 2);
     build.guard.latches = vec![Latch::of_pin(false, 2)];
-    let text = carrystep_verilog::engine_verilog(&build, "a proof").expect("the engine").into();
     let case = |(build, verilog): (EngineBuild, Arc<str>)| Case {
         name: format!(
             "{} axes on {}, {} latches",
@@ -89,7 +90,7 @@ pub fn cases() -> Vec<Case> {
         verilog,
         numbers: Vec::new(),
     };
-    [engine_with_latches(4), (build, text), engine_with_latch_on_adders()].map(case).into()
+    [engine_with_latches(4), exported(build), engine_with_latch_on_adders()].map(case).into()
 }
 
 /// Finds the paths from snapshots and latches to the outputs of an engine.
