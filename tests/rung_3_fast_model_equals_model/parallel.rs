@@ -78,7 +78,7 @@ fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
 
 /// A million edges at least, or five million in the run of repeats.
 fn many_edges(phases: u32, phase: StartPhase) {
-    let cases = if effort::repeats_in_full() { 400 } else { 80 };
+    let cases = if effort::repeats_in_full() { 400 } else { 40 };
     let edges = dense_programs(&lockstep::quick_build(phases, phase), 20_000, cases);
     assert!(edges >= u64::from(cases) * 12_500, "only {edges} edges");
     if effort::repeats_in_full() {

@@ -2,6 +2,7 @@
 
 use crate::shell::{self, TaskResult};
 use crate::{accuracy, arrows, bench, decisions, readme, testing, tools};
+use std::thread;
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an
 /// error.
@@ -12,10 +13,21 @@ pub fn climb() -> TaskResult {
     lint()?;
     bare()?;
     let tests = testing::build()?;
+    // The figures take one core for some seconds.
+    let (figures, tests) = thread::scope(|scope| {
+        let figures = scope.spawn(figures);
+        let tests = tests.run();
+        (figures.join(), tests)
+    });
+    tests?;
+    figures.unwrap_or_else(|_| Err("the comparison of figures has panicked".to_owned()))
+}
+
+/// The figures of README and pages are those of the command, and the benchmark runs.
+fn figures() -> TaskResult {
     readme::check()?;
     accuracy::check()?;
-    bench::run(false, true)?;
-    tests.run()
+    bench::run(false, true)
 }
 
 /// Rung 7 by itself, with its table.

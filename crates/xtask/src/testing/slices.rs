@@ -21,7 +21,10 @@ const SHORT: f64 = 100.0;
 /// Tests that mostly wait for a board or a line that runs in real time: the binary, and how the names
 /// of such tests begin.
 const WAITING: [(&str, &[&str]); 2] = [
-    ("carrystep-cli::command_line", &["boards::wrong_peer_on_the_port_is_named"]),
+    (
+        "carrystep-cli::command_line",
+        &["boards::wrong_peer_on_the_port_is_named", "stops::line_that_is_lost_during_a_run"],
+    ),
     ("carrystep-virtual-board::virtual_board", &["bad_line::", "facts::", "homing::", "rates::"]),
 ];
 
