@@ -1,4 +1,4 @@
-//! Runs every test of the workspace, with one test binary per free core.
+//! Runs every test of the workspace, with a test binary on each core, and a half one more.
 //!
 //! `cargo test` runs the binaries one after another, so that one core idles while the last test of
 //! each binary ends. Here all binaries are built once, long ones are split into slices of their
