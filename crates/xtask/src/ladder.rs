@@ -7,10 +7,16 @@ use std::thread;
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an
 /// error.
 pub fn climb() -> TaskResult {
-    tools::install()?;
     arrows::check()?;
     decisions::check()?;
-    lint()?;
+    // What is compiled needs no tool of others, and an installation mostly waits for the network.
+    let (tools, linted) = thread::scope(|scope| {
+        let tools = scope.spawn(tools::install);
+        let linted = lint();
+        (tools.join(), linted)
+    });
+    tools.unwrap_or_else(|_| Err("the installation of tools has panicked".to_owned()))?;
+    linted?;
     bare()?;
     let tests = testing::build()?;
     // The figures take one core for some seconds.

