@@ -1,4 +1,5 @@
-//! Runs every test of the workspace, with a test binary on each core, and a half one more.
+//! Runs every test of the workspace. As many test binaries run at once as the cores can take, and one
+//! more that waits for half of its time.
 //!
 //! `cargo test` runs the binaries one after another, so that one core idles while the last test of
 //! each binary ends. Here all binaries are built once, long ones are split into slices of their
@@ -35,8 +36,8 @@ use std::time::Duration;
 /// chance. Plain `cargo test` draws new cases.
 const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "2009");
 
-/// Half cores that are given to tests although the computer does not have them: each test waits at
-/// times, for a disk, a line or a tool that it has started.
+/// Number of half cores by which the running tests may exceed those of the computer: each test waits
+/// at times, for a disk, a line or a tool that it has started.
 const SPARE: usize = 1;
 
 /// How often the running binaries are looked at.

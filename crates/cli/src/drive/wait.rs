@@ -16,11 +16,12 @@ use std::time::{Duration, Instant};
 /// Time between two looks at the board.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// For how long a program that ends waits until the command that has moved the machine in its wait
-/// has fetched the result. It asks for it every 10 ms.
+/// Another command may have jogged, probed or set an offset while the program waited. A program that
+/// ends stays for at most this time, until that command, which asks every 10 ms, has fetched the
+/// result.
 const FETCHED: Duration = Duration::from_millis(500);
 
-/// Time between two looks at the requests of that command.
+/// Time between two looks at the requests of that command, meanwhile.
 const SOON: Duration = Duration::from_millis(1);
 
 /// The lines that the user enters in this terminal.
