@@ -18,6 +18,22 @@ const LATE: u64 = 1026;
 const BIT_CLOCKS: u32 = 8;
 const HALF_CLOCKS: u32 = 3000;
 
+/// What a port of the board shows, or is given.
+enum Port {
+    /// The line from the terminal.
+    Heard,
+    /// The line to the terminal.
+    Sent,
+    /// The light.
+    Light,
+    /// The drivers' power, which stays off.
+    Power,
+    /// Outputs: the row of each bit, from bit 0 on.
+    Outputs(Vec<usize>),
+    /// Inputs: the row of each bit, from bit 0 on.
+    Inputs(Vec<usize>),
+}
+
 /// A board's self-test with short times, and a session with it.
 pub struct SelfTestSession {
     board: &'static Board,
@@ -25,6 +41,7 @@ pub struct SelfTestSession {
     /// The self-test with these times.
     pub test: SelfTest,
     bench: SelfTestBench,
+    ports: Vec<Port>,
     vectors: Vectors,
     /// Each value of the active output, and the number of cycles for which it lasted.
     pub walk: Vec<(u64, u64)>,
@@ -46,8 +63,9 @@ impl SelfTestSession {
         let text = overridden(&text, "BIT_CLOCKS", BIT_CLOCKS);
         let verilog = overridden(&text, "HALF_CLOCKS", HALF_CLOCKS);
         let bench = SelfTestBench::of_model(&test);
-        let vectors = ports(board, &gateware);
-        let mut session = Self { board, gateware, test, bench, vectors, walk: Vec::new(), verilog };
+        let (ports, vectors) = (ports(&gateware), recording(board, &gateware));
+        let walk = Vec::new();
+        let mut session = Self { board, gateware, test, bench, ports, vectors, walk, verilog };
         for _ in 0..LATE {
             session.record();
         }
@@ -146,24 +164,22 @@ impl SelfTestSession {
     /// Records the last cycle, or a cycle before the first edge of the clock.
     fn record(&mut self) {
         let (pins, shown) = (self.bench.pins, self.bench.outputs);
-        let rows = self.gateware.rows();
-        let mut inputs = Bits::default();
-        let mut outputs = Bits::default();
-        let first = self.test.first_input();
-        for (name, way, width) in self.gateware.ports() {
-            let bits = |mask: u64, ports: &[String], first| {
-                (0..width)
-                    .fold(0, |bits, bit| bits | port_level(mask, ports, first, name, bit) << bit)
-            };
-            match (name, way) {
-                ("uart_rx", _) => inputs = inputs.and(1, u64::from(self.bench.rx)),
-                ("uart_tx", _) => outputs = outputs.and(1, self.sent(shown)),
-                ("led", _) => outputs = outputs.and(1, u64::from(shown.lit != self.board.led_low)),
-                ("enable_n", _) => outputs = outputs.and(1, 1),
-                (_, Way::Out) => {
-                    outputs = outputs.and(width as u32, bits(shown.active, &rows.outputs, 1));
+        let (mut inputs, mut outputs) = (Bits::default(), Bits::default());
+        let levels = |mask: u64, rows: &[usize]| {
+            rows.iter().rev().fold(0, |bits, row| bits << 1 | mask >> row & 1)
+        };
+        for port in &self.ports {
+            match port {
+                Port::Heard => inputs = inputs.and(1, u64::from(self.bench.rx)),
+                Port::Sent => outputs = outputs.and(1, self.sent(shown)),
+                Port::Light => {
+                    outputs = outputs.and(1, u64::from(shown.lit != self.board.led_low));
                 }
-                _ => inputs = inputs.and(width as u32, bits(pins, &rows.inputs, first)),
+                Port::Power => outputs = outputs.and(1, 1),
+                Port::Outputs(rows) => {
+                    outputs = outputs.and(rows.len() as u32, levels(shown.active, rows));
+                }
+                Port::Inputs(rows) => inputs = inputs.and(rows.len() as u32, levels(pins, rows)),
             }
         }
         outputs = self.board.ties.iter().fold(outputs, |all, tie| all.and(1, u64::from(tie.level)));
@@ -184,15 +200,30 @@ impl SelfTestSession {
     }
 }
 
-/// The level of a bit of a port in a mask of rows.
-fn port_level(mask: u64, ports: &[String], first: usize, name: &str, bit: usize) -> u64 {
-    let is_bit = |port: &&String| **port == format!("{name}[{bit}]") || **port == name;
-    let place = ports.iter().position(|port| is_bit(&port)).expect("a row");
-    mask >> (first + place) & 1
+/// The ports of a board, in the order of its gateware.
+fn ports(gateware: &SelfTestGateware<'_>) -> Vec<Port> {
+    let rows = gateware.rows();
+    let rows_of = |names: &[String], first: usize, name: &str, width: usize| {
+        let row = |bit| {
+            let bit_name = format!("{name}[{bit}]");
+            let is_bit = |row: &String| *row == bit_name || row == name;
+            first + names.iter().position(is_bit).expect("a row")
+        };
+        (0..width).map(row).collect()
+    };
+    let port = |(name, way, width)| match (name, way) {
+        ("uart_rx", _) => Port::Heard,
+        ("uart_tx", _) => Port::Sent,
+        ("led", _) => Port::Light,
+        ("enable_n", _) => Port::Power,
+        (_, Way::Out) => Port::Outputs(rows_of(&rows.outputs, 1, name, width)),
+        _ => Port::Inputs(rows_of(&rows.inputs, rows.test.first_input(), name, width)),
+    };
+    gateware.ports().into_iter().map(port).collect()
 }
 
 /// An empty recording of the pins of a board.
-fn ports(board: &'static Board, gateware: &SelfTestGateware<'_>) -> Vectors {
+fn recording(board: &'static Board, gateware: &SelfTestGateware<'_>) -> Vectors {
     let side = |out: bool| {
         let ports = gateware.ports().into_iter();
         ports

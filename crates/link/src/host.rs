@@ -207,7 +207,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let _ = self.session.read(address);
         }
         while words.iter().any(Option::is_none) {
-            self.pump(|answer| {
+            self.pump(&mut |answer| {
                 for (word, address) in words.iter_mut().zip(addresses) {
                     if answer.is_read_of(address) {
                         *word = Some(answer.data);
@@ -229,13 +229,13 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         loop {
             match self.session.write(body) {
                 Ok(()) => break,
-                Err(WriteError::Full(_)) => self.pump(|_| ())?,
+                Err(WriteError::Full(_)) => self.pump(&mut |_| ())?,
                 Err(WriteError::NoSession) => return Err(HostError::NoSession),
                 Err(WriteError::NoPower(error)) => return Err(error.into()),
             }
         }
         while self.session.writing() {
-            self.pump(|_| ())?;
+            self.pump(&mut |_| ())?;
         }
         Ok(())
     }
@@ -257,8 +257,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.time
     }
 
-    /// Performs one exchange with the line. `seen` is called with each answer.
-    fn pump(&mut self, mut seen: impl FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
+    /// Performs one exchange with the line. `seen` is called with each answer. It is `dyn`, as all that
+    /// is called inside this driver: the driver is then compiled once for a line and a clock, and not
+    /// once more for each caller.
+    fn pump(&mut self, seen: &mut dyn FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
         let mut now = self.time();
         while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {
             let Some(request) = self.session.transmit(now) else { break };

@@ -37,6 +37,10 @@ struct Leg {
     begun: [i32; AXES],
 }
 
+/// What a caller is told after each exchange with the line: the mask of the axes that move, the stage
+/// and the progress.
+type Watch<'a> = dyn FnMut(u8, HomingStage, &Progress<'_>) -> Wish + 'a;
+
 /// Moves of several axes that start together.
 #[derive(Clone, Default)]
 struct Moves {
@@ -119,7 +123,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
+        watch: &mut Watch<'_>,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
         // With one input for all switches, a closed switch of any axis would hide the others, and a
@@ -156,13 +160,13 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 let place = |axis: &AxisHoming| {
                     if one { axis.move_off.max(axis.pull_off) } else { axis.pull_off }
                 };
-                if self.pull_off(homing, axes, edges, place, watch)?.is_none() {
+                if self.pull_off(homing, axes, edges, &place, watch)?.is_none() {
                     return Ok(None);
                 }
             }
         }
         for part in homing.parts(homing.mask()).filter(|_| one) {
-            if self.pull_off(homing, part, edges, |axis| axis.pull_off, watch)?.is_none() {
+            if self.pull_off(homing, part, edges, &|axis| axis.pull_off, watch)?.is_none() {
                 return Ok(None);
             }
         }
@@ -176,11 +180,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         axes: u8,
-        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
+        watch: &mut Watch<'_>,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let far = |_, axis: &AxisHoming| (axis.move_off, false, axis.seek);
         for part in homing.parts(axes) {
-            let Some(leg) = self.leg(homing, part, HomingStage::MoveOff, far, watch)? else {
+            let Some(leg) = self.leg(homing, part, HomingStage::MoveOff, &far, watch)? else {
                 return Ok(None);
             };
             if leg.met != 0 && homing.wiring != Wiring::Pair {
@@ -212,10 +216,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         homing: &Homing<'_>,
         axes: u8,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
+        watch: &mut Watch<'_>,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let seek = |_, axis: &AxisHoming| (axis.max_travel, true, axis.seek);
-        let Some(found) = self.leg(homing, axes, HomingStage::Seek, seek, watch)? else {
+        let Some(found) = self.leg(homing, axes, HomingStage::Seek, &seek, watch)? else {
             return Ok(None);
         };
         found.all(axes, HomingFault::NotFound)?;
@@ -227,7 +231,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let back = |number, axis: &AxisHoming| {
             (axis.move_off.saturating_add(ran_on(number)), false, axis.seek)
         };
-        let Some(leg) = self.leg(homing, axes, HomingStage::BackOff, back, watch)? else {
+        let Some(leg) = self.leg(homing, axes, HomingStage::BackOff, &back, watch)? else {
             return Ok(None);
         };
         if leg.met != 0 {
@@ -242,7 +246,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let steps = axis.move_off.saturating_add(ran_on(number)).saturating_add(accepted + 2);
             (steps, true, axis.slow)
         };
-        let Some(found) = self.leg(homing, axes, HomingStage::Approach, near, watch)? else {
+        let Some(found) = self.leg(homing, axes, HomingStage::Approach, &near, watch)? else {
             return Ok(None);
         };
         found.all(axes, HomingFault::NotAgain)?;
@@ -262,8 +266,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         homing: &Homing<'_>,
         axes: u8,
         edges: &[i32; AXES],
-        place: impl Fn(&AxisHoming) -> u32,
-        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
+        place: &dyn Fn(&AxisHoming) -> u32,
+        watch: &mut Watch<'_>,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let positions = self.status.positions;
         let pull = |number, axis: &AxisHoming| {
@@ -275,7 +279,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let steps = i64::from(wanted) - i64::from(away);
             (u32::try_from(steps.unsigned_abs()).unwrap_or(u32::MAX), steps < 0, axis.seek)
         };
-        let Some(leg) = self.leg(homing, axes, HomingStage::PullOff, pull, watch)? else {
+        let Some(leg) = self.leg(homing, axes, HomingStage::PullOff, &pull, watch)? else {
             return Ok(None);
         };
         match leg.met {
@@ -293,15 +297,15 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         homing: &Homing<'_>,
         axes: u8,
         stage: HomingStage,
-        wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
-        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
+        wish: &dyn Fn(u8, &AxisHoming) -> (u32, bool, u64),
+        watch: &mut Watch<'_>,
     ) -> Result<Option<Leg>, HostError<L::Error>> {
         let begun = self.read_status()?.positions;
         let mut leg = Leg { met: 0, latched: [0; AXES], begun };
         // An axis whose limit is met before the start hinders the others from starting.
         let mut left = axes;
         while left != 0 {
-            let moves = moves(homing, left, &wish)
+            let moves = moves(homing, left, wish)
                 .map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
             let source = homing.source(left, stage);
             let motors = homing.motors(left);
@@ -353,7 +357,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
 fn moves(
     homing: &Homing<'_>,
     axes: u8,
-    wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
+    wish: &dyn Fn(u8, &AxisHoming) -> (u32, bool, u64),
 ) -> Result<Moves, (u8, HomingFault)> {
     let mut moves = Moves { start: Some(homing.motors(axes)), ..Moves::default() };
     for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {

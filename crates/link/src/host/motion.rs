@@ -126,8 +126,17 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// was sent. Other errors concern the line.
     pub fn stream(
         &mut self,
-        source: impl SegmentSource,
+        mut source: impl SegmentSource,
         mut watch: impl FnMut(&Progress<'_>) -> Wish,
+    ) -> Result<Ended, HostError<L::Error>> {
+        self.stream_watched(&mut source, &mut watch)
+    }
+
+    /// [`Self::stream`].
+    fn stream_watched(
+        &mut self,
+        source: &mut dyn SegmentSource,
+        watch: &mut dyn FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
         if self.session.number().is_none() {
             return Err(HostError::NoSession);
@@ -163,7 +172,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 }
             };
             let mut idle = false;
-            self.pump(|answer| {
+            self.pump(&mut |answer| {
                 idle = answer.idle;
                 cancelled.hear(answer, axes);
                 if let Capture::Read(reader) = &mut capture {
@@ -179,7 +188,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             if answer.fault {
                 self.wait("the stop", |answer| answer.halted)?;
                 while self.session.writing() {
-                    self.pump(|_| ())?;
+                    self.pump(&mut |_| ())?;
                 }
                 self.read_status()?;
                 return Err(HostError::Fault { cause: answer.cause, culprits: answer.culprits });

@@ -40,7 +40,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             self.listen();
             self.session.open(number, self.axes());
             while self.session.opening() {
-                self.pump(|_| ())?;
+                self.pump(&mut |_| ())?;
             }
             self.read_status()?;
             if self.session.number().is_some() {

@@ -173,7 +173,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
             self.listen();
             reader.ask(&mut self.session);
-            self.pump(|answer| reader.hear(answer))?;
+            self.pump(&mut |answer| reader.hear(answer))?;
         }
     }
 }

@@ -30,15 +30,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ) -> Result<Ended, HostError<L::Error>> {
         self.write(map::CONTROL, map::CONTROL_ENABLE)?;
         let mut asked = Wish::GoOn;
-        self.wait_while(
-            "the drivers' power",
-            |answer| answer.ready,
-            |status| {
-                asked =
-                    watch(&Progress { status, handed_over: false, snapshot: None, queues: None });
-                asked
-            },
-        )?;
+        self.wait_while("the drivers' power", &|answer| answer.ready, &mut |status| {
+            asked = watch(&Progress { status, handed_over: false, snapshot: None, queues: None });
+            asked
+        })?;
         if asked == Wish::Stop {
             self.stop()?;
             return Ok(Ended::Stopped);
@@ -77,16 +72,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.listen();
         self.session.stop();
         while self.session.stopping() || self.session.writing() {
-            self.pump(|_| ())?;
+            self.pump(&mut |_| ())?;
         }
-        self.wait_while(
-            "the stop",
-            |answer| answer.fault && answer.halted,
-            |status| {
-                watch(status);
-                Wish::GoOn
-            },
-        )?;
+        self.wait_while("the stop", &|answer| answer.fault && answer.halted, &mut |status| {
+            watch(status);
+            Wish::GoOn
+        })?;
         self.read_status()
     }
 
@@ -131,15 +122,15 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         what: &'static str,
         wish: impl Fn(&Answer) -> bool,
     ) -> Result<(), HostError<L::Error>> {
-        self.wait_while(what, wish, |_| Wish::GoOn)
+        self.wait_while(what, &wish, &mut |_| Wish::GoOn)
     }
 
     /// As `wait`. Ends earlier if `watch`, which is called after each exchange, asks for it.
     fn wait_while(
         &mut self,
         what: &'static str,
-        wish: impl Fn(&Answer) -> bool,
-        mut watch: impl FnMut(&Status) -> Wish,
+        wish: &dyn Fn(&Answer) -> bool,
+        watch: &mut dyn FnMut(&Status) -> Wish,
     ) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
         while !wish(&self.status.answer) {
