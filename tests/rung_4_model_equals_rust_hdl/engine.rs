@@ -76,40 +76,40 @@ fn in_rust_hdl(build: &EngineBuild, usual: u64) {
 
 #[test]
 fn random_programs_at_16_phases() {
-    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair), 400_000);
+    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair), 200_000);
 }
 
 #[test]
 fn random_programs_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(6, 80_000_000, 1, StartPhase::Half, LimitWiring::One), 200_000);
+    in_rust_hdl(&build(6, 80_000_000, 1, StartPhase::Half, LimitWiring::One), 100_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_4_phases_with_clocks_to_spare() {
-    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, LimitWiring::Each), 200_000);
+    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, LimitWiring::Each), 100_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(8, 106_000_000, 1, StartPhase::Half, LimitWiring::Pair), 200_000);
+    in_rust_hdl(&build(8, 106_000_000, 1, StartPhase::Half, LimitWiring::Pair), 100_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_phases() {
-    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Pair), 100_000);
+    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Pair), 50_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_tick() {
-    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 100_000);
+    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 50_000);
 }
 
 #[test]
 fn random_programs_with_two_and_with_four_latches() {
     let two = build(3, 64_000_000, 4, StartPhase::Half, LimitWiring::Pair);
-    in_rust_hdl(&with_latches(two, 2), 150_000);
+    in_rust_hdl(&with_latches(two, 2), 75_000);
     let four = build(1, 32_000_000, 4, StartPhase::Zero, LimitWiring::One);
-    in_rust_hdl(&with_latches(four, 4), 150_000);
+    in_rust_hdl(&with_latches(four, 4), 75_000);
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn random_programs_of_eight_axes_on_eight_adders_with_clocks_to_spare() {
 /// programs.
 #[test]
 fn random_programs_with_each_set_of_parameters() {
-    parameter_sets().iter().for_each(|build| in_rust_hdl(build, 100_000));
+    parameter_sets().iter().for_each(|build| in_rust_hdl(build, 50_000));
 }
 
 #[test]
