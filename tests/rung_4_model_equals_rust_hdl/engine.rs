@@ -6,6 +6,7 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
+use carrystep_tests::effort;
 use carrystep_tests::engine_builds::{build, on_adders, parameter_sets, with_latches};
 use carrystep_tests::engine_programs::run_programs;
 use proptest::prelude::*;
@@ -70,7 +71,9 @@ fn assert_kept(
     Ok(())
 }
 
+/// `usual` clocks, or twice as many in a run of repeats.
 fn in_rust_hdl(build: &EngineBuild, usual: u64) {
+    let usual = if effort::repeats_in_full() { 2 * usual } else { usual };
     run_programs(build, usual, |program, events| assert_equal(build, program, events));
 }
 

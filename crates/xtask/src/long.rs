@@ -61,7 +61,7 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "repeats",
-        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home, all random programs of the parallel core in Rust-HDL, ten minutes of a slow board",
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home, all random programs of both cores in Rust-HDL, ten minutes of a slow board",
         asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
         cargo: &[
             "--test",
@@ -75,6 +75,7 @@ const RUNS: &[Run] = &[
             "--",
             "many_edges",
             "parallel::random_programs",
+            "engine::random_programs",
             "difference_of_a_slow_board",
             "the_demo",
             "every_profile",
