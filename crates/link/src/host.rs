@@ -257,9 +257,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.time
     }
 
-    /// Performs one exchange with the line. `seen` is called with each answer. It is `dyn`, as all that
-    /// is called inside this driver: the driver is then compiled once for a line and a clock, and not
-    /// once more for each caller.
+    /// Performs one exchange with the line. `seen` is called with each answer.
+    ///
+    /// All closures inside this driver are `dyn`: it is then compiled once for a line and a clock,
+    /// and not once more for each caller.
     fn pump(&mut self, seen: &mut dyn FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
         let mut now = self.time();
         while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {

@@ -132,7 +132,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.stream_watched(&mut source, &mut watch)
     }
 
-    /// [`Self::stream`].
+    /// [`Self::stream`], compiled once for all sources and callers.
     fn stream_watched(
         &mut self,
         source: &mut dyn SegmentSource,
