@@ -18,15 +18,7 @@ pub struct Edge {
 
 fn after(s: &Segment, n: i128) -> i128 {
     let (v, a, j) = (i128::from(s.v), i128::from(s.a), i128::from(s.j));
-    n * v + n * (n - 1) / 2 * a + if j == 0 { 0 } else { triples(n) * j }
-}
-
-/// n (n - 1) (n - 2) / 6. A division of 128 bits would be most of the time of this test.
-fn triples(n: i128) -> i128 {
-    match u64::try_from(n) {
-        Ok(n @ 2..0x20_0000) => (n * (n - 1) * (n - 2) / 6).into(),
-        _ => n * (n - 1) * (n - 2) / 6,
-    }
+    n * v + n * (n - 1) / 2 * a + if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 * j }
 }
 
 /// V in tick `k` (from 0), in 2^-64 step per tick.

@@ -36,7 +36,8 @@ struct Run {
 const RUNS: &[Run] = &[
     Run {
         name: "lockstep",
-        what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
+        what: "random programs with stops on all six axes: the model against the exported engine \
+            in Verilator, every output in every clock",
         asks: &[("CARRYSTEP_CLOCKS", "10000000")],
         cargo: &["--test", "rung_5_model_equals_verilog", "engine::random_programs_in_verilator"],
     },
@@ -48,7 +49,9 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "adders",
-        what: "engines with [several adders](clock-by-clock.md#several-adders), as *lockstep* and *rust-hdl*: six axes on two and on six, eight on eight; planted bugs; a move at 1.9 million steps/s on six axes",
+        what: "engines with [several adders](clock-by-clock.md#several-adders), as *lockstep* and \
+            *rust-hdl*: six axes on two and on six, eight on eight; planted bugs; a move at 1.9 \
+            million steps/s on six axes",
         asks: &[("CARRYSTEP_CLOCKS", "3000000")],
         cargo: &[
             "--test",
@@ -61,7 +64,10 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "repeats",
-        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in Icarus and Rust-HDL, ten million edges of the fast model, homing from every two starts with each kind of stop, 300 random machines home, all random programs of both cores in Rust-HDL, ten minutes of a slow board",
+        what: "what tests run in part, in full: the demo, all profiles and all golden vectors in \
+            Icarus and Rust-HDL, ten million edges of the fast model, homing from every two \
+            starts with each kind of stop, 300 random machines home, all random programs of both \
+            cores in Rust-HDL, ten minutes of a slow board",
         asks: &[("CARRYSTEP_REPEATS", "all"), ("CARRYSTEP_HOMING_MACHINES", "300")],
         cargo: &[
             "--test",
@@ -103,7 +109,8 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "bad-line",
-        what: "moves over a line that flips, drops, doubles, cuts and delays bytes, to a board of models: pulses are those of a clean line, or a stop says why",
+        what: "moves over a line that flips, drops, doubles, cuts and delays bytes, to a board of \
+            models: pulses are those of a clean line, or a stop says why",
         asks: &[("CARRYSTEP_FRAMES", "100000")],
         cargo: &["--test", "virtual_board", "bad_line::pulses_on_a_bad_line"],
     },
@@ -115,13 +122,15 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "dead-host",
-        what: "hosts that die in the middle of a move: the board stops in time, its positions are true, the next host goes on",
+        what: "hosts that die in the middle of a move: the board stops in time, its positions are \
+            true, the next host goes on",
         asks: &[("CARRYSTEP_DEATHS", "50")],
         cargo: &["--test", "virtual_board", "dead_host::the_board_stops"],
     },
     Run {
         name: "verilog-board",
-        what: "the exported Verilog as a board: a second of garbage, then a move; a second of six axes at 500 segments/s over 3 Mbaud",
+        what: "the exported Verilog as a board: a second of garbage, then a move; a second of six \
+            axes at 500 segments/s over 3 Mbaud",
         asks: &[("CARRYSTEP_VERILOG_MS", "1000")],
         cargo: &["--test", "virtual_board", "verilog_at"],
     },
@@ -133,37 +142,51 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "boards",
-        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 and ECP5 to bitstreams on their pins, Spartans to yosys' cells",
+        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 and ECP5 to bitstreams \
+            on their pins, Spartans to yosys' cells",
         asks: &[],
         cargo: &["-p", "carrystep-tools", "--", "boards"],
     },
     Run {
         name: "equivalence",
-        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, ECP5 boards as Verilog and as netlists, Spartans as Verilog and as the EDIF of their cells; planted faults",
+        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as \
+            bitstreams read back, ECP5 boards as Verilog and as netlists, Spartans as Verilog and \
+            as the EDIF of their cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_is_its_verilog"],
     },
     Run {
         name: "spartans",
-        what: "[Spartans without their vendor](spartans.md): the EDIF of all boards read by spydrnet, cells, nets and the names of the constraints against our own reader; the clock modules of all boards on small models of the cells; planted faults",
+        what: "[Spartans without their vendor](spartans.md): the EDIF of all boards read by \
+            spydrnet, cells, nets and the names of the constraints against our own reader; the \
+            clock modules of all boards on small models of the cells; planted faults",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "spartans_without_their_vendor"],
     },
     Run {
         name: "timing",
-        what: "the iCEstick as placed and routed, simulated with [nextpnr's delays](timing.md): from bytes on the line to pulses of six axes, every pin in every clock, no input of a register within its set-up or hold time; violations above the greatest clock; every single check of a small design",
+        what: "the iCEstick as placed and routed, simulated with [nextpnr's delays](timing.md): \
+            from bytes on the line to pulses of six axes, every pin in every clock, no input of a \
+            register within its set-up or hold time; violations above the greatest clock; every \
+            single check of a small design",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_board_keeps_its_timing"],
     },
     Run {
         name: "self-test",
-        what: "the [self-tests](self-test.md) of all boards from their own pins: every output once, alone, with its name on the UART, every change of an input, as Verilog and as bitstream (iCE40), netlist (ECP5) or EDIF (Spartans); planted faults; every pin of each iCE40 and ECP5 board placed by its build script",
+        what: "the [self-tests](self-test.md) of all boards from their own pins: every output \
+            once, alone, with its name on the UART, every change of an input, as Verilog and as \
+            bitstream (iCE40), netlist (ECP5) or EDIF (Spartans); planted faults; every pin of \
+            each iCE40 and ECP5 board placed by its build script",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &["--test", "a_self_test_shows_every_pin", "--test", "boards"],
     },
     Run {
         name: "gowin",
-        what: "Gowin [boards](../hdl-out/boards.md): their gateware to bitstreams, in time with each of five seeds; from bytes on the line to pulses on the pins, as Verilog and as netlists; their [self-tests](self-test.md), as Verilog, as netlists and to bitstreams; planted faults; every pin placed by the build script",
+        what: "Gowin [boards](../hdl-out/boards.md): their gateware to bitstreams, in time with \
+            each of five seeds; from bytes on the line to pulses on the pins, as Verilog and as \
+            netlists; their [self-tests](self-test.md), as Verilog, as netlists and to \
+            bitstreams; planted faults; every pin placed by the build script",
         asks: &[("CARRYSTEP_BOARDS", "all")],
         cargo: &[
             "--test",
@@ -178,49 +201,67 @@ const RUNS: &[Run] = &[
     },
     Run {
         name: "holds",
-        what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from the planned curve, the end",
+        what: "500 holds and resumptions at random times in LinuxCNC's 3D_Chips, without and with \
+            [overrides](running-jobs.md#on-a-board) at random times: exact limits, distance from \
+            the planned curve, the end",
         asks: &[("CARRYSTEP_HOLDS", "500")],
         cargo: &["--test", "runner", "overrides::holds_at_random_times"],
     },
     Run {
         name: "kills",
-        what: "50 programs whose command is killed with SIGKILL in motion: the axes ramp down, by the watchdog or by a dry queue, where the pulses lead; [`--from-block`](running-jobs.md#going-on-at-a-block) ends the job, and the pulses before and behind the ramp are the whole part",
+        what: "50 programs whose command is killed with SIGKILL in motion: the axes ramp down, by \
+            the watchdog or by a dry queue, where the pulses lead; \
+            [`--from-block`](running-jobs.md#going-on-at-a-block) ends the job, and the pulses \
+            before and behind the ramp are the whole part",
         asks: &[("CARRYSTEP_KILLS", "50")],
         cargo: &["--test", "command_line", "host_that_is_killed"],
     },
     Run {
         name: "programs",
-        what: "all shipped programs to their end on a board of models, through the link: each edge of STEP and DIR, and each change of an output, in the clock in which the fast model of `simulate` has it",
+        what: "all shipped programs to their end on a board of models, through the link: each \
+            edge of STEP and DIR, and each change of an output, in the clock in which the fast \
+            model of `simulate` has it",
         asks: &[("CARRYSTEP_PROGRAM_SECONDS", "1000")],
         cargo: &["--test", "runner", "pulses_of_simulate::"],
     },
     Run {
         name: "hours",
-        what: "eight hours of a program on a board of models, through the link: each pulse in the tick that the plan's own sums give it, drift zero steps",
+        what: "eight hours of a program on a board of models, through the link: each pulse in the \
+            tick that the plan's own sums give it, drift zero steps",
         asks: &[("CARRYSTEP_HOURS", "28800")],
         cargo: &["--test", "runner", "hours_of_a_program::"],
     },
     Run {
         name: "linuxcnc",
-        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real time: programs, feed hold, abort, jog, e-stop; homing on a switch and on an index pulse, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of every servo period; a short program replayed on the exported Verilog, every pin in every clock",
+        what: "the real [LinuxCNC](linuxcnc.md) with our component and a virtual board in real \
+            time: programs, feed hold, abort, jog, e-stop; homing on a switch and on an index \
+            pulse, probing, and LinuxCNC killed in motion; pulses against the motor-pos-cmd of \
+            every servo period; a short program replayed on the exported Verilog, every pin in \
+            every clock",
         asks: &[("CARRYSTEP_LINUXCNC", PROGRAMS_OF_LINUXCNC)],
         cargo: &["--test", "real_linuxcnc"],
     },
     Run {
         name: "senders",
-        what: "real [senders](senders.md) drive virtual boards through `carrystep serve`: CNCjs from npm and the sender of bCNC from PyPI stream programs, pause, override, and are closed and killed in motion; ends and pulses against those of `carrystep run`",
+        what: "real [senders](senders.md) drive virtual boards through `carrystep serve`: CNCjs \
+            from npm and the sender of bCNC from PyPI stream programs, pause, override, and are \
+            closed and killed in motion; ends and pulses against those of `carrystep run`",
         asks: &[("CARRYSTEP_SENDERS", "all")],
         cargo: &["--test", "command_line", "real_senders"],
     },
     Run {
         name: "container",
-        what: "the [container recipe](senders.md) built from a clean clone, without a registry: base images made of Debian's packages and rustup's toolchain; a program streamed to what starts in it, twice",
+        what: "the [container recipe](senders.md) built from a clean clone, without a registry: \
+            base images made of Debian's packages and rustup's toolchain; a program streamed to \
+            what starts in it, twice",
         asks: &[("CARRYSTEP_CONTAINER", "1")],
         cargo: &["--test", "command_line", "container_serves"],
     },
     Run {
         name: "soak",
-        what: "[senders](senders.md): 500 real-time characters at random times, judged by the pulses (the path, speed and acceleration); four hours of motion under a sender that misbehaves at random",
+        what: "[senders](senders.md): 500 real-time characters at random times, judged by the \
+            pulses (the path, speed and acceleration); four hours of motion under a sender that \
+            misbehaves at random",
         asks: &[("CARRYSTEP_CHARACTERS", "500"), ("CARRYSTEP_SOAK", "14400")],
         cargo: &[
             "--test",

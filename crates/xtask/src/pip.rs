@@ -17,9 +17,11 @@ pub const OF_PIP: &[(&str, &str)] = &[
 pub const MODULES_OF_PIP: &[(&str, &str)] =
     &[("spydrnet", "spydrnet==1.13.0"), ("requests", "requests==2.34.2")];
 
-/// The folder for these packages in these versions, in the user's cache folder: a fresh clone, and one
-/// whose `target/` is empty, finds them there, and with them what they have answered before. (A kept
-/// answer is that of the tool in this place, docs/decisions/0053.)
+/// The folder into which these packages are installed: one for each choice of versions, in the cache
+/// folder that `carrystep-files` gives. (Its rule is repeated here, because `cargo xtask` is compiled
+/// before any crate of the gateware.) A fresh clone finds the tools there. It also finds the answers
+/// that these tools gave before, because a kept answer belongs to a tool at a certain path
+/// (docs/decisions/0053).
 pub fn folder() -> PathBuf {
     let mut hasher = DefaultHasher::new();
     (OF_PIP, MODULES_OF_PIP).hash(&mut hasher);
