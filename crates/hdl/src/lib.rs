@@ -19,18 +19,22 @@
 //! Every module has a `Default`, because Rust-HDL requires it. The default leaves all parameters at
 //! zero and does not work as gateware; build a module with its `new`.
 
+#[macro_use] // its `dff_setup!` stands in every kernel
+pub mod primitives;
+
 pub mod engine;
 pub mod line;
 pub mod link;
 pub mod parallel;
 pub mod parameters;
 pub mod parts;
-pub mod primitives;
 pub mod self_test;
 mod sim;
 
+#[cfg(not(test))]
 pub use engine::{AnyEngine, EngineSim, engine};
 pub use line::{Spi, SpiSim, UartLine, UartSim};
+#[cfg(not(test))]
 pub use link::{AnyLink, LinkSim, link};
 pub use parallel::{
     AnyParallelCore, AxisSim, ParallelAxis, ParallelCore, ParallelSim, parallel_core,

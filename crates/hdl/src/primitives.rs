@@ -7,5 +7,6 @@ pub mod formula;
 pub mod held_memory;
 pub mod memory;
 pub mod per_axis;
+#[macro_use]
 pub mod register;
 pub mod word;

@@ -21,7 +21,7 @@
 use crate::line::UartLine;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 mod sim;
 pub mod speech;

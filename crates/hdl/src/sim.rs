@@ -10,7 +10,7 @@
 //! then calls `clock`, which raises the clock.
 
 use crate::HdlError;
-use rust_hdl::prelude::{Bit, Block, Out, Signal, check_all, simulate};
+use rust_hdl_core::prelude::{Bit, Block, Out, Signal, check_all, simulate};
 
 /// The largest number of simulation passes for one cycle. Every module of this crate settles in
 /// fewer.
@@ -44,7 +44,7 @@ pub(crate) fn mask(bits: &[Signal<Out, Bit>]) -> u8 {
 #[cfg(test)]
 pub(crate) fn assert_synthesizes<B: Block>(module: B, name: &str) {
     use crate::engine::layout::INDICES;
-    use rust_hdl::prelude::{generate_verilog, yosys_validate};
+    use rust_hdl_core::prelude::{generate_verilog, yosys_validate};
     let module = connected(module).unwrap();
     // Rust-HDL writes the names of indices as they stand in the kernel.
     let named = generate_verilog(module.as_ref());

@@ -14,7 +14,7 @@ use carrystep_core::link::{BYTE_PORTS, LineKind};
 use carrystep_core::{Build, EngineBuild, SelfTest};
 use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, Spi, UartLine, engine, link, parallel_core};
-use rust_hdl::prelude::{Block, check_all};
+use rust_hdl_core::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
 
 /// Verilator's waivers for the parallel core of any number of axes, each with its reason.

@@ -9,7 +9,7 @@ use crate::ExportError;
 use crate::names::{Names, slice};
 use crate::netlist::Number;
 use carrystep_hdl::engine::layout;
-use rust_hdl::prelude::ast::{
+use rust_hdl_core::prelude::ast::{
     VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary,
 };
 

@@ -10,8 +10,8 @@ use crate::ExportError;
 use crate::expression::Translator;
 use crate::names::{Name, Names, Role};
 use crate::netlist::Module;
-use rust_hdl::prelude::Verilog;
-use rust_hdl::prelude::ast::{
+use rust_hdl_core::prelude::Verilog;
+use rust_hdl_core::prelude::ast::{
     VerilogBlock, VerilogBlockOrConditional as Otherwise, VerilogConditional, VerilogExpression,
     VerilogStatement as Statement,
 };

@@ -8,7 +8,7 @@ use crate::netlist::Module;
 use crate::parameters;
 use carrystep_hdl::primitives::constant::ERROR;
 use carrystep_hdl::primitives::formula::ParameterValue;
-use rust_hdl::prelude::{AtomKind, Verilog};
+use rust_hdl_core::prelude::{AtomKind, Verilog};
 
 /// The greatest length of a line of comment.
 pub(crate) const COLUMNS: usize = 100;

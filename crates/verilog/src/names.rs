@@ -4,7 +4,7 @@
 
 use crate::ExportError;
 use crate::netlist::{Module, Wire};
-use rust_hdl::prelude::AtomKind;
+use rust_hdl_core::prelude::AtomKind;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The kind of thing that a name in a kernel denotes.

@@ -4,7 +4,7 @@
 use crate::ExportError;
 use carrystep_hdl::primitives::formula::Note;
 use carrystep_hdl::primitives::register::NOTE;
-use rust_hdl::prelude::{Atom, AtomKind, Block, Probe, Verilog, VerilogLiteral};
+use rust_hdl_core::prelude::{Atom, AtomKind, Block, Probe, Verilog, VerilogLiteral};
 
 /// One instance of a module.
 #[derive(Debug, Clone)]

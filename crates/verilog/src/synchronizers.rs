@@ -12,7 +12,7 @@ use crate::ExportError;
 use crate::kernel::{Kernel, Step};
 use crate::names::{Name, Names, Role, plain, split_index};
 use crate::netlist::Module;
-use rust_hdl::prelude::{AtomKind, Verilog};
+use rust_hdl_core::prelude::{AtomKind, Verilog};
 use std::collections::BTreeSet;
 
 /// The two registers that synchronize one or more asynchronous inputs.

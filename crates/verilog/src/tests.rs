@@ -4,10 +4,11 @@
 use crate::module::module_text;
 use crate::netlist;
 use crate::synchronizers::{self, Synchronizer};
+use carrystep_hdl::dff_setup;
 use carrystep_hdl::primitives::constant::Literal;
 use carrystep_hdl::primitives::register::{Input, Register};
 use carrystep_hdl::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 fn verilog(mut block: impl Block) -> String {
     translate(&mut block).unwrap()

@@ -37,7 +37,7 @@ use super::layout::{
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The adder with its operand registers, its sum and the flags derived from the sums.
 #[derive(LogicBlock, Default)]

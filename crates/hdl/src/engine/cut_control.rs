@@ -23,7 +23,7 @@ use crate::parameters::CUTS;
 use crate::primitives::constant::{Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The stages of a cut.
 #[derive(LogicBlock, Default)]

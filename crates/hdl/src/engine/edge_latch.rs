@@ -22,7 +22,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::{Latch, MAX_LOOKS};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The edges of the latch's pin.
 #[derive(LogicBlock, Default)]

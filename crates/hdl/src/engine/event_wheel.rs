@@ -32,7 +32,7 @@ use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::Timebase;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The tick counter and the event memory.
 #[derive(LogicBlock, Default)]

@@ -25,7 +25,7 @@ use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{Guard, MAX_LATCHES};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// Number of latches besides latch 0.
 pub const MORE: usize = MAX_LATCHES - 1;

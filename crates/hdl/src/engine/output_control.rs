@@ -35,7 +35,7 @@ use crate::primitives::held_memory::HeldMemory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::Outputs;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The outputs, and the duties for the PWM.
 #[derive(LogicBlock, Default)]

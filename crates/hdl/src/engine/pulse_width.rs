@@ -19,7 +19,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::MAX_PWM_DIVIDER;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The counter, the duty and the pin.
 #[derive(LogicBlock, Default)]

@@ -44,7 +44,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::PinTiming;
 use carrystep_core::build::MAX_CLOCKS;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The STEP and DIR pins of one axis.
 #[derive(LogicBlock, Default)]

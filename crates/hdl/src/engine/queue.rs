@@ -40,7 +40,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The control words of all axes, and the update of the present one.
 #[derive(LogicBlock, Default)]

@@ -31,7 +31,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{SWITCH_LEVEL, SWITCH_STATE};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// Pages and items of the words of state, and the requests for snapshots.
 #[derive(LogicBlock, Default)]

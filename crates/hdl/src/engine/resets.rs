@@ -17,7 +17,7 @@
 //! removes all of it.
 
 use crate::primitives::register::{Input, Register};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The stages of a reset.
 #[derive(LogicBlock, Default)]

@@ -24,7 +24,7 @@ use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The source of seeks, the axes that wait for it, and those that have hit it.
 #[derive(LogicBlock, Default)]

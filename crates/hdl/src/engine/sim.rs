@@ -12,7 +12,7 @@ use carrystep_core::engine::{
     Adders, CAUSES, EngineError, EngineInputs, EngineOutputs, MAX_LATCHES, Put, STATUS_BITS,
     SWITCH_LEVEL, SWITCH_STATE, SeekSource, StateItem, StatePage, StateWord, StateWords,
 };
-use rust_hdl::prelude::{Block, Out, Signal, check_all};
+use rust_hdl_core::prelude::{Block, Out, Signal, check_all};
 
 /// An engine whose numbers of axes and latches are not part of its type.
 pub trait AnyEngine: Block {

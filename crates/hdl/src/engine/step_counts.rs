@@ -30,7 +30,7 @@ use super::layout::{
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The comparison of the pulser's counts with those in memory, and the number of steps on their
 /// way.

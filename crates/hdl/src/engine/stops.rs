@@ -25,7 +25,7 @@ use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::{CAUSE_BITS, Cause, Guard};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The state of the present stop.
 #[derive(LogicBlock, Default)]

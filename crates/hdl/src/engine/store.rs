@@ -40,7 +40,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
 use carrystep_core::engine::MAX_AXES;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The memory and the selection of its addresses.
 #[derive(LogicBlock, Default)]

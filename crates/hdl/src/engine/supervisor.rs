@@ -22,7 +22,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::{Guard, MAX_ROUND, MAX_ROUNDS};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The e-stop, the watchdog, the power of the drivers, and the round.
 #[derive(LogicBlock, Default)]

@@ -30,7 +30,7 @@ use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{Guard, LimitWiring as Wiring, MAX_DEBOUNCE_SAMPLES};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The debouncer of all switches, and the decision whether a limit is found.
 #[derive(LogicBlock, Default)]

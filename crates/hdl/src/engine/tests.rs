@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::primitives::compiled_once::assert_sizes_agree;
-use carrystep_core::engine::EngineError;
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
 fn build() -> EngineBuild {
@@ -44,21 +43,4 @@ fn engine_synthesizes() {
     crate::sim::assert_synthesizes(Engine::<1, 0>::new(&of_axes(1)).unwrap(), "carrystep_engine_1");
     crate::sim::assert_synthesizes(Engine::<6, 0>::new(&build()).unwrap(), "carrystep_engine_6");
     crate::sim::assert_synthesizes(Engine::<8, 0>::new(&of_axes(8)).unwrap(), "carrystep_engine_8");
-}
-
-#[test]
-fn engine_accepts_one_to_eight_axes() {
-    for axes in 1..=8 {
-        assert!(engine(&of_axes(axes)).is_ok(), "{axes} axes");
-    }
-    for axes in [0, 9] {
-        assert_eq!(engine(&of_axes(axes)).err(), Some(HdlError::Engine(EngineError::Axes(axes))));
-    }
-}
-
-#[test]
-fn engine_rejects_a_tick_shorter_than_the_time_slots() {
-    let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
-    let refused = engine(&EngineBuild { timebase, ..build() });
-    assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));
 }

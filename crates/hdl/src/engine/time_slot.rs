@@ -28,7 +28,7 @@ use crate::primitives::compiled_once;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The beats and the axis of the present time slot, for N axes.
 #[derive(LogicBlock, Default)]

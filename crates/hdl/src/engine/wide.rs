@@ -53,7 +53,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSE_BITS, least_clocks_of_adders};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 pub mod count_place;
 pub mod findings;

@@ -19,7 +19,7 @@ use super::layout::{
 };
 use crate::primitives::compiled_once;
 use crate::primitives::word::bit_cast;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 compiled_once::logic!(Engine<N = 8, S = 1>);
 

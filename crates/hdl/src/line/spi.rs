@@ -23,7 +23,7 @@ use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::link::END;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The SPI peripheral. The host is the controller.
 #[derive(LogicBlock, Default)]

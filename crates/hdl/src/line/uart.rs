@@ -5,7 +5,7 @@ use super::uart_out::UartOut;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::link::Uart;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// A UART with a receiver and a transmitter.
 #[derive(LogicBlock, Default)]

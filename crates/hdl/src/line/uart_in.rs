@@ -19,7 +19,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::link::{MAX_BIT_CLOCKS, MIN_BIT_CLOCKS};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The UART receiver.
 #[derive(LogicBlock, Default)]

@@ -15,7 +15,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The UART transmitter.
 #[derive(LogicBlock, Default)]

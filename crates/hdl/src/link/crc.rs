@@ -12,7 +12,7 @@
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The shift register for CRCs and words.
 #[derive(LogicBlock, Default)]

@@ -24,7 +24,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{Guard, MAX_LATCHES};
 use carrystep_core::link::registers::LATCHES;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The records of several latches.
 #[derive(LogicBlock, Default)]

@@ -24,7 +24,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::CAUSE_BITS;
 use carrystep_core::link::Image;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The processor of the link for N axes.
 #[derive(LogicBlock, Default)]

@@ -16,7 +16,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The memory of constants and of the state of the axes.
 #[derive(LogicBlock, Default)]

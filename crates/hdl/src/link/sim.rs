@@ -12,7 +12,7 @@ use carrystep_core::engine::{
     StateWord,
 };
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
-use rust_hdl::prelude::{Block, Out, Signal, check_all};
+use rust_hdl_core::prelude::{Block, Out, Signal, check_all};
 
 /// A link whose numbers of axes and latches are not part of its type.
 pub trait AnyLink: Block {

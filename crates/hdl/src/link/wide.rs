@@ -21,7 +21,7 @@ use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSE_BITS, MAX_AXES};
 use carrystep_core::link::{BuildId, image};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The link for an engine of N axes on K adders, which has at most one latch.
 #[derive(LogicBlock, Default)]

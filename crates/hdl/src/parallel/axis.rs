@@ -28,7 +28,7 @@ use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// One axis of the parallel core, from the offered segment to the requested step.
 #[derive(LogicBlock, Default)]

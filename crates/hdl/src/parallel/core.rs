@@ -29,7 +29,7 @@ use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::Build;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The core of N axes. Its ports are listed in [`carrystep_core::ports::PARALLEL_PORTS`].
 #[derive(LogicBlock, Default)]

@@ -19,7 +19,7 @@
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The segment sequencer of one axis.
 #[derive(LogicBlock, Default)]

@@ -9,7 +9,7 @@ use crate::sim::{connected, mask, rising_edge, settle};
 use carrystep_core::build::ParallelAxesError;
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, Faults, Segment, StartPhase};
-use rust_hdl::prelude::{Block, Out, Signal, check_all};
+use rust_hdl_core::prelude::{Block, Out, Signal, check_all};
 
 /// A parallel core whose number of axes is not part of its type.
 pub trait AnyParallelCore: Block {

@@ -23,7 +23,7 @@
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The bisection and the emission of one axis.
 #[derive(LogicBlock, Default)]

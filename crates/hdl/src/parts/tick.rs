@@ -20,7 +20,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::Timebase;
 use carrystep_core::build::{MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// Counts clocks within a phase, and phases within a tick.
 #[derive(LogicBlock, Default)]

@@ -7,8 +7,8 @@
 //! and is named in [`logic`] has its `hdl` compiled for one size. For another size, [`resized`]
 //! replaces these numbers in the list that this `hdl` gives.
 
-use rust_hdl::prelude::Verilog;
-use rust_hdl::prelude::ast::{
+use rust_hdl_core::prelude::Verilog;
+use rust_hdl_core::prelude::ast::{
     VerilogBlock, VerilogBlockOrConditional, VerilogExpression, VerilogLoop, VerilogStatement,
 };
 
@@ -86,9 +86,9 @@ fn resize(block: &mut VerilogBlock, sizes: &[(usize, usize)]) {
 /// Asserts that a module has the same statements whether its `hdl` was compiled for its own size or
 /// for the one of [`logic`].
 #[cfg(test)]
-pub(crate) fn assert_sizes_agree<M: Kernel + rust_hdl::prelude::Logic + Default>() {
+pub(crate) fn assert_sizes_agree<M: Kernel + rust_hdl_core::prelude::Logic + Default>() {
     let module = Box::<M>::default();
-    let (own, replaced) = (Kernel::hdl(&*module), rust_hdl::prelude::Logic::hdl(&*module));
+    let (own, replaced) = (Kernel::hdl(&*module), rust_hdl_core::prelude::Logic::hdl(&*module));
     let (own, replaced) = (format!("{own:#?}"), format!("{replaced:#?}"));
     for (own, replaced) in own.lines().zip(replaced.lines()) {
         assert_eq!(own, replaced);

@@ -9,11 +9,11 @@
 
 use crate::primitives::formula::{Formula, Note, ParameterValue};
 use crate::primitives::word::Word;
-use rust_hdl::core::signal::get_signal_id;
-use rust_hdl::prelude::{
+use rust_hdl_core::prelude::{
     Atom, AtomKind, Block, Logic, PinConstraint, Probe, Synth, TypeDescriptor, VCDValue,
     VerilogLiteral,
 };
+use rust_hdl_core::signal::get_signal_id;
 
 /// The constant VALUE, N bits wide.
 #[derive(Debug)]

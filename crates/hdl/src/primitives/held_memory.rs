@@ -13,7 +13,7 @@
 
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// A memory of 2^A words of W bits, or of fewer ([`HeldMemory::of_few`]). At first all are zero.
 pub struct HeldMemory<const A: usize, const W: usize> {

@@ -14,7 +14,7 @@ use crate::primitives::constant::{ERROR, TextParameter};
 use crate::primitives::formula::{Formula, ParameterValue};
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 const BLOCK: &str = "\"block\"";
 

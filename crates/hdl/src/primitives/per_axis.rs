@@ -4,7 +4,7 @@
 //! for arrays of a fixed length ([`crate::primitives::constant`]). This type implements it for any
 //! N.
 
-use rust_hdl::prelude::{Block, Logic, Probe};
+use rust_hdl_core::prelude::{Block, Logic, Probe};
 use std::ops::{Deref, DerefMut};
 
 /// An array of N elements of one type; element i belongs to axis i.

@@ -15,12 +15,12 @@
 
 use crate::primitives::formula::{Formula, Note};
 use crate::primitives::word::Word;
-use rust_hdl::core::ast::VerilogLiteral;
-use rust_hdl::core::signal::get_signal_id;
-use rust_hdl::prelude::{
+use rust_hdl_core::ast::VerilogLiteral;
+use rust_hdl_core::prelude::{
     Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo,
     TypeDescriptor, VCDValue, Verilog,
 };
+use rust_hdl_core::signal::get_signal_id;
 
 /// The register's Verilog text writes this before the note of its initial value.
 pub const NOTE: &str = "\n//\t";
@@ -144,6 +144,19 @@ impl<T: Synth> Register<T> {
             note: None,
         }
     }
+}
+
+/// Connects registers of a module to its clock and lets each hold its value. A kernel begins with
+/// this; what it assigns to a register's `d` afterwards is loaded instead.
+///
+/// Rust-HDL's `#[hdl_gen]` knows the macro by this name and writes the same assignments in the
+/// Verilog.
+#[macro_export]
+macro_rules! dff_setup {
+    ($module:ident, $clock:ident, $($register:ident),+) => {$(
+        $module.$register.clock.next = $module.$clock.val();
+        $module.$register.d.next = $module.$register.q.val();
+    )+};
 }
 
 impl<T: Synth> Default for Register<T> {

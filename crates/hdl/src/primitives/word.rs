@@ -5,7 +5,7 @@
 //! operator wraps at N bits. To obtain a carry, widen the operands first with [`bit_cast`], as is
 //! usual in Rust-HDL.
 
-use rust_hdl::prelude::{Bits, Synth, TypeDescriptor, TypeKind, VCDValue, VerilogLiteral};
+use rust_hdl_core::prelude::{Bits, Synth, TypeDescriptor, TypeKind, VCDValue, VerilogLiteral};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Not, Shl, Shr, Sub};
 
 /// An unsigned word of N bits, where N is at most 127.

@@ -21,7 +21,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::SelfTest;
 use carrystep_core::self_test::LEVEL;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The texts, and the line that is being sent.
 #[derive(LogicBlock, Default)]

@@ -19,7 +19,7 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::SelfTest;
 use carrystep_core::self_test::MAX_HALF_CLOCKS;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The timer and the active output.
 #[derive(LogicBlock, Default)]

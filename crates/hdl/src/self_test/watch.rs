@@ -14,7 +14,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::SelfTest;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The inputs and their reported levels.
 #[derive(LogicBlock, Default)]

@@ -6,7 +6,7 @@
 
 use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The counts of one pulser, widened and moved.
 #[derive(LogicBlock, Default)]

@@ -20,7 +20,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// What the K lanes of an engine of N axes find in their time slots.
 #[derive(LogicBlock, Default)]

@@ -9,7 +9,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The selection of one lane, for N axes.
 #[derive(LogicBlock)]

@@ -18,7 +18,7 @@ use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 /// The source of seeks, the axes that wait for it, and those that have hit it, of N axes in K lanes.
 #[derive(LogicBlock, Default)]

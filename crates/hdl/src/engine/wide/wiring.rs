@@ -8,7 +8,7 @@ use crate::engine::layout::{
 };
 use crate::primitives::compiled_once;
 use crate::primitives::word::bit_cast;
-use rust_hdl::prelude::*;
+use rust_hdl_core::prelude::*;
 
 compiled_once::logic!(WideEngine<N = 8, K = 6>);
 
