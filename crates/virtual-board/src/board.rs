@@ -135,6 +135,11 @@ impl ModelBoard {
         self.wire.unsaid() > 0 || self.wire.is_hearing() || self.link.quiet(true) != u64::MAX
     }
 
+    /// Whether the board is within a byte to the host.
+    pub fn is_answering(&self) -> bool {
+        self.wire.is_hearing()
+    }
+
     /// The next byte received from the board.
     pub fn next_byte(&mut self) -> Option<u8> {
         self.wire.next_byte()

@@ -55,6 +55,9 @@ pub trait SimulatedBoard {
     /// far as this board can report it.
     fn talks(&self) -> bool;
 
+    /// Whether the board is within a byte to the host.
+    fn is_answering(&self) -> bool;
+
     /// The next byte received from the board.
     fn next_byte(&mut self) -> Option<u8>;
 
@@ -127,6 +130,10 @@ impl SimulatedBoard for ModelBoard {
 
     fn talks(&self) -> bool {
         self.talks()
+    }
+
+    fn is_answering(&self) -> bool {
+        self.is_answering()
     }
 
     fn next_byte(&mut self) -> Option<u8> {

@@ -12,7 +12,7 @@ use thiserror::Error;
 /// Number of exchanges with the host per second of the board's time.
 const EXCHANGES_PER_SECOND: u64 = 10_000;
 
-/// Number of waiting bytes from which on no more are read from the host.
+/// Number of waiting bytes from which on no more are read from the host, or all are given to it.
 const FULL: usize = 256;
 
 /// Time to sleep before the next look at the time and at the host.
@@ -41,17 +41,20 @@ pub struct RealTimeBoard<B> {
     terminal: Terminal,
     pace: Pace,
     clock_hz: u64,
+    /// Bytes from the board that the host does not have yet.
+    heard: Vec<u8>,
 }
 
 impl<B: SimulatedBoard> RealTimeBoard<B> {
     /// Connects a board with this clock, Hz, to a terminal.
     pub fn new(board: B, terminal: Terminal, pace: Pace, clock_hz: u64) -> Self {
-        Self { board, terminal, pace, clock_hz }
+        Self { board, terminal, pace, clock_hz, heard: Vec::new() }
     }
 
     /// Runs the board for at most a ten-thousandth of a second. If the board is ahead of its pace,
     /// sleeps for a short time; but a board that runs as fast as possible does not sleep while bytes
-    /// are on the line, because the host would wait for them, and send its requests again.
+    /// are on the line, because the host would wait for them, and send its requests again. It gives
+    /// its host whole answers, which wakes the host once and not every ten bytes.
     ///
     /// # Errors
     /// [`RealTimeError`] if the simulation or the terminal has failed.
@@ -68,11 +71,13 @@ impl<B: SimulatedBoard> RealTimeBoard<B> {
         let target = self.pace.target(self.board.cycle(), self.board.alone());
         self.board
             .run(target.min(self.board.cycle() + self.clock_hz / EXCHANGES_PER_SECOND), to)?;
-        let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
-        if !heard.is_empty() {
-            self.terminal.give(&heard)?;
-        }
         let waits = self.board.cycle() >= target && !(self.pace.is_fast() && self.board.talks());
+        self.heard.extend(std::iter::from_fn(|| self.board.next_byte()));
+        let is_within_an_answer = self.pace.is_fast() && self.board.is_answering() && !waits;
+        if !self.heard.is_empty() && (!is_within_an_answer || self.heard.len() >= FULL) {
+            self.terminal.give(&self.heard)?;
+            self.heard.clear();
+        }
         if waits && !(self.pace.needs_host() && self.terminal.is_open(WAIT)) {
             std::thread::sleep(NAP);
         }

@@ -211,6 +211,10 @@ impl SimulatedBoard for VerilatedBoard {
         self.wire.unsaid() > 0 || self.wire.is_hearing()
     }
 
+    fn is_answering(&self) -> bool {
+        self.wire.is_hearing()
+    }
+
     fn next_byte(&mut self) -> Option<u8> {
         self.wire.next_byte()
     }

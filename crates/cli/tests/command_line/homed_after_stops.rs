@@ -10,7 +10,7 @@ use std::process::Child;
 use std::time::Duration;
 
 /// A program that takes long. x moves between 1 and 9 mm, away from its switch at 0.
-const TAKES_LONG: &str = "G21 G90 F1500\no1 repeat [450]\nG1 X9 Y1\nG1 X1 Y0\no1 endrepeat\nM2\n";
+const TAKES_LONG: &str = "G21 G90 F500\no1 repeat [150]\nG1 X9 Y1\nG1 X1 Y0\no1 endrepeat\nM2\n";
 
 /// Moves of few segments, which outlast any watchdog: one at full speed, and one of 5 um/s, which
 /// stays within the travel.

@@ -136,6 +136,10 @@ impl SimulatedBoard for Recorder {
         self.board.talks()
     }
 
+    fn is_answering(&self) -> bool {
+        self.board.is_answering()
+    }
+
     fn next_byte(&mut self) -> Option<u8> {
         let byte = self.board.next_byte();
         self.recording.answers.extend(byte);
