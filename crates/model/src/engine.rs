@@ -14,7 +14,7 @@ mod readout;
 
 pub use motion::Motion;
 pub use readout::Readout;
-pub(crate) use readout::Span;
+pub(crate) use readout::{Counted, Span};
 
 use crate::parts::shaper;
 use carrystep_core::EngineBuild;

@@ -19,6 +19,6 @@ pub mod self_test;
 
 pub use engine::Engine;
 pub use fast::{Fast, FastEngine, HostedEngine};
-pub use link::{Link, SPI_RESTS};
+pub use link::{Awaited, Link, SPI_RESTS};
 pub use parallel::ParallelCore;
 pub use self_test::SelfTest;

@@ -23,6 +23,7 @@ mod register_mirror;
 mod spi;
 mod uart;
 
+pub use processor::Awaited;
 pub(crate) use uart::{Receiver, Transmitter};
 
 use carrystep_core::EngineBuild;
@@ -144,6 +145,39 @@ impl Link {
     /// must be delivered before the next clock that is not alone, by [`Link::store`].
     pub fn is_alone(&self) -> bool {
         !self.processor.minds_the_engine()
+    }
+
+    /// What the link waits for and the engine does, if it waits in this clock. Until then the link's
+    /// outputs to the engine stay the same, and it reads no words of state: what the engine has
+    /// output meanwhile must be delivered before the clock in which the engine does it, by
+    /// [`Link::store`].
+    pub fn awaits(&self) -> Option<Awaited> {
+        self.processor.awaits()
+    }
+
+    /// As [`Link::run_alone`], for exactly this number of clocks, in which the link waits for the
+    /// engine ([`Link::awaits`]).
+    pub fn run_waiting(
+        &mut self,
+        (rx, spi): (bool, [bool; 2]),
+        clocks: u64,
+        mut changed: impl FnMut(u64, bool),
+    ) {
+        let inputs = LinkInputs { rx, spi, ..LinkInputs::default() };
+        let (mut done, mut level) = (0, self.tx());
+        while done < clocks {
+            let quiet = self.line.quiet(rx, spi, false).min(clocks - done);
+            if quiet == 0 {
+                self.clock(&inputs);
+            } else {
+                self.line.pass(quiet, rx);
+            }
+            done += quiet.max(1);
+            if self.tx() != level {
+                level = !level;
+                changed(done, level);
+            }
+        }
     }
 
     /// Advances by at most `clocks` clocks, and not into the first clock in which the link needs the

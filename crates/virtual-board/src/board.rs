@@ -9,7 +9,7 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard};
 use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_model::fast::Edges;
-use carrystep_model::{HostedEngine, Link};
+use carrystep_model::{Awaited, HostedEngine, Link};
 
 /// State of the switches at the board's inputs. `true`, or a bit that is set, means active,
 /// regardless of the level of the pin.
@@ -161,10 +161,10 @@ impl ModelBoard {
             let starts = waits && self.engine.outputs(&inputs).armed;
             let target = if starts { end.min(self.cycle() + per_tick) } else { end };
             let alone = self.run_link(target);
-            if alone == self.cycle() {
-                self.clock(&inputs, to);
-            } else {
+            if alone > self.cycle() {
                 self.follow(&inputs, alone, to);
+            } else if !self.run_waiting(&inputs, target, to) {
+                self.clock(&inputs, to);
             }
         }
     }
@@ -202,6 +202,34 @@ impl ModelBoard {
             wire.reach(cycle);
         }
         cycle
+    }
+
+    /// While the link waits for the engine, runs both up to the clock in which the engine does what
+    /// the link waits for, or may do it, at most up to cycle `end`. Returns false if this is the
+    /// present one.
+    fn run_waiting(&mut self, inputs: &EngineInputs, end: u64, to: &mut dyn Edges) -> bool {
+        let Self { engine, link, wire, .. } = self;
+        let first = engine.cycle();
+        let most = match link.awaits() {
+            None => return false,
+            // A leap ends before the engine accepts anything.
+            Some(Awaited::Acceptance) if engine.core().fault().is_some() => return false,
+            Some(Awaited::Acceptance) => end - first,
+            Some(Awaited::Refresh) => engine.until_refresh().min(end - first),
+            Some(Awaited::RoomOrRefresh(axis)) => {
+                engine.until_refresh().min(engine.until_room(axis)).min(end - first)
+            }
+        };
+        engine.leap(inputs, most, to, &mut |word| link.store(word));
+        let mut cycle = first;
+        while cycle < engine.cycle() {
+            let Driven { rx, spi, stays } = wire.drive(cycle);
+            let (begun, clocks) = (cycle, stays.clamp(1, engine.cycle() - cycle));
+            link.run_waiting((rx, spi), clocks, |clocks, tx| wire.hear(begun + clocks, tx));
+            cycle += clocks;
+            wire.reach(cycle);
+        }
+        cycle > first
     }
 
     /// Runs the engine up to the cycle that the link has reached, and delivers what it has output

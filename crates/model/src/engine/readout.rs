@@ -13,6 +13,7 @@
 mod counts;
 mod leap;
 
+pub(crate) use counts::Counted;
 pub(crate) use leap::Span;
 
 use super::motion::{Ending, Motion};
@@ -81,6 +82,12 @@ impl Readout {
                 && self.page(motion, last) == StatePage::Live,
             ..motion.outputs(inputs)
         }
+    }
+
+    /// Number of clocks before the next one in which `refreshed` may be asserted; 0 if it may be in
+    /// the present one.
+    pub(crate) fn until_refresh(&self, motion: &Motion) -> u64 {
+        motion.until(self.counts.len() - 1, LAST_BEAT)
     }
 
     /// True if this tick and the next one output live words, unless a snapshot is requested, or a
@@ -153,8 +160,7 @@ impl Readout {
     pub(crate) fn observe(&mut self, motion: &Motion, inputs: &EngineInputs) -> Option<Ending> {
         if let Some((axes, beat)) = motion.time_slot() {
             for axis in axes.clone() {
-                let runs = motion.axis_state(axis).left.is_some();
-                self.counts[axis].compare(beat, motion.shaper(axis), runs);
+                self.counts[axis].compare(beat, Counted::of(motion, axis));
             }
             match beat {
                 LOOK_BEAT => self.levels = levels(motion, inputs, axes),

@@ -18,7 +18,7 @@ use super::FastEngine;
 use super::edges::Edges;
 use crate::engine::{Motion, Readout};
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{EngineInputs, EngineOutputs, StateWord};
+use carrystep_core::engine::{EngineInputs, EngineOutputs, PUT_BEAT, StateWord};
 use following::Following;
 
 /// The engine with its readout, and the number of the clock cycle that it is in.
@@ -54,6 +54,19 @@ impl HostedEngine {
     /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         self.readout.outputs(self.core(), inputs)
+    }
+
+    /// Number of cycles before the next one in which the engine may have output all words of a tick;
+    /// 0 if that may be the present one.
+    pub fn until_refresh(&self) -> u64 {
+        self.readout.until_refresh(self.core())
+    }
+
+    /// Number of cycles before the next one in which the engine reports the room of this axis; 0 if
+    /// it does in the present one.
+    pub fn until_room(&self, axis: u8) -> u64 {
+        let exists = usize::from(axis) < self.core().build().axes();
+        if exists { self.core().until(axis.into(), PUT_BEAT) } else { u64::MAX }
     }
 
     /// Advances by one cycle and reports the edges on the pins to `to`.
@@ -107,6 +120,9 @@ impl HostedEngine {
             let strobes = (clock + clocks) / per_tick;
             if strobes < 2 { 0 } else { (strobes - 1) * per_tick - clock }
         };
+        if most < 2 * per_tick - clock {
+            return 0;
+        }
         self.pass(inputs, most, fit, to)
     }
 

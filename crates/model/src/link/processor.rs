@@ -6,6 +6,7 @@
 
 mod alone;
 
+pub use alone::Awaited;
 pub(super) use alone::Waits;
 
 use super::crc::{CrcUnit, Told};

@@ -81,6 +81,13 @@ impl Motion {
         self.axis_models[axis].computed.step.map_or(0, |step| signed(step.backward))
     }
 
+    /// Number of clocks before the next one that is this beat of the time slot of an axis; 0 if the
+    /// present clock is.
+    pub(crate) fn until(&self, axis: usize, beat: u32) -> u64 {
+        let (at, per_tick) = (self.build.first_clock_of(axis) + beat, self.clocks_per_tick());
+        u64::from((at + per_tick - self.clock_of_tick()) % per_tick)
+    }
+
     /// The position of an axis with all steps that are between its accumulator and its pin. Unless
     /// steps are discarded, only a carry changes it.
     pub(crate) fn carried(&self, axis: usize) -> i32 {

@@ -3,10 +3,9 @@
 //! no latch accepts an edge, nothing is cleared and no snapshot is requested, and an axis that
 //! runs goes on running.
 
-use super::counts::{DISCARDED_BEAT, POSITION_BEAT};
+use super::counts::{Counted, DISCARDED_BEAT, POSITION_BEAT};
 use super::{LOOK_BEAT, Readout, SWITCH_BEAT, levels, switch_word};
 use crate::engine::Motion;
-use crate::parts::shaper::ShaperState;
 use carrystep_core::engine::{EngineInputs, StateWord, TIME_SLOT_CLOCKS};
 
 /// A run of clocks, from this clock of a tick on.
@@ -25,9 +24,8 @@ impl Span {
 }
 
 impl Readout {
-    /// Passes the counts of one axis through clocks in which the position and the discarded steps
-    /// of its shaper are constant.
-    pub(crate) fn follow(&mut self, axis: usize, shaper: &ShaperState, runs: bool, span: Span) {
+    /// Passes the counts of one axis through clocks in which what they follow is constant.
+    pub(crate) fn follow(&mut self, axis: usize, counted: Counted, span: Span) {
         let adders = self.adders;
         let counts = &mut self.counts[axis];
         let strobes = span.strobes();
@@ -40,10 +38,10 @@ impl Readout {
             let compared = span.clock > compares;
             // The first strobe has committed what had been compared before.
             let ticks = strobes.saturating_sub(compared.into());
-            counts.follow(beat, shaper, runs, ticks);
+            counts.follow(beat, counted, ticks);
             let again = !compared || strobes > 0;
             if again && (span.clock + span.clocks) % span.per_tick > compares {
-                counts.compare(beat, shaper, runs);
+                counts.compare(beat, counted);
             }
         }
     }

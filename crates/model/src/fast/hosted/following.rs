@@ -1,10 +1,9 @@
 //! A readout that follows a leap from edge to edge. Between two rising edges of STEP the position
 //! of an axis is constant, and the counted position approaches it by one step in each tick.
 
-use crate::engine::{Motion, Readout, Span};
+use crate::engine::{Counted, Motion, Readout, Span};
 use crate::fast::FastEngine;
 use crate::fast::edges::{Change, Edge, Edges};
-use crate::parts::shaper::ShaperState;
 use carrystep_core::engine::MAX_AXES;
 
 /// A readout that receives the edges of a leap, and passes them on to `to`.
@@ -15,16 +14,15 @@ pub(super) struct Following<'a> {
     from: u64,
     clock: u64,
     per_tick: u64,
-    /// The axes that exist.
-    axes: [Option<Followed>; MAX_AXES],
+    /// Of the axes that exist.
+    axes: [Followed; MAX_AXES],
 }
 
 /// An axis in the cycle up to which its counts have advanced.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Followed {
     cycle: u64,
-    shaper: ShaperState,
-    runs: bool,
+    counted: Counted,
     /// [`Motion::carried`] at the beginning of the leap.
     carried: i32,
 }
@@ -37,20 +35,18 @@ impl<'a> Following<'a> {
         to: &'a mut dyn Edges,
     ) -> Self {
         let (cycle, motion) = (engine.cycle(), engine.core());
-        let followed = |axis| Followed {
-            cycle,
-            shaper: *motion.shaper(axis),
-            runs: motion.axis_state(axis).left.is_some(),
-            carried: motion.carried(axis),
-        };
-        let axes = motion.build().axes();
+        let mut axes = [Followed::default(); MAX_AXES];
+        for (axis, followed) in axes.iter_mut().enumerate().take(motion.build().axes()) {
+            let (counted, carried) = (Counted::of(motion, axis), motion.carried(axis));
+            *followed = Followed { cycle, counted, carried };
+        }
         Self {
             readout,
             to,
             from: cycle,
             clock: motion.clock_of_tick().into(),
             per_tick: motion.clocks_per_tick().into(),
-            axes: std::array::from_fn(|axis| (axis < axes).then(|| followed(axis))),
+            axes,
         }
     }
 
@@ -60,21 +56,20 @@ impl<'a> Following<'a> {
         let motion: &Motion = engine.core();
         for axis in 0..motion.build().axes() {
             self.reach(axis, end);
-            if let Some(followed) = self.axes[axis] {
-                debug_assert_eq!(followed.shaper.position, motion.shaper(axis).position);
-                let carries = motion.carried(axis).wrapping_sub(followed.carried);
-                self.readout.carry(axis, carries);
-            }
+            let followed = &self.axes[axis];
+            debug_assert_eq!(followed.counted.position, motion.shaper(axis).position);
+            let carries = motion.carried(axis).wrapping_sub(followed.carried);
+            self.readout.carry(axis, carries);
         }
         self.readout.pass(self.span(self.from, end).strobes());
     }
 
-    /// Advances the counts of an axis to this cycle; its shaper has not changed since.
+    /// Advances the counts of an axis to this cycle; what they follow has not changed since.
     fn reach(&mut self, axis: usize, cycle: u64) {
-        let Some(followed) = self.axes[axis] else { return };
+        let followed = self.axes[axis];
         let span = self.span(followed.cycle, cycle);
-        self.readout.follow(axis, &followed.shaper, followed.runs, span);
-        self.axes[axis] = Some(Followed { cycle, ..followed });
+        self.readout.follow(axis, followed.counted, span);
+        self.axes[axis].cycle = cycle;
     }
 
     const fn span(&self, from: u64, to: u64) -> Span {
@@ -88,10 +83,8 @@ impl Edges for Following<'_> {
         if edge.change == Change::Rise {
             let axis = usize::from(edge.axis);
             self.reach(axis, edge.clock);
-            if let Some(Followed { shaper, .. }) = &mut self.axes[axis] {
-                let step = if edge.backward { -1 } else { 1 };
-                shaper.position = shaper.position.wrapping_add(step);
-            }
+            let position = &mut self.axes[axis].counted.position;
+            *position = position.wrapping_add(if edge.backward { -1 } else { 1 });
         }
         self.to.edge(edge);
     }

@@ -4,8 +4,8 @@
 use super::{EXECUTE, Inputs, LinkProcessor};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::processor::{
-    ACTS, BROKEN, CONDITION, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, Code, Condition, GOES, JUMPS,
-    KICK, PUTS, SETS, STARTS, STORES, ValueSource, WAIT,
+    ACTS, BROKEN, CONDITION, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, Code, Condition, FOR_ROOM,
+    GOES, JUMPS, KICK, PUTS, SETS, STARTS, STORES, ValueSource, WAIT,
 };
 
 /// The reason for which the processor waits.
@@ -17,6 +17,17 @@ pub(in crate::link) enum Waits {
     ForByte,
     /// It waits for the transmitter.
     ToSend,
+}
+
+/// What the engine does, so that the link goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Awaited {
+    /// It accepts the word or the start that the link offers, or reports a fault.
+    Acceptance,
+    /// It has output all words of a tick.
+    Refresh,
+    /// It reports the room of this axis, or has output all words of a tick.
+    RoomOrRefresh(u8),
 }
 
 impl LinkProcessor {
@@ -38,6 +49,22 @@ impl LinkProcessor {
     fn reads_register(&self) -> bool {
         const READS: Code = ACTS | CRC_BEGIN | CRC_FEED;
         self.stage > 0 && self.code & (SETS | STORES | JUMPS) == 0 && self.code & READS == READS
+    }
+
+    /// What the processor waits for and the engine does, if it does nothing else meanwhile.
+    #[inline]
+    pub(in crate::link) fn awaits(&self) -> Option<Awaited> {
+        const OFFERS_WORD: Code = ACTS | WAIT | PUTS;
+        const OFFERS_START: Code = ACTS | WAIT | STARTS;
+        const FOR_REFRESH: Code = ACTS | WAIT;
+        const FOR_ROOM_TOO: Code = ACTS | WAIT | FOR_ROOM;
+        match self.code {
+            _ if self.stage != EXECUTE => None,
+            OFFERS_WORD | OFFERS_START => Some(Awaited::Acceptance),
+            FOR_REFRESH => Some(Awaited::Refresh),
+            FOR_ROOM_TOO => Some(Awaited::RoomOrRefresh(self.room_of())),
+            _ => None,
+        }
     }
 
     #[inline]
