@@ -59,7 +59,7 @@ pub mod queue;
 pub mod readout;
 pub mod resets;
 pub mod seek_control;
-#[cfg(not(test))] // see crates/hdl/tests/engine.rs
+#[cfg(not(test))] // crates/hdl/tests/engine.rs says why
 mod sim;
 pub mod step_counts;
 pub mod stops;

@@ -38,7 +38,7 @@ pub mod crc;
 pub mod latch_view;
 pub mod processor;
 pub mod register_mirror;
-#[cfg(not(test))] // see crates/hdl/tests/engine.rs
+#[cfg(not(test))] // crates/hdl/tests/engine.rs says why
 mod sim;
 pub mod wide;
 

@@ -1,5 +1,4 @@
 //! Checks the parallel core at its ports: starts, latency, faults, clear and its number of axes.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, PinTiming, Segment, StartPhase, Timebase};
