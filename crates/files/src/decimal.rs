@@ -6,12 +6,20 @@ use std::str::FromStr;
 /// Greatest number of digits of a number in a file, before and behind the point together.
 const MAX_DIGITS: i64 = 60;
 
+/// Greatest number of characters of a literal without its underscores. A longer one needs too many
+/// digits, or has zeros without a meaning. To find out which would take long: a million digits take
+/// two seconds.
+const MAX_LENGTH: usize = 200;
+
 /// The exact value of a TOML number literal. Sign, underscores, exponent and the prefixes 0x, 0o
 /// and 0b are allowed.
 ///
 /// `None` if it is not a finite decimal number or needs more than 60 digits.
 pub fn parse(literal: &str) -> Option<BigDecimal> {
     let plain: String = literal.trim().chars().filter(|&c| c != '_').collect();
+    if plain.len() > MAX_LENGTH {
+        return None;
+    }
     let value = if let Some(hex) = plain.strip_prefix("0x") {
         BigDecimal::from(i64::from_str_radix(hex, 16).ok()?)
     } else if let Some(octal) = plain.strip_prefix("0o") {
@@ -61,6 +69,7 @@ mod tests {
         for text in ["1e999999999", "1e-999999999", "nan", "inf", "", "1e", "--1"] {
             assert_eq!(parse(text), None, "{text}");
         }
+        assert_eq!(parse(&format!("1.{}", "0".repeat(3_000_000))), None);
         assert_eq!(parse("1_000.5e-1"), parse("100.05"));
         assert_eq!(parse("0x10"), parse("16"));
     }
