@@ -164,7 +164,8 @@ impl ModelBoard {
             if alone > self.cycle() {
                 self.follow(&inputs, alone, to);
             } else if !self.run_waiting(&inputs, target, to) {
-                self.clock(&inputs, to);
+                let says = self.engine.outputs(&inputs);
+                self.clock(&inputs, &says, to);
             }
         }
     }
@@ -172,11 +173,14 @@ impl ModelBoard {
     /// Runs the board up to cycle `end`, clock by clock; `seen` receives the levels of all pins in
     /// each cycle in which one of them has changed.
     pub fn watch(&mut self, end: u64, seen: &mut dyn FnMut(u64, PinLevels)) {
-        let mut told = self.levels();
+        let mut inputs = self.inputs(&self.link.outputs());
+        let mut says = self.engine.outputs(&inputs);
+        let mut told = self.levels(&says);
         while self.cycle() < end {
-            let inputs = self.inputs(&self.link.outputs());
-            self.clock(&inputs, &mut ());
-            let now = self.levels();
+            self.clock(&inputs, &says, &mut ());
+            inputs = self.inputs(&self.link.outputs());
+            says = self.engine.outputs(&inputs);
+            let now = self.levels(&says);
             if now != told {
                 seen(self.cycle(), now);
                 told = now;
@@ -184,9 +188,9 @@ impl ModelBoard {
         }
     }
 
-    /// The levels of the pins in this cycle.
-    fn levels(&self) -> PinLevels {
-        let EngineOutputs { step, dir, outputs, pwm, enabled, .. } = self.outputs();
+    /// The levels of the pins in this cycle, in which the engine outputs `says`.
+    fn levels(&self, says: &EngineOutputs) -> PinLevels {
+        let EngineOutputs { step, dir, outputs, pwm, enabled, .. } = *says;
         PinLevels { step, dir, outputs, pwm, enabled, line: self.link.tx() }
     }
 
@@ -245,12 +249,11 @@ impl ModelBoard {
         }
     }
 
-    /// Runs link and engine for one clock.
-    fn clock(&mut self, inputs: &EngineInputs, to: &mut dyn Edges) {
-        let engine = self.engine.outputs(inputs);
+    /// Runs link and engine for one clock, in which the engine outputs `says`.
+    fn clock(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut dyn Edges) {
         let Driven { rx, spi, .. } = self.wire.drive(self.cycle());
-        self.link.clock(&LinkInputs { rx, spi, engine });
-        self.clock_engine(inputs, &engine, to);
+        self.link.clock(&LinkInputs { rx, spi, engine: *says });
+        self.clock_engine(inputs, says, to);
         self.wire.hear(self.cycle(), self.link.tx());
     }
 
