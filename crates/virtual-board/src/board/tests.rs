@@ -275,3 +275,50 @@ fn board_that_skips_clocks_equals_one_that_executes_all() {
         assert!(enough, "bytes, edges, words, faults: {met:?}");
     }
 }
+
+/// Sends a write, and hears its answer.
+fn write(board: &mut ModelBoard, answers: &mut Answers, address: u8, words: &[u32]) {
+    say_write(board, answers.next, address, words);
+    board.run(board.cycle() + PATIENCE, &mut ());
+    std::iter::from_fn(|| board.next_byte()).for_each(|byte| answers.hear(byte));
+}
+
+fn say_write(board: &mut ModelBoard, next: u8, address: u8, words: &[u32]) {
+    let mut content = vec![next, WRITE | address, 1, 0];
+    words.iter().for_each(|word| content.extend(word.to_le_bytes()));
+    frame(&content).into_iter().for_each(|byte| board.say(byte));
+}
+
+/// The link does not look for a fault between two words of a segment: the engine ends each offer at
+/// once.
+#[test]
+fn stop_amid_the_words_of_a_segment_ends_their_offers() {
+    let mut board = ModelBoard::new(&build(2), Uart::new(CLOCK_HZ, 10_000_000).unwrap());
+    let mut answers = Answers::default();
+    write(&mut board, &mut answers, OPEN, &[0]);
+    write(&mut board, &mut answers, CONTROL, &[CONTROL_ENABLE]);
+    say_write(&mut board, answers.next, SEGMENT, &[1000, 1 << 20, 0, 0, 0, 0, 0, 1]);
+    while board.link.awaits() != Some(Awaited::Acceptance) {
+        board.run(board.cycle() + 1, &mut ());
+    }
+    let mut met = 0;
+    for after in (1..800).step_by(7) {
+        let mut every = board.clone();
+        let (pressed, end) = (board.cycle() + after, board.cycle() + 2000);
+        let mut skips = board.clone();
+        skips.run(pressed, &mut ());
+        skips.press(Switches { estop: true, ..Switches::default() });
+        skips.run(end, &mut ());
+        while every.cycle() < end {
+            if every.cycle() == pressed {
+                every.press(Switches { estop: true, ..Switches::default() });
+            }
+            let offers = every.link.awaits() == Some(Awaited::Acceptance);
+            met += u64::from(offers && every.engine.core().fault().is_some());
+            every.watch(every.cycle() + 1, &mut |_, _| ());
+        }
+        assert_eq!(skips.link.outputs(), every.link.outputs(), "link, pressed after {after}");
+        assert_eq!(skips.engine.core(), every.engine.core(), "engine, pressed after {after}");
+    }
+    assert!(met > 20, "{met} words were offered to a stopped engine");
+}
