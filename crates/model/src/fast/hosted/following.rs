@@ -14,7 +14,7 @@ pub(super) struct Following<'a> {
     from: u64,
     clock: u64,
     per_tick: u64,
-    /// Of the axes that exist.
+    /// One for each axis that exists; the others are not used.
     axes: [Followed; MAX_AXES],
 }
 
