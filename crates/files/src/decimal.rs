@@ -6,9 +6,8 @@ use std::str::FromStr;
 /// Greatest number of digits of a number in a file, before and behind the point together.
 const MAX_DIGITS: i64 = 60;
 
-/// Greatest number of characters of a literal without its underscores. A longer one needs too many
-/// digits, or has zeros without a meaning. To find out which would take long: a million digits take
-/// two seconds.
+/// Greatest number of characters of a literal without its underscores. A longer one needs more than
+/// 60 digits, or has zeros without a meaning. Reading two million digits would take three seconds.
 const MAX_LENGTH: usize = 200;
 
 /// The exact value of a TOML number literal. Sign, underscores, exponent and the prefixes 0x, 0o

@@ -60,7 +60,7 @@ pub mod readout;
 pub mod resets;
 pub mod seek_control;
 #[cfg(not(test))] // crates/hdl/tests/engine.rs says why
-mod sim;
+pub(crate) mod sim;
 pub mod step_counts;
 pub mod stops;
 pub mod store;
@@ -69,9 +69,6 @@ pub mod switches;
 pub mod time_slot;
 pub mod wide;
 mod wiring;
-
-#[cfg(not(test))]
-pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
 use cut_control::CutControl;

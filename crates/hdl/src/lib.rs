@@ -32,10 +32,10 @@ pub mod self_test;
 mod sim;
 
 #[cfg(not(test))]
-pub use engine::{AnyEngine, EngineSim, engine};
+pub use engine::sim::{AnyEngine, EngineSim, engine};
 pub use line::{Spi, SpiSim, UartLine, UartSim};
 #[cfg(not(test))]
-pub use link::{AnyLink, LinkSim, link};
+pub use link::sim::{AnyLink, LinkSim, link};
 pub use parallel::{
     AnyParallelCore, AxisSim, ParallelAxis, ParallelCore, ParallelSim, parallel_core,
 };

@@ -39,11 +39,8 @@ pub mod latch_view;
 pub mod processor;
 pub mod register_mirror;
 #[cfg(not(test))] // crates/hdl/tests/engine.rs says why
-mod sim;
+pub(crate) mod sim;
 pub mod wide;
-
-#[cfg(not(test))]
-pub use sim::{AnyLink, LinkSim, link};
 
 use latch_view::LatchView;
 use processor::LinkProcessor;

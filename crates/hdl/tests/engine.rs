@@ -4,24 +4,13 @@
 //! a link: those contain an engine of each shape, 26 of them, and the crate's own tests are compiled
 //! without them.
 
+#[path = "../src/engine/test_builds.rs"]
+mod test_builds;
+
 use carrystep_core::engine::EngineError;
-use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_core::{EngineBuild, Timebase};
 use carrystep_hdl::{HdlError, engine};
-
-fn build() -> EngineBuild {
-    let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-    EngineBuild::minimal(&build, 1 << 40)
-}
-
-/// Makes a build with this number of axes, whose tick is long enough for them.
-fn of_axes(axes: usize) -> EngineBuild {
-    let mut build = build();
-    build.pins.resize(axes, PinTiming::SHORTEST);
-    build.guard.stop.resize(axes, 1);
-    build.timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
-    build
-}
+use test_builds::{build, of_axes};
 
 #[test]
 fn engine_accepts_one_to_eight_axes() {

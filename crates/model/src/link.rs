@@ -147,10 +147,10 @@ impl Link {
         !self.processor.minds_the_engine()
     }
 
-    /// What the link waits for and the engine does, if it waits in this clock. Until then the link's
-    /// outputs to the engine stay the same, and it reads no words of state: what the engine has
-    /// output meanwhile must be delivered before the clock in which the engine does it, by
-    /// [`Link::store`].
+    /// What the link waits for the engine to do, if it waits in this clock. While it waits, its
+    /// outputs to the engine stay the same, and it reads no words of state. Words that the engine
+    /// outputs meanwhile must be delivered, by [`Link::store`], before the clock in which the wait
+    /// ends.
     pub fn awaits(&self) -> Option<Awaited> {
         self.processor.awaits()
     }

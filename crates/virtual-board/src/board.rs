@@ -208,9 +208,9 @@ impl ModelBoard {
         cycle
     }
 
-    /// While the link waits for the engine, runs both up to the clock in which the engine does what
-    /// the link waits for, or may do it, at most up to cycle `end`. Returns false if this is the
-    /// present one.
+    /// While the link waits for the engine, runs both up to the first clock in which the wait may
+    /// end, at most up to cycle `end`. Returns false if the link does not wait, or if the wait may
+    /// end in the present clock.
     fn run_waiting(&mut self, inputs: &EngineInputs, end: u64, to: &mut dyn Edges) -> bool {
         let Self { engine, link, wire, .. } = self;
         let first = engine.cycle();

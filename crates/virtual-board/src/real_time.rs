@@ -12,7 +12,8 @@ use thiserror::Error;
 /// Number of exchanges with the host per second of the board's time.
 const EXCHANGES_PER_SECOND: u64 = 10_000;
 
-/// Number of waiting bytes from which on no more are read from the host, or all are given to it.
+/// Number of bytes that may wait. When as many from the host wait for the line, no more are read from
+/// it; when as many from the board wait for the end of an answer, the host is given them.
 const FULL: usize = 256;
 
 /// Time to sleep before the next look at the time and at the host.

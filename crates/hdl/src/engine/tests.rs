@@ -1,23 +1,11 @@
-//! Checks which builds make an engine, and that yosys accepts the Verilog of the engines.
+//! Checks that the statements of an engine fit each size, and that yosys accepts its Verilog.
+
+#[path = "test_builds.rs"]
+mod test_builds;
 
 use super::*;
 use crate::primitives::compiled_once::assert_sizes_agree;
-use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
-
-fn build() -> EngineBuild {
-    let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-    EngineBuild::minimal(&build, 1 << 40)
-}
-
-/// Makes a build with this number of axes, whose tick is long enough for them.
-fn of_axes(axes: usize) -> EngineBuild {
-    let mut build = build();
-    build.pins.resize(axes, PinTiming::SHORTEST);
-    build.guard.stop.resize(axes, 1);
-    build.timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
-    build
-}
+use test_builds::{build, of_axes};
 
 #[test]
 fn statements_are_those_of_each_size() {

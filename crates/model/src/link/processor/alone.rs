@@ -19,7 +19,7 @@ pub(in crate::link) enum Waits {
     ToSend,
 }
 
-/// What the engine does, so that the link goes on.
+/// What the link waits for the engine to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Awaited {
     /// It accepts the word or the start that the link offers, or reports a fault.
@@ -51,7 +51,7 @@ impl LinkProcessor {
         self.stage > 0 && self.code & (SETS | STORES | JUMPS) == 0 && self.code & READS == READS
     }
 
-    /// What the processor waits for and the engine does, if it does nothing else meanwhile.
+    /// What the processor waits for the engine to do, if it waits in this clock.
     #[inline]
     pub(in crate::link) fn awaits(&self) -> Option<Awaited> {
         const OFFERS_WORD: Code = ACTS | WAIT | PUTS;
