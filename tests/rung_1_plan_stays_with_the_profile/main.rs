@@ -12,6 +12,7 @@ use carrystep_core::ProfileKind;
 use carrystep_files::MoveFile;
 use carrystep_plan::{PlanError, plan};
 use carrystep_tests::random_moves::{self, Pace, RandomMoves, random_moves};
+use carrystep_tests::repeats;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use verify::verify;
@@ -57,7 +58,8 @@ fn every_profile_lands_on_free_and_straight_paths() {
 #[test]
 fn plans_of_each_kind_land_within_their_limits_and_the_edge_bound() {
     for kind in ProfileKind::ALL.iter().filter(|kind| !LINEAR.contains(kind)) {
-        let config = Config { cases: 600, failure_persistence: None, ..Config::default() };
+        let config =
+            Config { cases: repeats::part(600, 3), failure_persistence: None, ..Config::default() };
         let held = TestRunner::new(config).run(
             &random_moves(Pace::Any, std::slice::from_ref(kind)),
             |case| {
@@ -70,7 +72,11 @@ fn plans_of_each_kind_land_within_their_limits_and_the_edge_bound() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: repeats::part(600, 3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn linear_plans_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &LINEAR)) {

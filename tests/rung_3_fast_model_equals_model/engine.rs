@@ -6,7 +6,9 @@ use carrystep_core::{Command, EngineBuild, PinTiming, Program, Segment, StartPha
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::{Event, Events};
 use carrystep_tests::engine_twins::{self, Came};
-use carrystep_tests::{dense, effort, engine_builds, engine_programs, gcode_job, lockstep, moves};
+use carrystep_tests::{
+    dense, effort, engine_builds, engine_programs, gcode_job, lockstep, moves, repeats,
+};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
@@ -109,7 +111,7 @@ fn an_engine_with_several_latches() {
     for count in [2, 4] {
         let build = engine_builds::build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
         let build = engine_builds::with_latches(build, count);
-        let came = engines(&build, 60, engine_programs::program_with_latches(6));
+        let came = engines(&build, repeats::part(60, 2), engine_programs::program_with_latches(6));
         assert!(came.leapt > came.clocks / 3 && came.edges > 1000, "{came:?}");
     }
 }
@@ -122,7 +124,7 @@ fn an_engine_of_many_edges() {
     let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
     let programs = dense::program(500)
         .prop_map(|program| (engine_programs::queued_first(program), Events::new()));
-    let cases = if effort::repeats_in_full() { 100 } else { 40 };
+    let cases = repeats::part(100, 5);
     let came = engines(&build, cases, programs);
     let underruns = came.faults[Cause::Underrun as usize];
     assert!(came.edges > 300 * u64::from(cases) && underruns > 0, "{came:?}");

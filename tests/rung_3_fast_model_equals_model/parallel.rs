@@ -5,14 +5,15 @@ use carrystep_core::{AXES, Build, PinTiming, StartPhase};
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, engine_vectors};
 use carrystep_tests::twins::Twins;
-use carrystep_tests::{dense, effort, lockstep, moves, programs};
+use carrystep_tests::{dense, effort, lockstep, moves, programs, repeats};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
     let build = lockstep::tight_build(phases, phase);
-    let mut runner = TestRunner::new(Config { cases, ..Config::default() });
+    let mut runner =
+        TestRunner::new(Config { cases: repeats::part(cases, 3), ..Config::default() });
     let held = runner.run(&programs::program(), |program| {
         lockstep::assert_equals_model(Level::Fast, &lockstep::job(&build, &program));
         Ok(())
@@ -76,12 +77,12 @@ fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     edges.get()
 }
 
-/// A million edges at least, or five million in the run of repeats.
+/// A quarter of a million edges at least, or five million in the run of repeats.
 fn many_edges(phases: u32, phase: StartPhase) {
-    let cases = if effort::repeats_in_full() { 400 } else { 40 };
+    let cases = repeats::part(400, 20);
     let edges = dense_programs(&lockstep::quick_build(phases, phase), 20_000, cases);
     assert!(edges >= u64::from(cases) * 12_500, "only {edges} edges");
-    if effort::repeats_in_full() {
+    if repeats::in_full() {
         effort::figures(&format!("{edges} edges of the fast model at {phases} phases"));
     }
 }

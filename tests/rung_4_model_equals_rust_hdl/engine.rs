@@ -6,9 +6,9 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::effort;
 use carrystep_tests::engine_builds::{build, on_adders, parameter_sets, with_latches};
 use carrystep_tests::engine_programs::run_programs;
+use carrystep_tests::repeats;
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
@@ -71,10 +71,11 @@ fn assert_kept(
     Ok(())
 }
 
-/// `usual` clocks, or twice as many in a run of repeats.
-fn in_rust_hdl(build: &EngineBuild, usual: u64) {
-    let usual = if effort::repeats_in_full() { 2 * usual } else { usual };
-    run_programs(build, usual, |program, events| assert_equal(build, program, events));
+/// Half of these clocks, or twice as many in a run of repeats.
+fn in_rust_hdl(build: &EngineBuild, clocks: u64) {
+    run_programs(build, repeats::part(2 * clocks, 4), |program, events| {
+        assert_equal(build, program, events)
+    });
 }
 
 #[test]

@@ -7,15 +7,17 @@ use carrystep_hdl::AxisSim;
 use carrystep_plan::Plan;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, Edge, engine_vectors};
-use carrystep_tests::{effort, gcode_job, lockstep, moves, programs};
+use carrystep_tests::{gcode_job, lockstep, moves, programs, repeats};
 use proptest::test_runner::{Config, TestRunner};
 
-/// An ordinary run draws the first third of the cases. With its fixed seed it draws the same ones
-/// each time.
+/// An ordinary run draws the first sixth of the cases.
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
-    let cases = if effort::repeats_in_full() { cases } else { cases / 3 };
     let build = lockstep::tight_build(phases, phase);
-    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 200, ..Config::default() });
+    let mut runner = TestRunner::new(Config {
+        cases: repeats::part(cases, 6),
+        max_shrink_iters: 200,
+        ..Config::default()
+    });
     let held = runner.run(&programs::program(), |program| {
         lockstep::assert_equals_model(Level::RustHdl, &lockstep::job(&build, &program));
         Ok(())
@@ -40,19 +42,19 @@ fn random_programs_at_1_phase() {
 
 #[test]
 fn random_programs_on_one_axis() {
-    lockstep::assert_random_programs_equal_model(Level::RustHdl, 1, 16, 60);
+    lockstep::assert_random_programs_equal_model(Level::RustHdl, 1, 16, repeats::part(60, 3));
 }
 
 #[test]
 fn random_programs_on_three_axes() {
-    lockstep::assert_random_programs_equal_model(Level::RustHdl, 3, 4, 60);
+    lockstep::assert_random_programs_equal_model(Level::RustHdl, 3, 4, repeats::part(60, 3));
 }
 
 /// Rung 5 compares the whole plan.
 fn planned(plan: &Plan) {
     let program = plan.program();
     let job = Job::new(&plan.build, &program, plan.total_ticks());
-    let max_clocks = effort::tenth(job.max_clocks);
+    let max_clocks = repeats::part(job.max_clocks, 20);
     lockstep::assert_equals_model(Level::RustHdl, &Job { max_clocks, ..job });
 }
 
@@ -83,7 +85,7 @@ fn a_program_in_gcode_with_outputs_on_the_engine() {
 /// Rung 5 compares the longest case, too.
 #[test]
 fn golden_vectors_to_the_last_edge_and_phase() {
-    let is_run = |case: &Case| case.total_ticks <= 1_000_000 || effort::repeats_in_full();
+    let is_run = |case: &Case| case.total_ticks <= 1_000_000 || repeats::in_full();
     for case in engine_vectors().into_iter().filter(is_run) {
         let (edges, p) = axis_edges(&case);
         case.assert_edges(&edges);

@@ -12,6 +12,7 @@ use carrystep_tests::effort;
 use carrystep_tests::engine_builds::{build, parameter_sets, with_latches};
 use carrystep_tests::engine_programs::run_programs;
 use carrystep_tests::golden::{self, Case, Edge};
+use carrystep_tests::repeats;
 use carrystep_tools::kept;
 use proptest::prelude::*;
 use std::cell::Cell;
@@ -201,7 +202,7 @@ fn verilog_of_one_build_with_the_parameters_of_others_is_theirs() {
             in_this_verilog(Level::Verilator, &with_parameters(&verilog, build), build, usual);
         assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
         // Icarus repeats what Verilator has compared.
-        let usual = if effort::repeats_in_full() { 50_000 } else { 10_000 };
+        let usual = repeats::part(50_000, 5);
         in_this_verilog(Level::Icarus, &with_parameters(&verilog, build), build, usual);
     }
 }
@@ -233,7 +234,7 @@ fn golden_vectors_in_verilator() {
         let cases: Vec<&Case> = vectors
             .iter()
             .filter(|case| {
-                case.phase() == phase && (effort::repeats_in_full() || case.total_ticks <= 200_000)
+                case.phase() == phase && (repeats::in_full() || case.total_ticks <= 200_000)
             })
             .collect();
         for cases in cases.chunks(AXES) {

@@ -6,7 +6,7 @@ use carrystep_core::StartPhase;
 use carrystep_plan::Plan;
 use carrystep_simulators::{Job, Level};
 use carrystep_tests::golden::{Case, engine_vectors};
-use carrystep_tests::{axis_bench, effort, gcode_job, lockstep, moves, programs};
+use carrystep_tests::{axis_bench, effort, gcode_job, lockstep, moves, programs, repeats};
 use carrystep_tools::kept;
 use proptest::test_runner::{Config, TestRunner};
 
@@ -33,10 +33,10 @@ fn planned(level: Level, plan: &Plan) {
 fn planned_in_icarus(plan: &Plan) {
     let program = plan.program();
     let job = Job::new(&plan.build, &program, plan.total_ticks());
-    let max_clocks = effort::tenth(job.max_clocks);
+    let max_clocks = repeats::part(job.max_clocks, 10);
     lockstep::assert_equals_model(Level::Icarus, &Job { max_clocks, ..job });
     kept::say();
-    if effort::repeats_in_full() {
+    if repeats::in_full() {
         effort::figures(&format!("{} ticks in Icarus", plan.total_ticks()));
     }
 }
@@ -114,7 +114,7 @@ fn a_program_in_gcode_on_the_engine_in_verilator() {
 /// Rung 4 has the move back, too, and Verilator longer moves.
 #[test]
 fn a_move_of_the_shipped_machine_on_the_engine_in_icarus() {
-    let and_back = effort::repeats_in_full();
+    let and_back = repeats::in_full();
     lockstep::assert_engine_equals_model(Level::Icarus, &moves::nudge(and_back));
 }
 
@@ -140,7 +140,7 @@ fn golden_vectors_in_verilator() {
 /// long cases are left to the run of repeats.
 #[test]
 fn golden_vectors_in_icarus() {
-    let is_run = |case: &Case| case.total_ticks <= 200_000 || effort::repeats_in_full();
+    let is_run = |case: &Case| case.total_ticks <= 200_000 || repeats::in_full();
     for case in engine_vectors().into_iter().filter(is_run) {
         let build = lockstep::quick_build(16, case.phase());
         let (edges, p) = axis_bench::edges_in_icarus(&build, &case.segments());

@@ -5,7 +5,7 @@
 use carrystep_core::AXES;
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask, independence};
-use carrystep_tests::{effort, moves, pages};
+use carrystep_tests::{effort, moves, pages, repeats};
 use carrystep_tools::kept;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -35,7 +35,7 @@ fn jobs(proof: &Proof) -> Vec<Job<'_>> {
         jobs.push(job(case, Question::Base(proof.depth + 1)));
     }
     // A bug in the wiring of several adders takes the solver long to reach.
-    let is_planted = proof.module != "wide" || effort::repeats_in_full();
+    let is_planted = proof.module != "wide" || repeats::in_full();
     jobs.extend(
         proof
             .bugs

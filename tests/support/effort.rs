@@ -17,17 +17,6 @@ pub fn is_long() -> bool {
     asked().is_some()
 }
 
-/// True if what a slow simulator repeats must be run in full and not only its beginning: another
-/// simulator compares the same program in every test run.
-pub fn repeats_in_full() -> bool {
-    std::env::var_os("CARRYSTEP_REPEATS").is_some()
-}
-
-/// All of this work in a run of repeats, a tenth of it otherwise.
-pub fn tenth(whole: u64) -> u64 {
-    if repeats_in_full() { whole } else { whole / 10 }
-}
-
 /// True if every board must be covered and not only one of each kind.
 pub fn is_every_board() -> bool {
     std::env::var_os("CARRYSTEP_BOARDS").is_some()

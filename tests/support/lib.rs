@@ -22,6 +22,7 @@ pub mod planted;
 pub mod programs;
 pub mod proofs;
 pub mod random_moves;
+pub mod repeats;
 pub mod self_test_bench;
 pub mod self_test_board;
 pub mod sources;

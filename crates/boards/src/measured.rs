@@ -69,37 +69,3 @@ impl Board {
         MEASURED.get(&self.name).copied()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::{Measured, Placer, boards};
-
-    #[test]
-    fn every_board_was_measured_and_is_large_enough() {
-        for board in boards() {
-            let (rams, of) = match board.measured().expect(&board.name) {
-                Measured::Placed(placed) => {
-                    assert!(
-                        placed.logic_cells <= board.parts[0].logic_cells.unwrap(),
-                        "{}",
-                        board.name
-                    );
-                    assert!(
-                        placed.nextpnr_mhz * 1e6 >= board.clocks[0].clock_hz as f64,
-                        "{}",
-                        board.name
-                    );
-                    let with_each_seed = placed
-                        .least_mhz
-                        .is_none_or(|mhz| mhz * 1e6 >= board.clocks[0].clock_hz as f64);
-                    assert!(with_each_seed, "{}", board.name);
-                    let needs = board.family.facts().placer().is_some_and(Placer::needs_each_seed);
-                    assert_eq!(placed.least_mhz.is_some(), needs, "{}", board.name);
-                    (placed.block_rams, board.parts[0].block_rams)
-                }
-                Measured::Mapped(mapped) => (mapped.block_rams, board.parts[0].block_rams),
-            };
-            assert!(rams <= of, "{}", board.name);
-        }
-    }
-}

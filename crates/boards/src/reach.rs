@@ -56,34 +56,3 @@ fn said(clock: &Clocking, axes: Option<usize>) -> String {
     let tick_ns = axes.filter(|&axes| !fits(axes)).map_or(tick_ns, longer);
     format!("{} MHz (ticks of {tick_ns} ns in {phases} phases)", mhz(clock_hz))
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::{board, boards};
-
-    #[test]
-    fn every_board_passes_the_check_at_its_own_clocks() {
-        for board in boards() {
-            for clock in &board.clocks {
-                board.may_reach(&board.parts[0], clock.clock_hz, 6).unwrap();
-            }
-        }
-    }
-
-    #[test]
-    fn clock_far_too_fast_is_refused_with_the_clocks_of_the_board() {
-        let icebreaker = board("icebreaker").unwrap();
-        let refused = |axes| {
-            icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string()
-        };
-        let said = refused(6);
-        assert!(
-            said.ends_with(
-                "37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"
-            ),
-            "{said}"
-        );
-        // The time slots of eight axes need 106 clocks.
-        assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
-    }
-}

@@ -3,7 +3,9 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::{Board, ConfigurationMode, OSCILLATOR, PORTS, board, boards};
+use carrystep_boards::{
+    Board, ConfigurationMode, Measured, OSCILLATOR, PORTS, Placer, board, boards,
+};
 use carrystep_core::engine::{Latch, LimitWiring, Outputs};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use std::path::Path;
@@ -187,4 +189,58 @@ fn boards_connect_inputs_and_outputs_that_they_have_pins_for() {
         let refused = icestick.connects(&build, uart).unwrap_err().to_string();
         assert!(refused.starts_with(&format!("icestick has {missing}: leave")), "{refused}");
     }
+}
+
+#[test]
+fn every_board_was_measured_and_is_large_enough() {
+    for board in boards() {
+        let (rams, of) = match board.measured().expect(&board.name) {
+            Measured::Placed(placed) => {
+                assert!(
+                    placed.logic_cells <= board.parts[0].logic_cells.unwrap(),
+                    "{}",
+                    board.name
+                );
+                assert!(
+                    placed.nextpnr_mhz * 1e6 >= board.clocks[0].clock_hz as f64,
+                    "{}",
+                    board.name
+                );
+                let with_each_seed =
+                    placed.least_mhz.is_none_or(|mhz| mhz * 1e6 >= board.clocks[0].clock_hz as f64);
+                assert!(with_each_seed, "{}", board.name);
+                let needs = board.family.facts().placer().is_some_and(Placer::needs_each_seed);
+                assert_eq!(placed.least_mhz.is_some(), needs, "{}", board.name);
+                (placed.block_rams, board.parts[0].block_rams)
+            }
+            Measured::Mapped(mapped) => (mapped.block_rams, board.parts[0].block_rams),
+        };
+        assert!(rams <= of, "{}", board.name);
+    }
+}
+
+#[test]
+fn every_board_passes_the_check_at_its_own_clocks() {
+    for board in boards() {
+        for clock in &board.clocks {
+            board.may_reach(&board.parts[0], clock.clock_hz, 6).unwrap();
+        }
+    }
+}
+
+#[test]
+fn clock_far_too_fast_is_refused_with_the_clocks_of_the_board() {
+    let icebreaker = board("icebreaker").unwrap();
+    let refused = |axes| {
+        icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string()
+    };
+    let said = refused(6);
+    assert!(
+        said.ends_with(
+            "37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"
+        ),
+        "{said}"
+    );
+    // The time slots of eight axes need 106 clocks.
+    assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
 }

@@ -2,6 +2,8 @@
 //! share would be compiled and linked again for each.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+mod adder_keys;
+mod crossed_belts;
 mod guard_keys;
 mod home_keys;
 mod input_keys;

@@ -6,6 +6,7 @@ use crate::common::follow::within;
 use crate::common::measure::{planned, programmed};
 use crate::common::reader;
 use crate::common::replay::Replay;
+use crate::repeats;
 use carrystep_core::Segment;
 use carrystep_job::{Curve, CurvePlace, Hold, Row};
 
@@ -14,7 +15,7 @@ const PROGRAMS: [&str; 4] =
 
 /// Rows that a hold looks at: more than any of these programs needs to stop and to go on.
 const WINDOW: usize = 600;
-/// Holds of each program.
+/// Holds of each program in a run of repeats.
 const HOLDS: usize = 125;
 
 /// A row at rest.
@@ -94,7 +95,7 @@ fn holds_keep_limits_path_and_landing() {
         let mut whole = Replay::new(&machine);
         rows.iter().for_each(|row| whole.run(row));
         let mut found = Found::default();
-        let step = (rows.len() / HOLDS).max(1);
+        let step = (rows.len() / repeats::part(HOLDS, 5)).max(1);
         for wanted in (0..rows.len()).step_by(step) {
             let all = held(&hold, &rows, &places, wanted, &mut found);
             let mut replay = Replay::new(&machine);

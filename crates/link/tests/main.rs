@@ -2,6 +2,8 @@
 //! share would be compiled and linked again for each.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+#[path = "../../../tests/support/repeats.rs"]
+mod repeats;
 mod support;
 
 mod clocks_in_c;

@@ -1,6 +1,7 @@
 //! Programs that are entered in their middle: the way there, what is restored, and what is refused.
 
 use crate::common::{check, job, levels, planned, program_on, pulses};
+use crate::repeats;
 use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_gcode::{Interpreter, Options};
 use carrystep_program::{
@@ -114,22 +115,24 @@ fn outputs_of_the_program_are_restored_at_the_place() {
 #[test]
 fn programs_of_the_tree_end_where_they_end_whole() {
     let text = job("machine.toml");
-    let mut names = Vec::new();
+    let mut programs = Vec::new();
     for name in ["square_and_arc", "trochoid", "chords_and_star", "outputs", "relief"] {
         let machine = if name == "outputs" { job("outputs.toml") } else { text.clone() };
-        names.push((name, program_on(&machine, &job(&format!("{name}.ngc")))));
+        let (folder, whole) = program_on(&machine, &job(&format!("{name}.ngc")));
+        let count = Blocks::new(&whole).unwrap().count() as u64;
+        let (as_a_whole, _) = planned(&whole);
+        programs.push((folder, whole, count, as_a_whole));
     }
     let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig {
-        cases: 24,
+        cases: repeats::part(24, 2),
         failure_persistence: None,
         ..ProptestConfig::default()
     });
     let place = -20.0..60.0_f64;
-    let strategy = (0..names.len(), 0.0..1.0_f64, [place.clone(), place.clone(), -2.0..9.0]);
+    let strategy = (0..programs.len(), 0.0..1.0_f64, [place.clone(), place.clone(), -2.0..9.0]);
     runner
         .run(&strategy, |(number, part, [x, y, z])| {
-            let (_, (_folder, whole)) = &names[number];
-            let count = Blocks::new(whole).unwrap().count() as u64;
+            let (_folder, whole, count, as_a_whole) = &programs[number];
             let block = 2 + (part * (count - 1) as f64) as u64;
             let steps = |at: f64, steps: f64| (at * steps).round() / steps;
             let start = [steps(x, 80.0), steps(y, 80.0), steps(z, 400.0), 0.0, 0.0, 0.0];
@@ -154,7 +157,6 @@ fn programs_of_the_tree_end_where_they_end_whole() {
             });
             prop_assert!(above, "the way over the work is not at its height");
             let (survey, rows) = planned(&file);
-            let (as_a_whole, _) = planned(whole);
             prop_assert!(survey.landed());
             for (one, other) in survey.axes.iter().zip(&as_a_whole.axes) {
                 prop_assert_eq!(one.end_steps, other.end_steps);

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod common;
+#[path = "../../../tests/support/repeats.rs"]
+mod repeats;
 
 mod corexy;
 mod from_block;

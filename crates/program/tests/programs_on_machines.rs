@@ -1,5 +1,6 @@
 //! What the planner gets of a program: rests, tolerances, feeds, axes; and what is refused.
 
+use crate::repeats;
 use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_program::{
     Event, Events, ProgramError, ProgramFile, ProgrammedMove, Rows, Settings, Survey,
@@ -207,7 +208,7 @@ impl From<ProgramError> for Ended {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 5000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: repeats::part(5000, 4), ..ProptestConfig::default() })]
 
     /// No text makes reading or planning panic or run without end: a program is refused with its
     /// place, or its job lands.

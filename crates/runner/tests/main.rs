@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod jobs;
+#[path = "../../../tests/support/repeats.rs"]
+mod repeats;
 #[path = "../../virtual-board/tests/support/mod.rs"]
 mod support;
 mod three_axes;

@@ -1,5 +1,6 @@
 //! Overrides of the programs in `sim/jobs`, without a board.
 
+use crate::repeats;
 use carrystep_core::Segment;
 use carrystep_files::{Machine, SourceText};
 use carrystep_job::{Hold, Overrides, Pace, Track};
@@ -363,8 +364,11 @@ fn feed_override_never_slows_down() {
 #[test]
 fn changes_at_random_times_keep_the_limits_and_the_path() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(19);
-    for name in PROGRAMS {
-        for (to, every) in [(None, 60), (Some(1200), 400)] {
+    let settings = [(None, 60), (Some(1200), 400)];
+    // An ordinary run takes one setting for each program, in turn.
+    let some = if repeats::in_full() { 1 } else { settings.len() };
+    for (number, name) in PROGRAMS.into_iter().enumerate() {
+        for (to, every) in settings.into_iter().skip(number % some).step_by(some) {
             let job = program(name, to);
             let rows = paced(&job, |row| {
                 let changes = row == 0 || random.next_u64().is_multiple_of(every);

@@ -5,16 +5,17 @@
 #![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
 use crate::jobs::{Job, PROGRAMS};
+use crate::repeats;
 use crate::support::asked;
 use carrystep_link::{Ended, Wish};
 use carrystep_virtual_board::SimulatedBoard as _;
 
-/// How much of each program an ordinary test compares, seconds of the program.
+/// How much of each program is compared in a run of repeats, seconds of the program.
 const SECONDS: u64 = 8;
 
 #[test]
 fn pulses_of_run_are_those_of_simulate() {
-    let seconds = asked("CARRYSTEP_PROGRAM_SECONDS", SECONDS);
+    let seconds = asked("CARRYSTEP_PROGRAM_SECONDS", repeats::part(SECONDS, 2));
     let (mut edges, mut levels, mut ran) = (0, 0, 0.0);
     for program in PROGRAMS {
         let job = Job::new(program, "");
@@ -49,8 +50,9 @@ fn pulses_of_run_are_those_of_simulate() {
 fn pulses_of_run_on_an_spi_are_those_of_simulate() {
     for program in &PROGRAMS[..2] {
         let job = Job::new(*program, "cuts = true\n");
-        let clocks = SECONDS * 1000 * job.ms();
-        let until = SECONDS * 1_000_000_000 / job.machine.timebase.tick_ns();
+        let seconds = repeats::part(SECONDS, 4);
+        let clocks = seconds * 1000 * job.ms();
+        let until = seconds * 1_000_000_000 / job.machine.timebase.tick_ns();
         let run = job.run_on_bus(9_600_000, |bus| {
             let board = &bus.0.borrow().board;
             let ran = board.loads().first().map_or(0, |load| board.cycle() - load);

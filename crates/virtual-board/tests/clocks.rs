@@ -2,7 +2,7 @@
 //! program that runs for ten minutes never runs dry.
 #![allow(clippy::print_stderr, reason = "figures, for the page of longer runs")]
 
-use crate::axes::repeats_in_full;
+use crate::repeats;
 use crate::support::wire::Faults;
 use crate::support::{CLOCK_HZ, Died, End, SESSION, asked, build};
 use carrystep_core::link::Uart;
@@ -96,11 +96,10 @@ fn compares(ppm: i64, usual: u64) {
 
 #[test]
 fn difference_of_a_fast_board_is_reported_within_its_bound() {
-    compares(200, 600);
+    compares(200, repeats::part(600, 2));
 }
 
-/// The fast board takes ten minutes in every run.
 #[test]
 fn difference_of_a_slow_board_is_reported_within_its_bound() {
-    compares(-200, if repeats_in_full() { 600 } else { 120 });
+    compares(-200, repeats::part(600, 5));
 }

@@ -4,6 +4,7 @@
 use crate::asked::homing_of;
 use crate::axes::{Bench, Make, Never, Start, machine};
 use crate::random::Random;
+use crate::repeats;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
 use carrystep_link::{Homed, HomingFault, HostError, Wish};
@@ -92,7 +93,7 @@ fn letters_of_crossed_belts_home_from_every_start() {
         let stop = if number % 2 == 0 { "ramp" } else { "freeze" };
         let machine = belts(order, toward, stop);
         homes::<ModelBoard>(&machine, &[Start::Open; 3], number as u64);
-        for seed in 0..2 {
+        for seed in 0..repeats::part(2, 2) {
             let any = [0; 3].map(|_| starts[random.below(3) as usize]);
             homes::<ModelBoard>(&machine, &any, seed);
         }

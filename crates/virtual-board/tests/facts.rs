@@ -138,11 +138,11 @@ const UNDER: u64 = 90 * MS;
 /// of the owner restart it.
 fn watchdog<B: Kind>() {
     let mut talk = Talk::<B>::powered();
-    talk.rest(3 * OVER);
+    talk.rest(OVER);
     let answer = talk.read(POSITION);
     assert!(!answer.fault && answer.idle, "nothing waits: {answer:?}");
     talk.segment(0, cruise(99, true));
-    for _ in 0..3 {
+    for _ in 0..2 {
         talk.rest(UNDER);
         assert!(!talk.own_read(BUILD_HIGH).fault, "any read of the owner feeds it");
     }

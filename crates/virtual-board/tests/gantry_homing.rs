@@ -4,6 +4,7 @@
 use crate::asked::homing_of;
 use crate::axes::{self, Bench, Make, Start, machine};
 use crate::random::Random;
+use crate::repeats;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
 use carrystep_link::{Homed, HomingFault, HostError, Wish};
@@ -94,7 +95,7 @@ fn gantry_is_square_behind_homing_however_skew_it_begins() {
         for toward in ["min", "max"] {
             let machine = gantry(limits, toward);
             assert_eq!(machine.axes[0].home.unwrap().toward == End::Max, toward == "max");
-            for seed in 0..2 {
+            for seed in 0..repeats::part(2, 2) {
                 let by = random.below(90) as i32 - 45;
                 squares::<ModelBoard>(&machine, Start::Open, by, seed);
             }

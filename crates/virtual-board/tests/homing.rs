@@ -3,8 +3,9 @@
 //! by more than the ramp requires.
 
 use crate::asked::homing_of;
-use crate::axes::{self, Bench, Make, Start, machine, repeats_in_full};
+use crate::axes::{self, Bench, Make, Start, machine};
 use crate::random::Random;
+use crate::repeats;
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
@@ -123,7 +124,7 @@ fn model_homes_from_every_start_in_each_wiring() {
     let stops = [("ramp", "high"), ("freeze", "low")];
     let starts = STARTS.into_iter().flat_map(|x| STARTS.map(|y| [x, y]));
     for (number, starts) in starts.enumerate() {
-        let (wirings, stops) = match repeats_in_full() {
+        let (wirings, stops) = match repeats::in_full() {
             true => (&WIRINGS[..], &stops[..]),
             false => (&WIRINGS[number % 3..][..1], &stops[number / 3 % 2..][..1]),
         };

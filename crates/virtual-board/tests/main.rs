@@ -6,6 +6,8 @@
 mod asked;
 #[path = "support/axes.rs"]
 mod axes;
+#[path = "../../../tests/support/repeats.rs"]
+mod repeats;
 mod support;
 
 use support::random;

@@ -2,7 +2,7 @@
 
 use super::builds::{axes, beat, beat_name, causes, engine_on_adders, lanes};
 use super::{Bug, Case, Promises, Proof};
-use crate::effort::repeats_in_full;
+use crate::repeats;
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -121,7 +121,7 @@ const BUGS: &[Bug] = &[
 pub(super) fn proof() -> Proof {
     // The long run of proofs repeats them for six axes.
     let builds: &[_] =
-        if repeats_in_full() { &[(2, 2, 16), (6, 2, 44), (6, 6, 16)] } else { &[(2, 2, 16)] };
+        if repeats::in_full() { &[(2, 2, 16), (6, 2, 44), (6, 6, 16)] } else { &[(2, 2, 16)] };
     let case = |(axis_count, adders, clocks)| {
         let (build, verilog) = engine_on_adders(axis_count, adders, clocks, 4);
         Case {

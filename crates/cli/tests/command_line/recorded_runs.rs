@@ -17,15 +17,15 @@ use std::process::Child;
 use std::time::Duration;
 
 /// The clock is slow, because the Verilog takes time for each clock.
-const CLOCK_HZ: u64 = 10_000_000;
-const BAUD: u64 = 1_250_000;
+const CLOCK_HZ: u64 = 5_000_000;
+const BAUD: u64 = 625_000;
 
 /// Bits of a byte on the line.
 const BITS: u64 = 10;
 
 const HEAD: &str = r#"[machine]
-clock_hz = 10_000_000
-tick_ns = 8000
+clock_hz = 5_000_000
+tick_ns = 16_000
 queue_depth = 31
 cuts = true
 
@@ -34,7 +34,7 @@ watchdog_ms = 4000
 debounce_us = 100
 
 [machine.link]
-baud = 1_250_000
+baud = 625_000
 
 [machine.inputs]
 probe = "low"

@@ -2,6 +2,7 @@
 //! board's.
 
 use super::random::Random;
+use crate::repeats;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::Uart;
@@ -33,11 +34,6 @@ pub trait Make: SimulatedBoard + Sized {
     fn homes() -> u32;
 }
 
-/// True in the long run that runs in full what ordinary runs shorten.
-pub fn repeats_in_full() -> bool {
-    std::env::var_os("CARRYSTEP_REPEATS").is_some()
-}
-
 impl Make for ModelBoard {
     fn make(build: &EngineBuild, uart: Uart) -> Self {
         Self::new(build, uart)
@@ -62,7 +58,7 @@ impl Make for VerilatedBoard {
     }
 
     fn homes() -> u32 {
-        if repeats_in_full() { 2 } else { 1 }
+        if repeats::in_full() { 2 } else { 1 }
     }
 }
 
