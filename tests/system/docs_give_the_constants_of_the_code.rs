@@ -243,7 +243,7 @@ fn pages_give_the_numbers_of_mutants_frames_and_deaths() {
         ],
     );
     let long = |name: &str| {
-        whole(behind("crates/xtask/src/long.rs", &format!("(\"CARRYSTEP_{name}\", \"")))
+        whole(behind("crates/xtask/src/long/runs.rs", &format!("(\"CARRYSTEP_{name}\", \"")))
     };
     let bad_line = "crates/virtual-board/tests/bad_line.rs";
     let usual = behind(bad_line, "asked(\"CARRYSTEP_FRAMES\", ");

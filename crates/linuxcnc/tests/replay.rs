@@ -49,7 +49,7 @@ fn recorded(line: Line) -> Recording {
         let way = wave(time / 2.0);
         [way, way / 3.0, -way]
     };
-    world.follow(200, curve);
+    world.follow(100, curve);
     world.rest();
     let from = world.command;
     let on = |time: f64| from.map(|from| from + 25.0 * time * time / 0.2);

@@ -3,6 +3,8 @@
 
 #[path = "../../profile/tests/support/pages.rs"]
 mod pages;
+#[path = "../../../tests/support/repeats.rs"]
+mod repeats;
 mod support;
 
 mod bad_input;

@@ -1,6 +1,7 @@
 //! Tests that the generated header and the player, compiled from C and run on a simulated timer,
 //! emit the pulses of the formula.
 
+use crate::repeats;
 use crate::support::{Bench, Move, ideal_delays, judge, lengths, source};
 use carrystep_table::{
     Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, TimerMode,
@@ -246,7 +247,7 @@ fn advised(mut request: TableRequest) -> Option<Table> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: repeats::part(60, 3), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_table_is_played_exactly_at_any_length(request in requests(), extra in prop::collection::vec(0_u32..3000, 6)) {

@@ -43,7 +43,7 @@ impl Homed {
         let machine = MACHINE
             .replace("watchdog_ms = 4000", &guard)
             // A long watchdog makes the rounds long in which the switch is read.
-            .replace("travel = [-9, 20]\n", &HOME.replace("slow_speed = 2", "slow_speed = 0.5"))
+            .replace("travel = [-9, 20]\n", &HOME.replace("slow_speed = 2", "slow_speed = 1"))
             .replace(Y, &Y.replace("1000", &y.to_string()))
             .replace("tick_ns = 2000", "tick_ns = 2000\nqueue_depth = 31");
         folder.write("machine.toml", machine);
