@@ -13,12 +13,12 @@ use carrystep_tools::kept;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of mutants of the shipped engine in every test run: the first ones of all.
-const FEW: usize = 6;
+const FEW: usize = 12;
 /// Their number if `CARRYSTEP_MUTANTS` is `all`, or `write`, which also rewrites the lists of
 /// survivors.
 const ALL: usize = 200;
 /// The same numbers of the modules that only the engine with everything has.
-const FEW_OF_FULL: usize = 4;
+const FEW_OF_FULL: usize = 6;
 const ALL_OF_FULL: usize = 60;
 
 /// The modules of which the mutants of the engine with everything are drawn. The shipped engine

@@ -6,12 +6,13 @@ use crate::common::follow::within;
 use crate::common::measure::{planned, programmed};
 use crate::common::reader;
 use crate::common::replay::Replay;
-use crate::repeats;
 
-/// Number of moves in a run of repeats.
+/// Number of moves.
 const MOVES: usize = 1600;
 /// The line of the first of them.
 const FIRST: usize = 3;
+/// A row may name a line so far from the one that its time suggests.
+const NEAR: usize = 720;
 
 /// The planner once took the first of all equally near places for ever: rows named the first line, and
 /// planning each of them looked at all moves so far. Strokes of 0.015 mm are within the tolerance of
@@ -20,12 +21,9 @@ const FIRST: usize = 3;
 #[test]
 fn each_row_names_a_line_of_its_own_time() {
     let machine = common::machine(&reader::file("machine.toml"));
-    let moves = repeats::part(MOVES, 2);
-    // A row may name a line so far from the one that its time suggests.
-    let near = moves * 9 / 20;
     for stroke in [0.015, 0.04, 0.1] {
         let mut text = "G64 P0.01 F300\nG0 X0 Y0 Z0\n".to_owned();
-        for number in 0..moves {
+        for number in 0..MOVES {
             text += &format!("G1 X{}\n", if number % 2 == 0 { stroke } else { 0.0 });
         }
         let items = reader::read(&text);
@@ -40,9 +38,9 @@ fn each_row_names_a_line_of_its_own_time() {
         let lines: Vec<usize> = rows.iter().map(|row| row.line as usize).collect();
         assert!(lines.is_sorted(), "{stroke} mm");
         for (number, line) in lines.iter().enumerate() {
-            let even = FIRST + number * moves / lines.len();
+            let even = FIRST + number * MOVES / lines.len();
             assert!(
-                line.abs_diff(even) < near,
+                line.abs_diff(even) < NEAR,
                 "{stroke} mm: row {number} of {} names {line}",
                 lines.len()
             );

@@ -26,7 +26,7 @@ use tempfile::TempDir;
 
 /// The clock, Hz, the clocks of a millisecond, and the rate of the bus. They are slow, because each
 /// clock of the Verilog and each edge of the bus takes the simulation time.
-const CLOCK_HZ: u64 = 6_000_000;
+const CLOCK_HZ: u64 = 12_000_000;
 const MS: u64 = CLOCK_HZ / 1000;
 const SCK_HZ: u64 = 1_000_000;
 
@@ -39,7 +39,7 @@ const END: [i32; 6] = [0, 40, 0, -200, 0, -30];
 
 fn machine(link: &str) -> Machine {
     let mut text = format!(
-        "[machine]\nclock_hz = {CLOCK_HZ}\ntick_ns = 16_000\nqueue_depth = 31\ncuts = true\n\
+        "[machine]\nclock_hz = {CLOCK_HZ}\ntick_ns = 8000\nqueue_depth = 31\ncuts = true\n\
          [machine.link]\n{link}\n[machine.outputs]\ncount = 3\npwm_divider = 2\nspindle = 0\n\
          spindle_rpm = 24_000\n"
     );
@@ -52,7 +52,7 @@ fn machine(link: &str) -> Machine {
         ("c", 10, "tb6600"),
     ] {
         text += &format!(
-            "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = {steps}\nspeed_limit = 75\n\
+            "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = {steps}\nspeed_limit = 150\n\
              accel_limit = 4000\ndriver = \"{driver}\"\n"
         );
     }

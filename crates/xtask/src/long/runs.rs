@@ -82,11 +82,10 @@ pub const RUNS: &[Run] = &[
         name: "cases",
         what: "of the random cases of which tests run a part, all: plans and slow moves, engines with \
             several latches, holds, programs that are mutated or entered in their middle, overrides, \
-            late hosts, a faulty line, tables, a board that skips clocks, gantries and crossed belts \
-            that home, ten minutes of a fast board",
+            late hosts, a faulty line, tables, gantries and crossed belts that home, ten minutes of a \
+            fast board",
         asks: &[("CARRYSTEP_REPEATS", "all")],
         cargo: &[
-            "--lib",
             "--test",
             "rung_1_plan_stays_with_the_profile",
             "--test",
@@ -111,7 +110,6 @@ pub const RUNS: &[Run] = &[
             "slow_moves_of_every_kind",
             "an_engine_with_several_latches",
             "holds_keep_limits",
-            "each_row_names_a_line",
             "programs_of_the_tree_end",
             "mutated_programs_are_planned",
             "changes_at_random_times",
@@ -119,7 +117,6 @@ pub const RUNS: &[Run] = &[
             "pulses_of_run",
             "rust_client_survives",
             "any_table_is_played",
-            "board_that_skips_clocks",
             "letters_of_crossed_belts_home_from",
             "gantry_is_square",
             "difference_of_a_fast_board",
