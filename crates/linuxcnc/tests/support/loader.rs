@@ -1,10 +1,9 @@
 //! The component as HAL loads it, with a HAL of the test's own (`bench/hal_bench.c`).
 
+use super::compiled::compiled;
 use carrystep_linuxcnc::component;
-use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
-use tempfile::TempDir;
 
 /// Flags of the sanitizers of both threads.
 pub const SANITIZERS: [&str; 2] = ["-fsanitize=address,undefined", "-fsanitize=thread"];
@@ -12,37 +11,27 @@ pub const SANITIZERS: [&str; 2] = ["-fsanitize=address,undefined", "-fsanitize=t
 /// A program with the component.
 pub struct Loader {
     pub program: PathBuf,
-    _folder: TempDir,
 }
 
 impl Loader {
     /// Compiles it with these flags.
     pub fn new(flags: &[&str]) -> Self {
-        let folder = TempDir::new().unwrap();
-        for (name, text) in component() {
-            fs::write(folder.path().join(name), text).unwrap();
-        }
-        for (name, text) in [
+        let own = [
             ("rtapi.h", include_str!("../bench/hal/rtapi.h")),
             ("rtapi_app.h", include_str!("../bench/hal/rtapi_app.h")),
             ("hal.h", include_str!("../bench/hal/hal.h")),
             ("hal_bench.c", include_str!("../bench/hal_bench.c")),
             ("spidev_stand_in.c", include_str!("../bench/spidev_stand_in.c")),
-        ] {
-            fs::write(folder.path().join(name), text).unwrap();
-        }
-        let sources = component().map(|(name, _)| name).filter(|name| name.ends_with(".c"));
-        let output = Command::new(std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned()))
-            .current_dir(folder.path())
-            .args(["-std=gnu99", "-O1", "-g", "-Wall", "-Wextra", "-Werror"])
-            .args(["-DCARRYSTEP_SLOTS=64", "-I.", "hal_bench.c"])
-            .args(sources.filter(|name| !name.contains("feeder")))
-            .args(flags)
-            .args(["-lm", "-lpthread", "-o", "hal_bench"])
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        Self { program: folder.path().join("hal_bench"), _folder: folder }
+        ];
+        let files: Vec<_> =
+            component().chain(own).map(|(name, text)| (name, text.to_owned())).collect();
+        let sources = component().map(|(name, _)| name);
+        let mut arguments = vec!["-std=gnu99", "-O1", "-g", "-Wall", "-Wextra", "-Werror"];
+        arguments.extend(["-DCARRYSTEP_SLOTS=64", "-I.", "hal_bench.c"]);
+        arguments.extend(sources.filter(|name| name.ends_with(".c") && !name.contains("feeder")));
+        arguments.extend(flags);
+        arguments.extend(["-lm", "-lpthread"]);
+        Self { program: compiled(&files, &arguments) }
     }
 
     /// Runs it to its end, and returns what it says.

@@ -1,6 +1,7 @@
 //! Compiles the component's C files with a bench that a test talks with through pipes.
 #![allow(dead_code, reason = "each test uses a part")]
 
+mod compiled;
 pub mod line;
 pub mod loader;
 pub mod rounds;
@@ -8,11 +9,11 @@ pub mod signals;
 pub mod world;
 
 use carrystep_linuxcnc::component;
+use compiled::compiled;
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::OnceLock;
-use tempfile::TempDir;
 
 const FLAGS: [&str; 14] = [
     "-std=c99",
@@ -53,35 +54,21 @@ const FILES: [&str; 15] = [
 /// A bench, compiled with the sanitizers of GCC.
 pub struct Bench {
     program: PathBuf,
-    _folder: TempDir,
 }
 
 impl Bench {
     /// Compiles a bench; `change` may alter each file.
     pub fn new(text: &str, change: impl Fn(&str, &str) -> String) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in component() {
-            std::fs::write(folder.path().join(name), change(name, text)).unwrap();
-        }
-        for (name, text) in [
+        let component = component().map(|(name, text)| (name, change(name, text)));
+        let own = [
             ("bench.c", text),
             ("spi_bench.c", include_str!("../bench/spi_bench.c")),
             ("spi_bench.h", include_str!("../bench/spi_bench.h")),
-        ] {
-            std::fs::write(folder.path().join(name), text).unwrap();
-        }
-        let program = folder.path().join("bench");
-        let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
-        let output = Command::new(&compiler)
-            .current_dir(folder.path())
-            .args(FLAGS)
-            .arg("bench.c")
-            .args(FILES)
-            .args(["-lpthread", "-o", "bench"])
-            .output()
-            .unwrap_or_else(|error| panic!("{compiler} (apt-get install gcc): {error}"));
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        Self { program, _folder: folder }
+        ]
+        .map(|(name, text)| (name, text.to_owned()));
+        let files: Vec<_> = component.chain(own).collect();
+        let arguments = [&FLAGS[..], &["bench.c"], &FILES, &["-lpthread"]].concat();
+        Self { program: compiled(&files, &arguments) }
     }
 
     /// The bench of blocks, ring and trim.
