@@ -54,7 +54,7 @@ fn random_programs_on_three_axes() {
 fn planned(plan: &Plan) {
     let program = plan.program();
     let job = Job::new(&plan.build, &program, plan.total_ticks());
-    let max_clocks = repeats::part(job.max_clocks, 20);
+    let max_clocks = repeats::part(job.max_clocks, 10);
     lockstep::assert_equals_model(Level::RustHdl, &Job { max_clocks, ..job });
 }
 

@@ -119,7 +119,10 @@ fn pages_give_what_the_tests_of_link_and_simulators_do() {
             format!("of unacknowledged writes: {} segments", word(writes)),
         ],
     );
-    assert_eq!(whole(behind("tests/support/effort.rs", "{ whole } else { whole / ")), 10);
+    for rung in ["rung_4_model_equals_rust_hdl", "rung_5_model_equals_verilog"] {
+        let run = behind(&format!("tests/{rung}/parallel.rs"), "repeats::part(job.max_clocks, ");
+        assert_eq!(whole(run), 10, "{rung}");
+    }
     says("README.md", &["run the first tenth in an ordinary test run".to_owned()]);
     // The least ratio of the measured table.
     let page = pages::file("docs/performance.md");

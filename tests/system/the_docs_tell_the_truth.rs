@@ -295,6 +295,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "rust-hdl",
             "adders",
             "repeats",
+            "cases",
             "proofs",
             "mutants",
             "bad-line",

@@ -14,7 +14,7 @@ use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 
 /// Segments of an axis in a move, and ticks of each. The queues then hold a seventh of a second.
-const SEGMENTS: u32 = 60;
+const SEGMENTS: u32 = 40;
 const TICKS: u32 = 10_000;
 
 fn uart() -> Uart {

@@ -187,7 +187,7 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
 /// wirings run in parallel.
 fn random_machines(limits: &str, rest: u64) {
     let machines =
-        std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(45, |text| text.parse().unwrap());
+        std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(30, |text| text.parse().unwrap());
     for seed in (rest..machines).step_by(3) {
         let mut random = Random::new(seed);
         let machine = random_machine(&mut random, limits);

@@ -239,7 +239,7 @@ fn commanded(commands: &[Command], axis: u8, mut ticks: i64) -> i128 {
 /// Snapshots are taken all the time, on a bad line; they change no edge.
 fn snapshots_of_a_program_that_runs_are_exact<B: Kind>() {
     // Long enough for several snapshots over a line that loses answers.
-    let commands = waves(&mut Random::new(17), 15, 6000);
+    let commands = waves(&mut Random::new(17), 10, 6000);
     let (end, mut host) = ready::<B>(Faults::BAD, 17);
     let mut seen: Vec<Snapshot> = Vec::new();
     let ended = host.stream(program(&commands), |progress| {

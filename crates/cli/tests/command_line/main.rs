@@ -76,6 +76,9 @@ mod recorded_runs;
 #[path = "../../../virtual-board/tests/support/recorder.rs"]
 #[allow(dead_code, reason = "the tests of other crates use the rest")]
 mod recorder;
+#[path = "../../../../tests/support/repeats.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
+mod repeats;
 #[cfg(target_os = "linux")]
 mod reports;
 #[cfg(unix)]

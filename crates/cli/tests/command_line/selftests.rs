@@ -1,6 +1,7 @@
 //! `carrystep selftest`: the files that it writes, what it refuses, and its report.
 
 use crate::command::Folder;
+use crate::repeats;
 use serde_json::Value;
 use std::process::Command;
 
@@ -98,11 +99,15 @@ fn self_test_of_the_icestick_becomes_a_bitstream_with_a_report() {
     assert_eq!(report["bitstream"], bitstream);
     let made = std::fs::read(folder.path(bitstream)).unwrap();
     assert!(made.len() > 30_000);
-    // The script of the folder makes the same.
-    std::fs::remove_file(folder.path(bitstream)).unwrap();
-    let script = Command::new("sh").arg(folder.path("out/build.sh")).output().unwrap();
-    assert!(script.status.success(), "{}", String::from_utf8_lossy(&script.stderr));
-    assert!(std::fs::read(folder.path(bitstream)).unwrap() == made, "build.sh makes another one");
+    // The script of the folder makes the same. It is a script as each board has one, and those are run
+    // in every test run.
+    if repeats::in_full() {
+        std::fs::remove_file(folder.path(bitstream)).unwrap();
+        let script = Command::new("sh").arg(folder.path("out/build.sh")).output().unwrap();
+        assert!(script.status.success(), "{}", String::from_utf8_lossy(&script.stderr));
+        let again = std::fs::read(folder.path(bitstream)).unwrap();
+        assert!(again == made, "build.sh makes another one");
+    }
     // People see what to disconnect before they see the command that loads the bitstream.
     let page = std::fs::read_to_string(folder.path("out/README.md")).unwrap();
     let (warning, load) = (page.find("**Disconnect motors"), page.find("Load the bitstream with"));

@@ -81,6 +81,7 @@ pub const INPUTS: &[Inputs] = &[
     (
         "cases",
         &[
+            "crates/cli/",
             "crates/core/",
             "crates/files/",
             "crates/gcode/",

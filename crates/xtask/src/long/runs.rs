@@ -83,7 +83,7 @@ pub const RUNS: &[Run] = &[
         what: "of the random cases of which tests run a part, all: plans and slow moves, engines with \
             several latches, holds, programs that are mutated or entered in their middle, overrides, \
             late hosts, a faulty line, tables, gantries and crossed belts that home, ten minutes of a \
-            fast board",
+            fast board, a self-test by its script",
         asks: &[("CARRYSTEP_REPEATS", "all")],
         cargo: &[
             "--test",
@@ -102,6 +102,8 @@ pub const RUNS: &[Run] = &[
             "table",
             "--test",
             "virtual_board",
+            "--test",
+            "command_line",
             "--",
             "plans_of_each_kind",
             "linear_plans",
@@ -120,6 +122,7 @@ pub const RUNS: &[Run] = &[
             "letters_of_crossed_belts_home_from",
             "gantry_is_square",
             "difference_of_a_fast_board",
+            "self_test_of_the_icestick",
         ],
     },
     Run {
