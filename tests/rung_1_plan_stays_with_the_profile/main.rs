@@ -30,13 +30,14 @@ fn verified(case: &RandomMoves) {
     }
 }
 
-/// True if a slow move is refused because it needs too many segments, with a shorter time that
-/// would work. `slow.rs` plans such moves in that time.
+/// True if a slow move of over 10^10 ticks is refused because it needs too many segments, with a
+/// shorter time that would work. `slow.rs` plans such moves in that time.
 fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
     let PlanError::TooSlow { index, longest: Some(longest), .. } = error else { return false };
     let given =
         file.moves[*index].time.as_ref().map(|time| time.to_string().parse::<f64>().unwrap());
-    given.is_some_and(|given| given > 1e4 && *longest < given)
+    let least = 1e10 * file.machine.timebase.tick_seconds();
+    given.is_some_and(|given| given > least && *longest < given)
 }
 
 #[test]
