@@ -1,5 +1,6 @@
-//! What an ordinary run of the tests leaves to `cargo xtask long repeats` and `cargo xtask long
-//! cases`: repetition. With its fixed seed, an ordinary run repeats the same random cases each time.
+//! What an ordinary run of the tests leaves to the long runs *repeats*, *cases* and *proofs* (`cargo
+//! xtask long`): repetition. An ordinary run has a fixed seed, so it draws the same random cases each
+//! time.
 //!
 //! Tests of other crates include this file, too.
 
