@@ -115,7 +115,10 @@ fn holds_keep_limits_path_and_landing() {
                 assert_eq!(kept, Ok(()), "{name} {wanted}");
             }
         }
-        eprintln!("FIGURES {name}: {} rows, {found:?}", rows.len());
+        eprintln!(
+            "FIGURES {} holds in {name}: {} us at most to begin, {} us to rest, planned in {:.1?}",
+            found.holds, found.waited, found.stopped, found.planning
+        );
         assert!(found.holds > 0, "{name}");
         // 1 us ticks.
         assert!(found.waited <= 110_000, "{name}: {found:?}");
