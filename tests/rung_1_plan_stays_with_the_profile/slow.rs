@@ -154,6 +154,19 @@ fn four_hundred_steps_in_a_million_seconds() {
     four_hundred_steps_in(1_000_000);
 }
 
+/// The last pulse is due at rest, and the ramp before it is shorter than a tick.
+#[test]
+fn one_step_whose_ramps_are_shorter_than_a_tick() {
+    let file = file(
+        "[machine]\nclock_hz = 64_000_000\ntick_ns = 500\nphases = 1\nphase = \"zero\"\n\
+         [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 67_940\n\
+         step_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n\
+         [[move]]\nprofile = \"trapezoid\"\ntime = 393_000\nto = { x = 1 }\n",
+    );
+    let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}"));
+    holds(&file, &plan).unwrap_or_else(|error| panic!("{error}"));
+}
+
 /// A triangular move of a million steps in a million seconds has too many slow pulses, and none
 /// that is slow enough to be planned by itself, so it would need too many segments.
 #[test]

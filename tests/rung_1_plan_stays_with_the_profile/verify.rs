@@ -109,7 +109,9 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
             let a = steepest(&*leg.profile, due.seconds - h, due.seconds + h);
             // At phase zero the last pulse is due at rest; it cannot be later than its tick.
             let v = due.speed.max(h * a / 8.0);
-            let within = h * h * a / (8.0 * v) + leg.fit_seconds + slack;
+            // Where a ramp is shorter than a tick, no acceleration is seen around it.
+            let bent = if v > 0.0 { h * h * a / (8.0 * v) } else { h };
+            let within = bent + leg.fit_seconds + slack;
             let phase = h / f64::from(timebase.phases());
             // The bisection loses up to five units of 2^-32 step, which take longer at lower
             // speeds.
