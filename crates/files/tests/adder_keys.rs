@@ -38,6 +38,7 @@ fn tick_without_room_is_refused_with_the_tick_and_the_clock_that_do() {
     assert_eq!(
         machine(lines, 6).unwrap_err(),
         "6 axes on 2 adders need 3 time slots of 13 clocks and three clocks to close the tick, 42 in all, \
-         but a tick of 500 ns at 64000000 Hz has 32: a tick of 750 ns, a clock of 88000000 Hz or more adders would do"
+         but a tick of 500 ns at 64000000 Hz has 32: a tick of 750 ns, a clock of 88000000 Hz or \
+         more adders would do"
     );
 }

@@ -247,7 +247,11 @@ fn advised(mut request: TableRequest) -> Option<Table> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: repeats::part(60, 3), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: repeats::part(60, 3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn any_table_is_played_exactly_at_any_length(request in requests(), extra in prop::collection::vec(0_u32..3000, 6)) {
