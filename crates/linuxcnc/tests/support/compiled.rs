@@ -24,6 +24,8 @@ pub fn compiled(files: &[(&str, String)], arguments: &[&str]) -> PathBuf {
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let program = kept.join(name);
     if !program.exists() {
+        // Cargo makes this folder when it compiles tests; somebody may have removed it since.
+        fs::create_dir_all(kept).unwrap();
         let folder = tempfile::tempdir_in(kept).unwrap();
         for (name, text) in files {
             fs::write(folder.path().join(name), text).unwrap();

@@ -116,7 +116,7 @@ pub const RUNS: &[Run] = &[
             "mutated_programs_are_planned",
             "changes_at_random_times",
             "host_late_by_up_to_half",
-            "pulses_of_run",
+            "pulses_of_run_",
             "rust_client_survives",
             "any_table_is_played",
             "letters_of_crossed_belts_home_from",
