@@ -70,14 +70,16 @@ fn measure(carrystep: &Path, smoke: bool) -> Result<BenchReport, String> {
     let build = &moves[0].plan.build;
     let verilog = carrystep_verilog::parallel_verilog(build, AXES, "sim/bench/machine.toml")
         .map_err(|error| error.to_string())?;
-    let toggling = Verilated::compile(&verilog, false, smoke)?;
     let tracing = Verilated::compile(&verilog, true, smoke)?;
+    // No figure of a smoke run is judged, so that one compilation is enough.
+    let own = if smoke { None } else { Some(Verilated::compile(&verilog, false, smoke)?) };
+    let toggling = own.as_ref().unwrap_or(&tracing);
 
     let begin = Instant::now();
     let mut failures = Vec::new();
     let mut rows = Vec::new();
     for (density, moves) in DENSITIES.iter().zip(&moves) {
-        rows.push(row(density, moves, &toggling, smoke, &mut failures)?);
+        rows.push(row(density, moves, toggling, smoke, &mut failures)?);
     }
     let steady = Moves::load(&STEADY)?;
     let (steady_seconds, heard) = levels::fast(&steady)?;
@@ -185,7 +187,11 @@ fn row(
         fast,
         model: levels::clocks_per_second(Level::Model, moves, 2_000_000)?,
         rust_hdl: levels::clocks_per_second(Level::RustHdl, moves, 4_000)?,
-        icarus: levels::clocks_per_second(Level::Icarus, moves, 40_000)?,
+        icarus: levels::clocks_per_second(
+            Level::Icarus,
+            moves,
+            if smoke { 4_000 } else { 40_000 },
+        )?,
         verilator,
         ratio: fast / verilator,
         ratio_wanted: density.wanted,

@@ -16,20 +16,22 @@ const TOGETHER: [&str; 3] = [
 
 /// Tests that mostly wait for a board or a line that runs in real time: the binary, and how the names
 /// of such tests begin.
-const WAITING: [(&str, &[&str]); 2] = [
+const WAITING: [(&str, &[&str]); 3] = [
     (
         "carrystep-cli::command_line",
         &["boards::wrong_peer_on_the_port_is_named", "stops::line_that_is_lost_during_a_run"],
     ),
-    ("carrystep-virtual-board::virtual_board", &["bad_line::", "facts::", "homing::", "rates::"]),
+    ("carrystep-virtual-board::virtual_board", &["late_host::"]),
+    ("carrystep-linuxcnc::spidev", &["what_is_wrong_with_an_spi_is_named"]),
 ];
 
-/// Binaries that wait for half of their time or more, each in all of its slices: two of them share a
+/// Binaries that wait for a good part of their time, each in all of its slices: two of them share a
 /// core.
-const HALF: [&str; 4] = [
+const HALF: [&str; 5] = [
+    "carrystep-cli::clusters",
     "carrystep-cli::command_line",
-    "carrystep-cli::bin/carrystep",
     "carrystep-linuxcnc::component",
+    "carrystep-linuxcnc::hal",
     "carrystep-linuxcnc::spidev",
 ];
 
