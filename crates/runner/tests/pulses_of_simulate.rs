@@ -51,7 +51,7 @@ fn pulses_of_run_are_those_of_simulate() {
 fn pulses_of_run_on_an_spi_are_those_of_simulate() {
     for program in &PROGRAMS[..repeats::part(2, 2)] {
         let job = Job::new(*program, "cuts = true\n");
-        let seconds = repeats::part(SECONDS, 4);
+        let seconds = repeats::part(SECONDS, 8);
         let clocks = seconds * 1000 * job.ms();
         let until = seconds * 1_000_000_000 / job.machine.timebase.tick_ns();
         let run = job.run_on_bus(9_600_000, |bus| {

@@ -109,6 +109,9 @@ pub const XST: Tool = tool(
 pub const VIVADO: Tool =
     tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
+/// Runs the script that comes with a board's Verilog, which starts [`FLOWS`].
+pub const SH: Tool = tool("sh", None, "scripts of boards", &["a POSIX shell"]);
+
 /// Programs that make bitstreams. The boards' toolchains name them.
 pub const FLOWS: [Tool; 11] = [
     YOSYS,

@@ -1,7 +1,7 @@
 //! Which tool it is that answers: its version, and which file it is.
 
 use crate::programs::{
-    GXX, ICARUS, ICEBOX_VLOG, ICETIME, PYTHON, Tool, VERILATOR, VVP, YOSYS, YOSYS_ABC,
+    FLOWS, GXX, ICARUS, ICEBOX_VLOG, ICETIME, PYTHON, SH, Tool, VERILATOR, VVP, YOSYS, YOSYS_ABC,
     YOSYS_SMTBMC, Z3,
 };
 use std::collections::HashMap;
@@ -11,7 +11,7 @@ use std::process::Command;
 use std::sync::Mutex;
 
 /// Tools that others start, and those that come in one package and tell its version.
-const WITH: [(&str, &[Tool]); 7] = [
+const WITH: [(&str, &[Tool]); 8] = [
     (ICARUS.name, &[VVP]),
     (VERILATOR.name, &[GXX]),
     (YOSYS.name, &[YOSYS_ABC]),
@@ -19,6 +19,7 @@ const WITH: [(&str, &[Tool]); 7] = [
     (YOSYS_SMTBMC.name, &[YOSYS, Z3]),
     (ICEBOX_VLOG.name, &[PYTHON, ICETIME]),
     (PYTHON.name, &[ICEBOX_VLOG]),
+    (SH.name, &FLOWS),
 ];
 
 /// What a tool from pip is called.

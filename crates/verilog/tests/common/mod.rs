@@ -1,8 +1,8 @@
 //! Tools that tests run in folders of their own. What a tool has answered before is not asked again
-//! (docs/decisions/0053); a script is always run.
+//! (docs/decisions/0053).
 
 use carrystep_tools::kept;
-use carrystep_tools::programs::{ICARUS, VERILATOR, VVP, YOSYS};
+use carrystep_tools::programs::{ICARUS, SH, VERILATOR, VVP, YOSYS};
 use std::path::Path;
 use std::process::Command;
 
@@ -10,7 +10,7 @@ use std::process::Command;
 /// and its output.
 pub fn run(tool: &str, arguments: &[impl AsRef<str>], folder: &Path) -> (bool, String) {
     let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
-    let known = [ICARUS, VVP, VERILATOR, YOSYS].into_iter().find(|known| known.name == tool);
+    let known = [ICARUS, SH, VVP, VERILATOR, YOSYS].into_iter().find(|known| known.name == tool);
     let output = match known {
         Some(known) => kept::output(&known, folder, &arguments, |_| true),
         None => Command::new(tool).args(arguments).current_dir(folder).output(),
