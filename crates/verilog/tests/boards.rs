@@ -87,8 +87,9 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
 }
 
 /// Builds with the script that users run, started in another directory. nextpnr must know every pin
-/// and place the PLL, and the last tool must make a bitstream. nextpnr for ECP5 is slow,
-/// so that a test run builds for one such board only; `cargo xtask long self-test` builds all.
+/// and place the PLL, and the last tool must make a bitstream. A script whose answer is kept is not
+/// run again (docs/decisions/0053). nextpnr for ECP5 is slow, so that a test run builds for one such
+/// board only; `cargo xtask long self-test` builds all.
 #[test]
 fn script_of_every_placed_board_builds_a_bitstream_with_all_pins() {
     run_scripts(|board| match board.family.facts().placer() {

@@ -85,6 +85,10 @@ fn resize(block: &mut VerilogBlock, sizes: &[(usize, usize)]) {
 
 /// Asserts that a module has the same statements whether its `hdl` was compiled for its own size or
 /// for the one of [`logic`].
+///
+/// Two sizes besides that one are enough, 1 or 2 and one that is no power of two. A bound or a width
+/// that is not the size itself differs from the replaced one at any other size, except where a formula
+/// of the size happens to give the same number there.
 #[cfg(test)]
 pub(crate) fn assert_sizes_agree<M: Kernel + rust_hdl_core::prelude::Logic + Default>() {
     let module = Box::<M>::default();
