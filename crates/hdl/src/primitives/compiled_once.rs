@@ -86,9 +86,10 @@ fn resize(block: &mut VerilogBlock, sizes: &[(usize, usize)]) {
 /// Asserts that a module has the same statements whether its `hdl` was compiled for its own size or
 /// for the one of [`logic`].
 ///
-/// Two sizes besides that one are enough, 1 or 2 and one that is no power of two. A bound or a width
-/// that is not the size itself differs from the replaced one at any other size, except where a formula
-/// of the size happens to give the same number there.
+/// Two other sizes are enough for a module, one of them no power of two. If a bound or a width in the
+/// kernel is not the size itself, it differs from the number that [`resized`] inserts at every size but
+/// the compiled one. An exception is a formula that equals the size at some sizes, such as the next
+/// power of two; so two are compared.
 #[cfg(test)]
 pub(crate) fn assert_sizes_agree<M: Kernel + rust_hdl_core::prelude::Logic + Default>() {
     let module = Box::<M>::default();
