@@ -4,6 +4,8 @@
 use super::control_socket::ControlSocket;
 use super::{Holder, folder};
 use carrystep_link::BuildFacts;
+use rustix::io::Errno;
+use rustix::process::{Pid, test_kill_process};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Seek as _, Write as _};
 use std::os::unix::fs::{FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _};
@@ -143,7 +145,8 @@ impl Drop for PortClaim {
     }
 }
 
-/// The holder of the port, if it is a command of this user.
+/// The holder of the port, if it is a command of this user. `None` also while a new holder has not
+/// yet written who it is.
 pub fn holder(port: &str) -> Option<Holder> {
     let name = device(port)?;
     folder::all().iter().find_map(|folder| held(&folder.join(&name).with_extension("lock")))
@@ -158,7 +161,15 @@ fn held(path: &Path) -> Option<Holder> {
     }
     let mut text = String::new();
     file.read_to_string(&mut text).ok()?;
-    serde_json::from_str(&text).ok()
+    // A file that a killed holder has left still names that one when the next holder has locked it
+    // and has not yet written.
+    serde_json::from_str(&text).ok().filter(exists)
+}
+
+/// True if the process of this holder exists.
+fn exists(holder: &Holder) -> bool {
+    let process = i32::try_from(holder.pid).ok().and_then(Pid::from_raw);
+    process.is_some_and(|process| test_kill_process(process) != Err(Errno::SRCH))
 }
 
 /// A name for the device of a port, made from its major and minor number; `None` if there is no
@@ -178,7 +189,7 @@ mod tests {
 
     fn who(command: &str) -> Holder {
         let command = command.to_owned();
-        Holder { pid: 7, command, baud: 9600, listens: true, watchdog: None }
+        Holder { pid: std::process::id(), command, baud: 9600, listens: true, watchdog: None }
     }
 
     #[test]
@@ -220,6 +231,21 @@ mod tests {
         assert_eq!(held(&path), Some(who("jog")));
         drop(second);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_killed_holder_is_not_named_while_the_next_one_has_not_written() {
+        let mut ended = std::process::Command::new("true").spawn().unwrap();
+        let killed = Holder { pid: ended.id(), ..who("serve") };
+        ended.wait().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("1-3.lock");
+        for (left, named) in [(killed, None), (who("run"), Some(who("run")))] {
+            std::fs::write(&path, serde_json::to_string(&left).unwrap()).unwrap();
+            let next = File::open(&path).unwrap();
+            next.lock().unwrap();
+            assert_eq!(held(&path), named);
+        }
     }
 
     #[test]
