@@ -42,10 +42,13 @@ fn places(vcd: &str) -> Vec<(u64, [i64; 2])> {
     places
 }
 
-/// Checks each pulse: the tool is on the square, within two steps.
+/// The greatest distance from the square, steps.
+const NEAR: i64 = 2;
+
+/// Checks each pulse: the tool is on the square, within [`NEAR`].
 fn check_path(places: &[(u64, [i64; 2])]) {
-    let near = |value: i64, to: i64| (value - to).abs() <= 2;
-    let within = |value: i64| (-2..=SIDE + 2).contains(&value);
+    let near = |value: i64, to: i64| (value - to).abs() <= NEAR;
+    let within = |value: i64| (-NEAR..=SIDE + NEAR).contains(&value);
     for &(time, [x, y]) in places {
         let on_x = (near(x, 0) || near(x, SIDE)) && within(y);
         let on_y = (near(y, 0) || near(y, SIDE)) && within(x);
@@ -76,9 +79,10 @@ fn check_limits(places: &[(u64, [i64; 2])], axis: usize) -> (f64, f64) {
     (fastest, hardest)
 }
 
-/// Back to the start along the sides of the square.
+/// Back to the start along the sides of the square, from a place on it, mm.
 fn way_back(at: &[f64]) -> &'static str {
-    match (at[0] > 3.9, at[1] > 3.9) {
+    let is_far = |place: f64| place > (SIDE - NEAR) as f64 / STEPS as f64;
+    match (is_far(at[0]), is_far(at[1])) {
         (_, true) => "G90 G21 G61 G1 X0 F1200\nG1 Y0",
         (true, false) => "G90 G21 G61 G1 Y0 F1200\nG1 X0",
         (false, false) => "G90 G21 G61 G1 X0 Y0 F1200",
