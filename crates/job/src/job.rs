@@ -395,6 +395,3 @@ impl<const N: usize> Job<N> {
         JobError::Broken { line: self.line, axis: broken.axis, rule: broken.rule }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -30,6 +30,18 @@ impl Planner {
     /// [`JobError::Axes`], [`JobError::SlowLine`], [`JobError::Coordinates`] and
     /// [`JobError::Number`], all with line 0.
     pub fn new(machine: &Machine, linear: usize, start: &[f64]) -> Result<Self, JobError> {
+        Self::with_room(machine, linear, start, 0)
+    }
+
+    /// As [`Planner::new`], with room for at least so many letters. It is public for the test that the
+    /// room changes no row.
+    #[doc(hidden)]
+    pub fn with_room(
+        machine: &Machine,
+        linear: usize,
+        start: &[f64],
+        room: usize,
+    ) -> Result<Self, JobError> {
         let motors = machine.axes.len();
         let (leaders, letters) = (machine.leaders(), machine.letter_numbers());
         // The other motors of a letter have the limits of the first one.
@@ -38,7 +50,7 @@ impl Planner {
         check_line(machine)?;
         // What the line has to carry is the segments of all motors.
         let machine = (&planned, motors);
-        let job: Box<dyn Jobs> = match leaders.len() {
+        let job: Box<dyn Jobs> = match room.max(leaders.len()) {
             1..=3 => Box::new(Job::<3>::new(machine, linear, start)?),
             4..=6 => Box::new(Job::<6>::new(machine, linear, start)?),
             other => return Err(JobError::Axes(other)),

@@ -6,6 +6,7 @@ mod common;
 #[path = "../../../tests/support/repeats.rs"]
 mod repeats;
 
+mod compiled_sizes;
 mod holds;
 mod motors_at_rest;
 mod programs;
