@@ -38,6 +38,7 @@ use crate::HdlError;
 use crate::parameters::{CLOCKS_PER_TICK, OUTPUTS_OFF_AT_RAMPS};
 use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
+use crate::primitives::optional::Optional;
 use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -89,10 +90,10 @@ use supervisor::Supervisor;
 use switches::Switches;
 use time_slot::TimeSlot;
 
-/// The engine of N axes, 1 to 8. S is 1 in a build with several latches, otherwise 0: then neither
-/// the ports nor the part of further latches exist.
+/// The engine of N axes, 1 to 8. The ports and the part of further latches exist in a build with several
+/// latches only.
 #[derive(LogicBlock, Default)]
-pub struct Engine<const N: usize, const S: usize> {
+pub struct Engine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
@@ -234,19 +235,19 @@ pub struct Engine<const N: usize, const S: usize> {
     pub started: Signal<Out, Bit>,
     /// The pins of latches 1 to 3; asynchronous. `LATCH_LOOKS_1` and the following tell which of
     /// them are used.
-    pub more_latches: PerAxis<Input<Word<MORE>>, S>,
+    pub more_latches: Optional<Input<Word<MORE>>>,
     /// The host arms each of these latches for one edge, and sets the count of its further edges to
     /// 0; bit 0 is latch 1. A latch that the build does not have must not be armed.
-    pub more_latch_arm: PerAxis<Input<Word<MORE>>, S>,
+    pub more_latch_arm: Optional<Input<Word<MORE>>>,
     /// These latches wait for their edges; bit 0 is latch 1.
-    pub more_latch_armed: PerAxis<Signal<Out, Word<MORE>>, S>,
+    pub more_latch_armed: Optional<Signal<Out, Word<MORE>>>,
     /// The edges since each of them was armed that it did not latch, at most 15, in four bits each,
     /// those of latch 1 lowest.
-    pub more_latch_edges: PerAxis<Signal<Out, Word<12>>, S>,
+    pub more_latch_edges: Optional<Signal<Out, Word<12>>>,
     /// The number of the record that each latch holds, in two bits each, that of latch 0 lowest.
-    pub latch_records: PerAxis<Signal<Out, Word<8>>, S>,
+    pub latch_records: Optional<Signal<Out, Word<8>>>,
     /// The number of the record to which the words of page 3 belong in this tick.
-    pub state_record: PerAxis<Signal<Out, Word<2>>, S>,
+    pub state_record: Optional<Signal<Out, Word<2>>>,
     time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
@@ -259,7 +260,7 @@ pub struct Engine<const N: usize, const S: usize> {
     switches: Switches<N>,
     seek_control: SeekControl<N>,
     edge_latch: EdgeLatch,
-    latch_bank: PerAxis<LatchBank, S>,
+    latch_bank: Optional<LatchBank>,
     readout: Readout,
     stops: Stops<N>,
     resets: Resets,
@@ -310,9 +311,8 @@ pub struct Engine<const N: usize, const S: usize> {
     clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
-impl<const N: usize, const S: usize> Engine<N, S> {
-    /// Makes the engine of a build. The caller has checked the build and ensures that it has N
-    /// axes, and several latches if S is 1.
+impl<const N: usize> Engine<N> {
+    /// Makes the engine of a build. The caller has checked the build and ensures that it has N axes.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         let mut engine = Self::default();
         engine.set(build)?;
@@ -320,7 +320,7 @@ impl<const N: usize, const S: usize> Engine<N, S> {
     }
 
     /// Replaces the parts that depend on the build. An expression `Self { .. }` with
-    /// `..Self::default()` would move each of the other fields by itself, for each N and S.
+    /// `..Self::default()` would move each of the other fields by itself, for each N.
     fn set(&mut self, build: &EngineBuild) -> Result<(), HdlError> {
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
@@ -341,7 +341,14 @@ impl<const N: usize, const S: usize> Engine<N, S> {
         self.event_wheel = EventWheel::new(&build.timebase);
         self.switches = Switches::new(&build.guard);
         self.seek_control = SeekControl::new();
-        self.latch_bank = PerAxis::from_fn(|_| LatchBank::new(&build.guard));
+        let several = build.has_several_latches();
+        self.more_latches = Optional::when(several);
+        self.more_latch_arm = Optional::when(several);
+        self.more_latch_armed = Optional::when(several);
+        self.more_latch_edges = Optional::when(several);
+        self.latch_records = Optional::when(several);
+        self.state_record = Optional::when(several);
+        self.latch_bank = Optional::of(several.then(|| LatchBank::new(&build.guard)));
         self.stops = Stops::new(&build.guard);
         self.axes = Parameter::new(N as u64);
         self.off_at_ramps = Parameter::of(&off_at_ramps.bits(0));

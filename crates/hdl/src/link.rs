@@ -25,7 +25,7 @@
 use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
 use crate::primitives::compiled_once;
 use crate::primitives::formula::Formula;
-use crate::primitives::per_axis::PerAxis;
+use crate::primitives::optional::Optional;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
@@ -46,11 +46,10 @@ use latch_view::LatchView;
 use processor::LinkProcessor;
 use register_mirror::RegisterMirror;
 
-/// The link for an engine of N axes. Its ports are those of the line and of the engine. S is 1 in a
-/// build with several latches, otherwise 0: then the ports and the part of several latches do not
-/// exist.
+/// The link for an engine of N axes. Its ports are those of the line and of the engine. The ports and
+/// the part of several latches exist in a build that has them only.
 #[derive(LogicBlock, Default)]
-pub struct Link<const N: usize, const S: usize> {
+pub struct Link<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The line has received a byte; asserted for one clock per byte.
@@ -148,21 +147,21 @@ pub struct Link<const N: usize, const S: usize> {
     /// The edges since the latch was armed that it did not latch, at most 15.
     pub latch_edges: Input<Word<4>>,
     /// The host arms these latches; bit 0 is latch 1.
-    pub more_latch_arm: PerAxis<Signal<Out, Word<3>>, S>,
+    pub more_latch_arm: Optional<Signal<Out, Word<3>>>,
     /// These latches wait for their edges; bit 0 is latch 1.
-    pub more_latch_armed: PerAxis<Input<Word<3>>, S>,
+    pub more_latch_armed: Optional<Input<Word<3>>>,
     /// The edges since each of them was armed that it did not latch, in four bits each.
-    pub more_latch_edges: PerAxis<Input<Word<12>>, S>,
+    pub more_latch_edges: Optional<Input<Word<12>>>,
     /// The number of the record that each latch from 0 on holds, in two bits each.
-    pub latch_records: PerAxis<Input<Word<8>>, S>,
+    pub latch_records: Optional<Input<Word<8>>>,
     /// The number of the record to which the words of page 3 belong.
-    pub state_record: PerAxis<Input<Word<2>>, S>,
+    pub state_record: Optional<Input<Word<2>>>,
     processor: LinkProcessor<N>,
     register_mirror: RegisterMirror,
-    latch_view: PerAxis<LatchView, S>,
+    latch_view: Optional<LatchView>,
 }
 
-impl<const N: usize, const S: usize> Link<N, S> {
+impl<const N: usize> Link<N> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
         let mut link = Self::default();
@@ -174,7 +173,13 @@ impl<const N: usize, const S: usize> Link<N, S> {
     fn set(&mut self, build: &EngineBuild, id: BuildId) {
         self.processor = LinkProcessor::new(&image(build.has_several_latches()));
         self.register_mirror = RegisterMirror::new(&formulas(build, id));
-        self.latch_view = PerAxis::from_fn(|_| LatchView::new(&build.guard));
+        let several = build.has_several_latches();
+        self.more_latch_arm = Optional::when(several);
+        self.more_latch_armed = Optional::when(several);
+        self.more_latch_edges = Optional::when(several);
+        self.latch_records = Optional::when(several);
+        self.state_record = Optional::when(several);
+        self.latch_view = Optional::of(several.then(|| LatchView::new(&build.guard)));
     }
 }
 
@@ -199,9 +204,9 @@ fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
     facts(build, id).into_iter().map(formula).collect()
 }
 
-compiled_once::logic!(Link<N = 8, S = 1>);
+compiled_once::logic!(Link<N = 8>, latch_view);
 
-impl<const N: usize, const S: usize> compiled_once::Kernel for Link<N, S> {
+impl<const N: usize> compiled_once::Kernel for Link<N> {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, processor, register_mirror);
@@ -257,7 +262,7 @@ impl<const N: usize, const S: usize> compiled_once::Kernel for Link<N, S> {
         self.register_mirror.state.next = self.state.val();
 
         // Several latches: their view is between the register mirror and the processor.
-        for i in 0..S {
+        for i in 0..self.latch_view.len() {
             self.latch_view[i].clock.next = self.clock.val();
             self.latch_view[i].address.next = self.processor.x.val();
             self.latch_view[i].facts.next = self.register_mirror.data.val();
@@ -284,16 +289,21 @@ impl<const N: usize, const S: usize> compiled_once::Kernel for Link<N, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives::compiled_once::assert_sizes_agree;
+    use crate::primitives::compiled_once::{assert_sizes_agree, assert_sizes_agree_of};
     use crate::sim::assert_synthesizes;
     use carrystep_core::link::LineKind;
     use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
-    #[test]
-    fn formulas_are_the_facts_of_the_build() {
+    /// A build without several latches.
+    fn build() -> EngineBuild {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let mut build = EngineBuild::minimal(&build, 1);
+        EngineBuild::minimal(&build, 1)
+    }
+
+    #[test]
+    fn formulas_are_the_facts_of_the_build() {
+        let mut build = build();
         build.guard.watchdog = 4095;
         let id = LineKind::Spi.build_id(&build);
         let values: Vec<_> = formulas(&build, id)
@@ -305,16 +315,14 @@ mod tests {
 
     #[test]
     fn statements_are_those_of_each_size() {
-        assert_sizes_agree::<Link<1, 0>>();
-        assert_sizes_agree::<Link<7, 0>>();
+        assert_sizes_agree::<Link<1>>();
+        assert_sizes_agree_of(&Link::<7>::new(&build(), BuildId(0)));
     }
 
     #[test]
     fn link_synthesizes() {
-        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
-        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let build = EngineBuild::minimal(&build, 1);
+        let build = build();
         let id = LineKind::Spi.build_id(&build);
-        assert_synthesizes(Link::<6, 0>::new(&build, id), "carrystep_link");
+        assert_synthesizes(Link::<6>::new(&build, id), "carrystep_link");
     }
 }

@@ -6,6 +6,7 @@ pub mod constant;
 pub mod formula;
 pub mod held_memory;
 pub mod memory;
+pub mod optional;
 pub mod per_axis;
 #[macro_use]
 pub mod register;

@@ -88,18 +88,22 @@ fn field(line: &str) -> Option<(&str, &str)> {
     line.split_once(": ")
 }
 
+/// What the type of an array begins with.
+const ARRAYS: [&str; 4] = ["PerAxis<", "PerLane<", "Optional<", "["];
+
+/// From a type on, the type of its elements if it is an array.
+fn elements(kind: &str) -> &str {
+    ARRAYS.iter().fold(kind, |kind, begin| kind.trim_start_matches(begin))
+}
+
 fn is_port(kind: &str) -> bool {
-    let kind = ["PerAxis<", "PerLane<", "["]
-        .iter()
-        .fold(kind, |kind, begin| kind.trim_start_matches(begin));
+    let kind = elements(kind);
     kind.starts_with("Input<") || kind.starts_with("Signal<Out,")
 }
 
 /// The type of the elements of an array, or the type itself, without its arguments.
 fn element(kind: &str) -> &str {
-    let kind = ["PerAxis<", "PerLane<", "["]
-        .iter()
-        .fold(kind, |kind, begin| kind.trim_start_matches(begin));
+    let kind = elements(kind);
     kind.split(['<', ',', ';', '>']).next().unwrap_or(kind).trim()
 }
 

@@ -14,7 +14,7 @@ use carrystep_core::engine::{
 };
 use rust_hdl_core::prelude::{Block, Out, Signal, check_all};
 
-/// An engine whose numbers of axes and latches are not part of its type.
+/// An engine whose number of axes is not part of its type.
 pub trait AnyEngine: Block {
     /// Applies the inputs and returns the outputs of the present cycle.
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs;
@@ -34,24 +34,16 @@ pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
     if build.adders > 1 {
         return wide_engine(build);
     }
-    Ok(match (build.axes(), build.has_several_latches()) {
-        (1, false) => Box::new(Engine::<1, 0>::new(build)?),
-        (1, true) => Box::new(Engine::<1, 1>::new(build)?),
-        (2, false) => Box::new(Engine::<2, 0>::new(build)?),
-        (2, true) => Box::new(Engine::<2, 1>::new(build)?),
-        (3, false) => Box::new(Engine::<3, 0>::new(build)?),
-        (3, true) => Box::new(Engine::<3, 1>::new(build)?),
-        (4, false) => Box::new(Engine::<4, 0>::new(build)?),
-        (4, true) => Box::new(Engine::<4, 1>::new(build)?),
-        (5, false) => Box::new(Engine::<5, 0>::new(build)?),
-        (5, true) => Box::new(Engine::<5, 1>::new(build)?),
-        (6, false) => Box::new(Engine::<6, 0>::new(build)?),
-        (6, true) => Box::new(Engine::<6, 1>::new(build)?),
-        (7, false) => Box::new(Engine::<7, 0>::new(build)?),
-        (7, true) => Box::new(Engine::<7, 1>::new(build)?),
-        (8, false) => Box::new(Engine::<8, 0>::new(build)?),
-        (8, true) => Box::new(Engine::<8, 1>::new(build)?),
-        (axes, _) => return Err(EngineError::Axes(axes).into()),
+    Ok(match build.axes() {
+        1 => Box::new(Engine::<1>::new(build)?),
+        2 => Box::new(Engine::<2>::new(build)?),
+        3 => Box::new(Engine::<3>::new(build)?),
+        4 => Box::new(Engine::<4>::new(build)?),
+        5 => Box::new(Engine::<5>::new(build)?),
+        6 => Box::new(Engine::<6>::new(build)?),
+        7 => Box::new(Engine::<7>::new(build)?),
+        8 => Box::new(Engine::<8>::new(build)?),
+        axes => return Err(EngineError::Axes(axes).into()),
     })
 }
 
@@ -149,10 +141,10 @@ macro_rules! any_engine {
     };
 }
 
-any_engine!([const N: usize, const S: usize] Engine<N, S>);
+any_engine!([const N: usize] Engine<N>);
 any_engine!([const N: usize, const K: usize] WideEngine<N, K>);
 
-impl<const N: usize, const S: usize> Engine<N, S> {
+impl<const N: usize> Engine<N> {
     /// The latches that wait for their edges.
     fn latches_armed(&self) -> u8 {
         let more = |port: &Signal<Out, Word<MORE>>| (port.val().value() as u8) << 1;

@@ -21,9 +21,9 @@ use crate::primitives::compiled_once;
 use crate::primitives::word::bit_cast;
 use rust_hdl_core::prelude::*;
 
-compiled_once::logic!(Engine<N = 8, S = 1>);
+compiled_once::logic!(Engine<N = 8>, latch_bank);
 
-impl<const N: usize, const S: usize> compiled_once::Kernel for Engine<N, S> {
+impl<const N: usize> compiled_once::Kernel for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
@@ -370,7 +370,7 @@ impl<const N: usize, const S: usize> compiled_once::Kernel for Engine<N, S> {
 
         // Further latches, in a build that has several. Their bank replaces what the only latch of
         // another build outputs.
-        for i in 0..S {
+        for i in 0..self.latch_bank.len() {
             self.latch_bank[i].clock.next = self.clock.val();
             self.latch_bank[i].strobe.next = self.strobe.val();
             self.latch_bank[i].pins.next = self.more_latches[i].val();

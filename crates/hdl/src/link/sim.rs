@@ -14,7 +14,7 @@ use carrystep_core::engine::{
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl_core::prelude::{Block, Out, Signal, check_all};
 
-/// A link whose numbers of axes and latches are not part of its type.
+/// A link whose number of axes is not part of its type.
 pub trait AnyLink: Block {
     /// Applies the inputs and returns the outputs of the present cycle, except those of the line.
     fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs;
@@ -33,24 +33,16 @@ pub fn link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlErr
     if build.adders > 1 {
         return wide_link(build, id);
     }
-    Ok(match (build.axes(), build.has_several_latches()) {
-        (1, false) => Box::new(Link::<1, 0>::new(build, id)),
-        (1, true) => Box::new(Link::<1, 1>::new(build, id)),
-        (2, false) => Box::new(Link::<2, 0>::new(build, id)),
-        (2, true) => Box::new(Link::<2, 1>::new(build, id)),
-        (3, false) => Box::new(Link::<3, 0>::new(build, id)),
-        (3, true) => Box::new(Link::<3, 1>::new(build, id)),
-        (4, false) => Box::new(Link::<4, 0>::new(build, id)),
-        (4, true) => Box::new(Link::<4, 1>::new(build, id)),
-        (5, false) => Box::new(Link::<5, 0>::new(build, id)),
-        (5, true) => Box::new(Link::<5, 1>::new(build, id)),
-        (6, false) => Box::new(Link::<6, 0>::new(build, id)),
-        (6, true) => Box::new(Link::<6, 1>::new(build, id)),
-        (7, false) => Box::new(Link::<7, 0>::new(build, id)),
-        (7, true) => Box::new(Link::<7, 1>::new(build, id)),
-        (8, false) => Box::new(Link::<8, 0>::new(build, id)),
-        (8, true) => Box::new(Link::<8, 1>::new(build, id)),
-        (axes, _) => return Err(EngineError::Axes(axes).into()),
+    Ok(match build.axes() {
+        1 => Box::new(Link::<1>::new(build, id)),
+        2 => Box::new(Link::<2>::new(build, id)),
+        3 => Box::new(Link::<3>::new(build, id)),
+        4 => Box::new(Link::<4>::new(build, id)),
+        5 => Box::new(Link::<5>::new(build, id)),
+        6 => Box::new(Link::<6>::new(build, id)),
+        7 => Box::new(Link::<7>::new(build, id)),
+        8 => Box::new(Link::<8>::new(build, id)),
+        axes => return Err(EngineError::Axes(axes).into()),
     })
 }
 
@@ -146,7 +138,7 @@ macro_rules! any_link {
     };
 }
 
-any_link!([const N: usize, const S: usize] Link<N, S>);
+any_link!([const N: usize] Link<N>);
 any_link!([const N: usize, const K: usize] WideLink<N, K>);
 
 /// Page, axis, item and word at the ports of a word of state. Bits without a meaning are ones, so
@@ -165,7 +157,7 @@ fn at_ports(state: Option<StateWord>) -> (Word<2>, Word<3>, Word<3>, Word<32>) {
     )
 }
 
-impl<const N: usize, const S: usize> Link<N, S> {
+impl<const N: usize> Link<N> {
     /// Applies the word of state that the engine outputs.
     fn settle_words(&mut self, engine: &EngineOutputs) {
         let state = engine.state.of_adder(0);

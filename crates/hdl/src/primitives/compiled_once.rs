@@ -22,12 +22,15 @@ pub(crate) trait Kernel {
     fn hdl(&self) -> Verilog;
 }
 
-/// Implements `Logic` for a generic module that implements [`Kernel`]: `logic!(Engine<N = 8, S = 1>)`
-/// compiles `hdl` for 8 and 1. In the kernel, a loop to 8 must be one to N and a slice of 8 bits one
-/// of N bits, and the same for S; [`assert_sizes_agree`] finds out. A kernel that has slices of 8 bits
+/// Implements `Logic` for a generic module that implements [`Kernel`]: `logic!(WideEngine<N = 8, K = 6>)`
+/// compiles `hdl` for 8 and 6. In the kernel, a loop to 8 must be one to N and a slice of 8 bits one
+/// of N bits, and the same for K; [`assert_sizes_agree`] finds out. A kernel that has slices of 8 bits
 /// for another reason is compiled for 7.
+///
+/// `logic!(Engine<N = 8>, latch_bank)` names a part that not every build has
+/// ([`Optional`](super::optional::Optional)). A loop to 1 must be one to its number of elements then.
 macro_rules! logic {
-    ($module:ident<$($size:ident = $compiled:literal),+>) => {
+    ($module:ident<$($size:ident = $compiled:literal),+> $(, $part:ident)?) => {
         impl<$(const $size: usize),+> Logic for $module<$($size),+> {
             #[inline]
             fn update(&mut self) {
@@ -38,7 +41,7 @@ macro_rules! logic {
             }
             fn hdl(&self) -> Verilog {
                 let compiled = Box::<$module<$($compiled),+>>::default();
-                let sizes = [$(($compiled, $size)),+];
+                let sizes = [$(($compiled, $size),)+ $((1, self.$part.len()))?];
                 let code = $crate::primitives::compiled_once::Kernel::hdl(&*compiled);
                 $crate::primitives::compiled_once::resized(code, &sizes)
             }
@@ -92,8 +95,13 @@ fn resize(block: &mut VerilogBlock, sizes: &[(usize, usize)]) {
 /// power of two; so two are compared.
 #[cfg(test)]
 pub(crate) fn assert_sizes_agree<M: Kernel + rust_hdl_core::prelude::Logic + Default>() {
-    let module = Box::<M>::default();
-    let (own, replaced) = (Kernel::hdl(&*module), rust_hdl_core::prelude::Logic::hdl(&*module));
+    assert_sizes_agree_of(&*Box::<M>::default());
+}
+
+/// The same for a module whose optional part is not the default one.
+#[cfg(test)]
+pub(crate) fn assert_sizes_agree_of<M: Kernel + rust_hdl_core::prelude::Logic>(module: &M) {
+    let (own, replaced) = (Kernel::hdl(module), rust_hdl_core::prelude::Logic::hdl(module));
     let (own, replaced) = (format!("{own:#?}"), format!("{replaced:#?}"));
     for (own, replaced) in own.lines().zip(replaced.lines()) {
         assert_eq!(own, replaced);
