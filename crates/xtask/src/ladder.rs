@@ -7,16 +7,18 @@ use std::thread;
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an
 /// error.
 pub fn climb() -> TaskResult {
-    arrows::check()?;
     decisions::check()?;
-    // What is compiled needs no tool of others, and an installation mostly waits for the network.
-    let (tools, linted) = thread::scope(|scope| {
+    // What is compiled needs no tool of others, and an installation mostly waits for the network. The
+    // sources are read for the arrows on one core, in some seconds.
+    let (tools, arrows, linted) = thread::scope(|scope| {
         let tools = scope.spawn(tools::install);
+        let arrows = scope.spawn(arrows::check);
         let linted = lint();
-        (tools.join(), linted)
+        (tools.join(), arrows.join(), linted)
     });
-    tools.unwrap_or_else(|_| Err("the installation of tools has panicked".to_owned()))?;
+    arrows.unwrap_or_else(|_| Err("the check of the arrows has panicked".to_owned()))?;
     linted?;
+    tools.unwrap_or_else(|_| Err("the installation of tools has panicked".to_owned()))?;
     bare()?;
     let tests = testing::build()?;
     // The figures take one core for some seconds.

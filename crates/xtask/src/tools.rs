@@ -31,6 +31,7 @@ const NEEDED: &[(&str, &str)] = &[
     ("halcompile", "linuxcnc-uspace-dev"),
     ("valgrind", "valgrind"),
     ("chromium", "chromium"),
+    ("jsonschema", "python3-jsonschema"),
 ];
 
 /// The same for the long run of senders alone, because these packages are large.
