@@ -1,7 +1,7 @@
 """Reads one document a line, with the path of its schema, and prints what is wrong with it.
 
 Asked:     {"schema": "/.../docs/schemas/plan.json", "document": {...}}
-Answered:  ["$.moves[0]: 'ticks' is a required property"], or [] if nothing is wrong
+Answered:  ["moves/0: 'ticks' is a required property"], or [] if nothing is wrong
 """
 
 import json
@@ -28,5 +28,8 @@ def validator(path):
 print("ready", flush=True)
 for line in sys.stdin:
     asked = json.loads(line)
-    errors = validator(asked["schema"]).iter_errors(asked["document"])
-    print(json.dumps([f"{error.json_path}: {error.message}" for error in errors]), flush=True)
+    wrong = []
+    for error in validator(asked["schema"]).iter_errors(asked["document"]):
+        place = "/".join(str(part) for part in error.absolute_path)
+        wrong.append(f"{place}: {error.message}")
+    print(json.dumps(wrong), flush=True)

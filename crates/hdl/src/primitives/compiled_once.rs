@@ -28,7 +28,8 @@ pub(crate) trait Kernel {
 /// for another reason is compiled for 7.
 ///
 /// `logic!(Engine<N = 8>, latch_bank)` names a part that not every build has
-/// ([`Optional`](super::optional::Optional)). A loop to 1 must be one to its number of elements then.
+/// ([`Optional`](super::optional::Optional)). In such a kernel, a loop to 1 must be one to its number of
+/// elements, and there may be no slice of one bit.
 macro_rules! logic {
     ($module:ident<$($size:ident = $compiled:literal),+> $(, $part:ident)?) => {
         impl<$(const $size: usize),+> Logic for $module<$($size),+> {
