@@ -67,7 +67,10 @@ fn document_that_is_not_as_its_schema_says_is_found() {
     let good = json!({
         "schema": { "name": "carrystep.failure", "version": 1 },
         "passed": false,
-        "error": { "kind": "usage", "message": "?", "file": null, "line": null, "column": null, "help": null },
+        "error": {
+            "kind": "usage", "message": "?",
+            "file": null, "line": null, "column": null, "help": null
+        },
     });
     check(&good.to_string());
     let errors = |document: &Value| CHECKER.lock().unwrap().errors("failure", document);

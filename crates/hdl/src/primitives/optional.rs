@@ -4,6 +4,7 @@
 //! A kernel loops over it: `for i in 0..self.latch_bank.len()`. Whether the element exists is no part of
 //! the module's type, so the module is compiled once for both.
 
+use super::per_axis::elements;
 use rust_hdl_core::prelude::{Block, Logic, Probe};
 use std::ops::{Deref, DerefMut};
 
@@ -32,38 +33,4 @@ impl<T: Default> Default for Optional<T> {
     }
 }
 
-impl<T> Deref for Optional<T> {
-    type Target = Vec<T>;
-    #[inline]
-    fn deref(&self) -> &Vec<T> {
-        &self.0
-    }
-}
-
-impl<T> DerefMut for Optional<T> {
-    #[inline]
-    fn deref_mut(&mut self) -> &mut Vec<T> {
-        &mut self.0
-    }
-}
-
-impl<T: Logic> Logic for Optional<T> {
-    fn update(&mut self) {}
-}
-
-impl<T: Block> Block for Optional<T> {
-    fn connect_all(&mut self) {
-        self.0.connect_all();
-    }
-    #[inline]
-    fn update_all(&mut self) {
-        self.0.update_all();
-    }
-    #[inline]
-    fn has_changed(&self) -> bool {
-        self.0.has_changed()
-    }
-    fn accept(&self, name: &str, probe: &mut dyn Probe) {
-        self.0.accept(name, probe);
-    }
-}
+elements!([] Optional<T> = Vec<T>);

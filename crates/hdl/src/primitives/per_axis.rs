@@ -7,6 +7,48 @@
 use rust_hdl_core::prelude::{Block, Logic, Probe};
 use std::ops::{Deref, DerefMut};
 
+/// Makes a block of a type that wraps an array or a list of blocks: the elements, and nothing else.
+macro_rules! elements {
+    ([$($size:tt)*] $type:ty = $inner:ty) => {
+        impl<T, $($size)*> Deref for $type {
+            type Target = $inner;
+            #[inline]
+            fn deref(&self) -> &$inner {
+                &self.0
+            }
+        }
+
+        impl<T, $($size)*> DerefMut for $type {
+            #[inline]
+            fn deref_mut(&mut self) -> &mut $inner {
+                &mut self.0
+            }
+        }
+
+        impl<T: Logic, $($size)*> Logic for $type {
+            fn update(&mut self) {}
+        }
+
+        impl<T: Block, $($size)*> Block for $type {
+            fn connect_all(&mut self) {
+                self.0.connect_all();
+            }
+            #[inline]
+            fn update_all(&mut self) {
+                self.0.update_all();
+            }
+            #[inline]
+            fn has_changed(&self) -> bool {
+                self.0.has_changed()
+            }
+            fn accept(&self, name: &str, probe: &mut dyn Probe) {
+                self.0.accept(name, probe);
+            }
+        }
+    };
+}
+pub(super) use elements;
+
 /// An array of N elements of one type; element i belongs to axis i.
 #[derive(Debug)]
 pub struct PerAxis<T, const N: usize>([T; N]);
@@ -24,41 +66,7 @@ impl<T: Default, const N: usize> Default for PerAxis<T, N> {
     }
 }
 
-impl<T, const N: usize> Deref for PerAxis<T, N> {
-    type Target = [T; N];
-    #[inline]
-    fn deref(&self) -> &[T; N] {
-        &self.0
-    }
-}
-
-impl<T, const N: usize> DerefMut for PerAxis<T, N> {
-    #[inline]
-    fn deref_mut(&mut self) -> &mut [T; N] {
-        &mut self.0
-    }
-}
-
-impl<T: Logic, const N: usize> Logic for PerAxis<T, N> {
-    fn update(&mut self) {}
-}
-
-impl<T: Block, const N: usize> Block for PerAxis<T, N> {
-    fn connect_all(&mut self) {
-        self.0.connect_all();
-    }
-    #[inline]
-    fn update_all(&mut self) {
-        self.0.update_all();
-    }
-    #[inline]
-    fn has_changed(&self) -> bool {
-        self.0.has_changed()
-    }
-    fn accept(&self, name: &str, probe: &mut dyn Probe) {
-        self.0.accept(name, probe);
-    }
-}
+elements!([const N: usize] PerAxis<T, N> = [T; N]);
 
 /// N elements, one for each adder, on the heap: a part of a large engine exists several times, and the
 /// stack of a thread is small. Kernels and Verilog see an array. Its code is the same for every N.
@@ -84,38 +92,4 @@ fn defaults<T: Default>(count: usize) -> Vec<T> {
     std::iter::repeat_with(T::default).take(count).collect()
 }
 
-impl<T, const N: usize> Deref for PerLane<T, N> {
-    type Target = Vec<T>;
-    #[inline]
-    fn deref(&self) -> &Vec<T> {
-        &self.0
-    }
-}
-
-impl<T, const N: usize> DerefMut for PerLane<T, N> {
-    #[inline]
-    fn deref_mut(&mut self) -> &mut Vec<T> {
-        &mut self.0
-    }
-}
-
-impl<T: Logic, const N: usize> Logic for PerLane<T, N> {
-    fn update(&mut self) {}
-}
-
-impl<T: Block, const N: usize> Block for PerLane<T, N> {
-    fn connect_all(&mut self) {
-        self.0.connect_all();
-    }
-    #[inline]
-    fn update_all(&mut self) {
-        self.0.update_all();
-    }
-    #[inline]
-    fn has_changed(&self) -> bool {
-        self.0.has_changed()
-    }
-    fn accept(&self, name: &str, probe: &mut dyn Probe) {
-        self.0.accept(name, probe);
-    }
-}
+elements!([const N: usize] PerLane<T, N> = Vec<T>);
