@@ -37,6 +37,7 @@ pub use none::{Caller, ControlSocket, EndMark, PortClaim, Reply, call, claim, ho
 use crate::found::{BlockFound, FoundBoard, Known};
 pub use crate::holder::Holder;
 use crate::interrupt;
+use crate::json;
 use carrystep_link::{BuildFacts, Status, Wish};
 use carrystep_runner::BlockAt;
 pub use program::{OverrideWish, ProgramControl};
@@ -194,7 +195,7 @@ impl Control {
                         overrides: program.as_ref().map(|program| program.overrides().into()),
                         ..FoundBoard::new(status, known, None)
                     };
-                    serde_json::to_string(&found).unwrap_or_default()
+                    json::line(&found).unwrap_or_default()
                 }),
             });
             if stop {

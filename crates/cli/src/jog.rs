@@ -2,6 +2,7 @@
 //! within `travel` where machine zero is known.
 
 use crate::failure::Failure;
+use crate::json;
 use crate::work::{OffsetWish, Target};
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, Machine, MoveFile, SourceText, decimal};
@@ -67,8 +68,7 @@ impl JogWish {
         let mut to = Vec::new();
         for (axis, distance) in &self.distances {
             // Quoted as a TOML key, so that the name cannot contain TOML syntax.
-            let axis =
-                serde_json::to_string(axis).map_err(|error| Failure::Run(error.to_string()))?;
+            let axis = json::line(axis).map_err(|error| Failure::Run(error.to_string()))?;
             to.push(format!("{axis} = {distance:?}"));
         }
         let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));

@@ -27,6 +27,7 @@ mod homing;
 mod interrupt;
 mod job;
 mod jog;
+mod json;
 mod junit;
 mod limits;
 mod memory;

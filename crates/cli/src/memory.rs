@@ -28,6 +28,7 @@
 
 use crate::connection::{self, ConnectedBoard, Connection};
 use crate::failure::Failure;
+use crate::json;
 use crate::limits::ClosedLimits;
 use crate::work::WorkRecord;
 use carrystep_core::engine::Cause;
@@ -301,7 +302,7 @@ impl BoardMemory {
         let folder = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
         let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(&serde_json::to_vec_pretty(&self.record)?)?;
+        file.write_all(json::indented(&self.record)?.as_bytes())?;
         file.as_file().sync_all()?;
         file.persist(path).map(drop).map_err(|error| error.error)
     }

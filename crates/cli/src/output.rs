@@ -5,6 +5,7 @@ use crate::colour;
 use crate::document::{Document, Named};
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::json;
 use carrystep_files::{NewFile, OutputClaim, OutputFailure};
 use std::borrow::Cow;
 use std::ffi::OsString;
@@ -90,23 +91,19 @@ pub fn print_json_line(document: &impl Document) -> Result<(), Failure> {
 /// because some documents are long.
 fn write_json(document: &impl Document, in_a_line: bool) -> Result<(), Failure> {
     let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
-    let named = Named::new(document);
-    let written = if in_a_line {
-        serde_json::to_writer(&mut out, &named)
-    } else {
-        serde_json::to_writer_pretty(&mut out, &named)
-    };
-    written.map_err(|error| match error.io_error_kind() {
-        Some(_) => not_printed(&error.into()),
-        None => Failure::Run(error.to_string()),
+    json::write(&mut out, &Named::new(document), in_a_line).map_err(|error| {
+        match error.io_error_kind() {
+            Some(_) => not_printed(&error.into()),
+            None => Failure::Run(error.to_string()),
+        }
     })?;
     writeln!(out).and_then(|()| out.flush()).map_err(|error| not_printed(&error))
 }
 
 /// The text of a JSON document, preceded by the name and the version of its schema.
 pub fn json_text(document: &impl Document) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(&Named::new(document))
-        .map_err(|error| Failure::Run(error.to_string()))?;
+    let text =
+        json::indented(&Named::new(document)).map_err(|error| Failure::Run(error.to_string()))?;
     Ok(text + "\n")
 }
 

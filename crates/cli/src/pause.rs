@@ -6,6 +6,7 @@ use crate::control::{self, ANSWER, BUSY, Holder, NOTHING_WAITS, Reply, SocketReq
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::jog::JogWish;
+use crate::json;
 use crate::output;
 use crate::probe::ProbeWish;
 use crate::work::{NamedOffset, OffsetWish};
@@ -94,7 +95,7 @@ pub fn ask(port: &str, wish: &PauseWish, json: bool) -> Result<bool, Failure> {
         // From here on Ctrl-C requests a stop and does not end the process.
         interrupt::watch();
     }
-    let text = serde_json::to_string(wish).map_err(|error| Failure::Run(error.to_string()))?;
+    let text = json::line(wish).map_err(|error| Failure::Run(error.to_string()))?;
     let hangs = |holder: &Holder| {
         Failure::Run(connection::hangs(port, holder, SocketRequest::Pause, "answer"))
     };

@@ -5,6 +5,7 @@ use crate::arguments::OverrideArguments;
 use crate::connection;
 use crate::control::{self, ANSWER, NO_SPINDLE, NOTHING_RUNS, OverrideWish, Reply, SocketRequest};
 use crate::failure::Failure;
+use crate::json;
 use crate::output;
 
 /// Sets the overrides of the program.
@@ -17,7 +18,7 @@ pub fn run(arguments: &OverrideArguments) -> Result<(), Failure> {
         return Err(Failure::input("on this system no other command can be reached"));
     }
     let OverrideArguments { feed, rapid, spindle, .. } = *arguments;
-    let text = serde_json::to_string(&OverrideWish { feed, rapid, spindle })
+    let text = json::line(&OverrideWish { feed, rapid, spindle })
         .map_err(|error| Failure::Run(error.to_string()))?;
     let nothing =
         || Failure::input(format!("no program runs at {port}: `carrystep status` shows its state"));

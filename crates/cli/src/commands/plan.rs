@@ -4,6 +4,7 @@ use crate::arguments::PlanArguments as Arguments;
 use crate::commands::plan_program;
 use crate::document::Named;
 use crate::failure::Failure;
+use crate::json;
 use crate::output::OutputFile;
 use crate::segments::{SegmentJson, add_segment, segments};
 use crate::spool::Spool;
@@ -97,7 +98,7 @@ fn document(source: MoveSource, report: Option<OutputFile>) -> Result<(), Failur
     let machine = source.machine.clone();
     let (mut moves, mut separator) = (Spool::new(), "");
     let end = planned(source, report, |planned| {
-        let text = serde_json::to_string_pretty(&move_json(&machine, planned))
+        let text = json::indented(&move_json(&machine, planned))
             .map_err(|error| Failure::Run(error.to_string()))?;
         moves.add(|all| {
             all.push_str(separator);

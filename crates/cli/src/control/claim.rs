@@ -3,6 +3,7 @@
 
 use super::control_socket::ControlSocket;
 use super::{Holder, folder};
+use crate::json;
 use carrystep_link::BuildFacts;
 use rustix::io::Errno;
 use rustix::process::{Pid, test_kill_process};
@@ -112,7 +113,7 @@ impl PortClaim {
 /// Writes a holder into a lock file. The content serves messages and tells whether to wait for the
 /// holder, so a failed write is ignored.
 fn write(file: &mut File, holder: &Holder) {
-    if let Ok(text) = serde_json::to_string(holder) {
+    if let Ok(text) = json::line(holder) {
         let _ = file
             .set_len(0)
             .and_then(|()| file.rewind())

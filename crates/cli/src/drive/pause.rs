@@ -11,6 +11,7 @@ use crate::connection::{ConnectedBoard, ConnectedBoardError};
 use crate::control::Control;
 use crate::failure::Failure;
 use crate::jog::{self, JogWish};
+use crate::json;
 use crate::limits::ClosedLimits;
 use crate::memory::{self, BoardMemory};
 use crate::pause::{PauseResult, PauseWish};
@@ -120,7 +121,7 @@ impl<'a> Pause<'a> {
             result.touched = self.touched.as_ref().map(|at| named_point(letters, at));
         }
         result.offsets = self.offsets.as_ref().map(work::named).unwrap_or_default();
-        let result = serde_json::to_string(&result).unwrap_or_default();
+        let result = json::line(&result).unwrap_or_default();
         control.program().into_iter().for_each(|program| program.did(result.clone()));
         Ok(true)
     }

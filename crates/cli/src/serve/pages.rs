@@ -5,6 +5,7 @@ use super::clients::Driving;
 use super::requests::Requests;
 use super::web::Word;
 use crate::control::Control;
+use crate::json;
 use carrystep_grbl::Seen;
 use serde::Serialize;
 
@@ -42,7 +43,7 @@ impl Requests {
             Word::State => {
                 let state = self.shown(id);
                 // It cannot be refused: it holds no map whose keys are no text.
-                let text = serde_json::to_string(&state).unwrap_or_default();
+                let text = json::line(&state).unwrap_or_default();
                 self.clients.say(id, &(text + "\n"));
             }
             Word::Stop => self.stops = true,

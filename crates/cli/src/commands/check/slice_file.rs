@@ -1,5 +1,6 @@
 //! The files in which slices of a check are kept until they are merged.
 
+use crate::json;
 use carrystep_check::Slice;
 use carrystep_files::sealed::{SealFault, seal, unseal};
 use carrystep_files::{InputFailure, open};
@@ -140,7 +141,7 @@ impl Slices {
     /// # Errors
     /// [`SliceFault::NotMade`].
     pub fn text(slice: Slice, settings: SliceSettings) -> Result<String, SliceFault> {
-        Ok(seal(NAME, VERSION, &serde_json::to_string(&Body { settings, slice })?))
+        Ok(seal(NAME, VERSION, &json::line(&Body { settings, slice })?))
     }
 
     /// Adds the slice in a file.
