@@ -1,8 +1,7 @@
 //! Writes values as JSON, in one line or indented.
 //!
-//! There is one type of serializer for all values, writers and layouts. Rust compiles the code that
-//! serializes a value once for each type of serializer, and for five of them it was an eighth of the
-//! command.
+//! There is one type of serializer for all values, writers and layouts, because Rust compiles the code
+//! that serializes a value once for each type of serializer.
 
 use serde::Serialize;
 use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
@@ -52,7 +51,11 @@ enum Layout {
 macro_rules! layout {
     ($($method:ident($($argument:ident: $type:ty)?);)*) => {
         impl Formatter for Layout {
-            $(fn $method<W: ?Sized + Write>(&mut self, out: &mut W $(, $argument: $type)?) -> Result<()> {
+            $(fn $method<W: ?Sized + Write>(
+                &mut self,
+                out: &mut W
+                $(, $argument: $type)?
+            ) -> Result<()> {
                 match self {
                     Self::Line => CompactFormatter.$method(out $(, $argument)?),
                     Self::Indented(formatter) => formatter.$method(out $(, $argument)?),
@@ -72,4 +75,20 @@ layout! {
     begin_object_key(first: bool);
     begin_object_value();
     end_object_value();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{indented, line};
+    use serde_json::{from_str, json, to_string, to_string_pretty};
+
+    #[test]
+    fn both_layouts_are_those_of_serde_json() {
+        let value = json!({"a": [], "b": {}, "c": [1, -2.5, null, [true, "\u{1} \"\u{e9}"]],
+            "d": {"e": {"f": [{}]}}});
+        let (short, long) = (line(&value).unwrap(), indented(&value).unwrap());
+        assert_eq!(short, to_string(&value).unwrap());
+        assert_eq!(long, to_string_pretty(&value).unwrap());
+        assert_eq!(from_str::<serde_json::Value>(&long).unwrap(), value);
+    }
 }
