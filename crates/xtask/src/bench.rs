@@ -72,12 +72,22 @@ pub fn jobs(smoke: bool) -> TaskResult {
 }
 
 /// The path of an executable in cargo's messages, one JSON document a line.
+///
+/// # Errors
+/// It was not built; or it was built without optimisation, and so were the generic functions of other
+/// crates that it measures.
 fn executable(messages: &str, name: &str, kind: &str) -> Result<String, String> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let mut paths = messages
+    let mut built = messages
         .filter(|message| message["target"]["name"] == name && message["target"]["kind"][0] == kind)
-        .filter_map(|message| message["executable"].as_str().map(str::to_owned));
-    paths.next().ok_or_else(|| format!("cargo has built no {kind} {name}"))
+        .filter_map(|message| Some((message["executable"].as_str()?.to_owned(), message)));
+    match built.next() {
+        None => Err(format!("cargo has built no {kind} {name}")),
+        Some((_, message)) if message["profile"]["opt_level"] == "0" => {
+            Err(format!("{kind} {name} is not optimised: see [profile.release] in Cargo.toml"))
+        }
+        Some((path, _)) => Ok(path),
+    }
 }
 
 #[cfg(test)]
@@ -87,16 +97,20 @@ mod tests {
 
     #[test]
     fn executable_is_found_by_name_and_kind() {
-        let built = |name: &str, kind: &str, path: &str| {
-            json!({"target": {"name": name, "kind": [kind]}, "executable": path}).to_string()
+        let built = |name: &str, kind: &str, path: &str, level: &str| {
+            json!({"target": {"name": name, "kind": [kind]}, "executable": path,
+                "profile": {"opt_level": level}})
+            .to_string()
         };
         let messages = [
             "a build script prints this".to_owned(),
-            built("levels", "lib", "/lib"),
-            built("levels", "bench", "/bench"),
+            built("levels", "lib", "/lib", "3"),
+            built("levels", "bench", "/bench", "3"),
+            built("jobs", "bench", "/jobs", "0"),
         ]
         .join("\n");
         assert_eq!(executable(&messages, "levels", "bench"), Ok("/bench".to_owned()));
         assert!(executable(&messages, "carrystep", "bin").is_err());
+        assert!(executable(&messages, "jobs", "bench").unwrap_err().contains("is not optimised"));
     }
 }
