@@ -1,7 +1,7 @@
 //! Writes values as JSON, in one line or indented.
 //!
-//! There is one type of serializer for all values, writers and layouts, because Rust compiles the code
-//! that serializes a value once for each type of serializer.
+//! There is one type of serializer for all values, writers and layouts, because Rust compiles the
+//! code that serializes a value once for each type of serializer.
 
 use serde::Serialize;
 use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};

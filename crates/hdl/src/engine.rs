@@ -54,6 +54,7 @@ pub mod event_wheel;
 pub mod latch_bank;
 pub mod layout;
 pub mod output_control;
+mod parts_of_any_size;
 pub mod pulse_width;
 pub mod pulser;
 pub mod queue;
@@ -77,6 +78,7 @@ use edge_latch::EdgeLatch;
 use event_wheel::EventWheel;
 use latch_bank::{LatchBank, MORE};
 use output_control::OutputControl;
+use parts_of_any_size::PartsOfAnySize;
 use pulse_width::PulseWidth;
 use pulser::Pulser;
 use queue::Queue;
@@ -360,44 +362,6 @@ impl<const N: usize> Engine<N> {
         self.one_axis = PerAxis::from_fn(|axis| Parameter::new(1 << axis));
         self.rest_1 = Register::new(true);
         self.rest_2 = Register::new(true);
-        Ok(())
-    }
-}
-
-/// The parts of an engine whose types do not depend on its numbers of axes, latches and adders. What
-/// replaces them is compiled once. There is one store, queue and readout for each adder.
-struct PartsOfAnySize<'a> {
-    pulsers: &'a mut [Pulser],
-    stores: &'a mut [Store],
-    queues: &'a mut [Queue],
-    readouts: &'a mut [Readout],
-    cut_control: &'a mut CutControl,
-    output_control: &'a mut OutputControl,
-    pulse_width: &'a mut PulseWidth,
-    edge_latch: &'a mut EdgeLatch,
-    supervisor: &'a mut Supervisor,
-}
-
-impl PartsOfAnySize<'_> {
-    fn set(self, build: &EngineBuild) -> Result<(), HdlError> {
-        for (pulser, pins) in self.pulsers.iter_mut().zip(&build.pins) {
-            *pulser = Pulser::new(pins)?;
-        }
-        let slots = build.slots();
-        for store in self.stores {
-            *store = Store::new(build.phase, &build.guard.stop, slots);
-        }
-        for queue in self.queues {
-            *queue = Queue::new(slots, build.cuts);
-        }
-        for readout in self.readouts {
-            *readout = Readout::new(slots);
-        }
-        *self.cut_control = CutControl::new(build.cuts);
-        *self.output_control = OutputControl::new(&build.outputs, slots);
-        *self.pulse_width = PulseWidth::new(build.outputs.pwm_divider);
-        *self.edge_latch = EdgeLatch::new(build.guard.latches.first());
-        *self.supervisor = Supervisor::new(&build.guard);
         Ok(())
     }
 }

@@ -28,12 +28,12 @@
 //! Cost: a lane needs about as much as an engine of one axis without its pins. A tick has at least 13
 //! clocks per time slot and three more.
 
-use super::PartsOfAnySize;
 use super::adder::Adder;
 use super::cut_control::CutControl;
 use super::edge_latch::EdgeLatch;
 use super::event_wheel::EventWheel;
 use super::output_control::OutputControl;
+use super::parts_of_any_size::PartsOfAnySize;
 use super::pulse_width::PulseWidth;
 use super::pulser::Pulser;
 use super::queue::Queue;
