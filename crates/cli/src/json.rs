@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn both_layouts_are_those_of_serde_json() {
         let value = json!({"a": [], "b": {}, "c": [1, -2.5, null, [true, "\u{1} \"\u{e9}"]],
-            "d": {"e": {"f": [{}]}}});
+            "d": {"e": {"f": [{}, {"g": 1}]}}});
         let (short, long) = (line(&value).unwrap(), indented(&value).unwrap());
         assert_eq!(short, to_string(&value).unwrap());
         assert_eq!(long, to_string_pretty(&value).unwrap());
